@@ -11,6 +11,7 @@ from .curvature import Ground, ground_from
 from .iso8608 import iso8608
 from .limits import DOUBTS, Limit, LimitReport
 from .obstacles import OBSTACLES, Obstacle, kerb, log, place, root, rut, stick, whoops
+from .picture import animate_ride, draw_ride
 from .profile import Profile, flat, from_function, sine
 from .profile_file import add_roughness, read_gpx, read_profile, read_profile_csv
 from .ride import Ride, TireForce, constant_load_path, ride
@@ -28,8 +29,10 @@ __all__ = [
     "Ride",
     "TireForce",
     "add_roughness",
+    "animate_ride",
     "constant_load_path",
     "contact",
+    "draw_ride",
     "flat",
     "from_function",
     "ground_from",
