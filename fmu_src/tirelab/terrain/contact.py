@@ -140,9 +140,8 @@ def contact(
         raise TirelabError(
             f"the hub is beneath the ground at s = {place[i]:g} m (height {height[i]:g} m); give a path above it"
         )
-    changes = _changes(ground)
     parts = [
-        _meet(ground, place[block], height[block], points, wheel_radius, changes)
+        _meet(ground, place[block], height[block], points, wheel_radius)
         for block, points in _blocks(ground, place, wheel_radius)
     ]
     return Contact(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Contact)))
@@ -154,7 +153,6 @@ def _meet(
     height: Floats,
     points: NDArray[np.int64],
     wheel_radius: float,
-    changes: tuple[Floats, Floats],
 ) -> Contact:
     row, column = np.arange(place.size), np.arange(points.shape[1])
     squared = (ground.s[points] - place[:, None]) ** 2 + (height[:, None] - ground.z[points]) ** 2
@@ -180,7 +178,6 @@ def _meet(
     np.divide(turned, length, out=curvature, where=length > 1e-9)
 
     bend = ground.curvature[points]
-    jump, turn = changes
     return Contact(
         place,
         height,
@@ -191,26 +188,11 @@ def _meet(
         curvature,
         np.minimum(np.where(section, bend, np.inf).min(axis=1), curvature),
         np.maximum(np.where(section, bend, -np.inf).max(axis=1), curvature),
-        np.where(section, jump[points], 0.0).max(axis=1),
+        np.where(section, ground.jump[points], 0.0).max(axis=1),
         _at(ground.resolution, nearest),
-        np.where(section, turn[points], 0.0).max(axis=1),
+        np.where(section, ground.turn[points], 0.0).max(axis=1),
         np.where(touching, np.maximum(zones, 1), (deflection > 0.0).astype(np.int64)),
     )
-
-
-def _changes(ground: Ground) -> tuple[Floats, Floats]:
-    """Return the jump of the curvature [1/m] and the turn [rad] within the resolution around every sample.
-
-    A steady change is twice as large over twice the length; what is more than that is a jump.
-    """
-
-    def change(values: Floats, length: Floats) -> Floats:
-        ends = (np.interp(ground.arc + side * length, ground.arc, values) for side in (0.5, -0.5))
-        difference: Floats = np.abs(np.subtract(*ends))
-        return difference
-
-    near, far = (change(ground.curvature, times * ground.resolution) for times in (1.0, 2.0))
-    return np.maximum(2.0 * near - far, 0.0), change(ground.direction, ground.resolution)
 
 
 def _half_window(ground: Ground, wheel_radius: float) -> int:

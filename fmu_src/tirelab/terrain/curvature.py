@@ -49,7 +49,8 @@ class Ground:
     s: horizontal distance [m]; z: height [m]; direction: angle of the tangent above the horizontal [rad];
     arc: length along the curve [m]; curvature [1/m], convex > 0; resolution: shortest length [m] along the curve over
     which the data can show a change, two points or half the smoothing length (a corner's whole turn and 85 % of it lie
-    within); all of shape (n,). spacing: distance of samples in s [m].
+    within); jump of the curvature [1/m] and turn of the direction [rad] within that length: what is more than a steady
+    change, and all of it; all of shape (n,). spacing: distance of samples in s [m].
     """
 
     s: Floats
@@ -58,6 +59,8 @@ class Ground:
     arc: Floats
     curvature: Floats
     resolution: Floats
+    jump: Floats
+    turn: Floats
     spacing: float
     name: str = "ground"
     notes: tuple[str, ...] = ()
@@ -146,13 +149,19 @@ def ground_from(
     z = curve(t)[:, 1]
     direction = np.arctan2(dz, dx)
     own = chord[np.clip(np.searchsorted(profile.s, s, side="right") - 1, 0, chord.size - 1)]
+    arc = _arc_length(s, z, direction)
+    curvature = (dz * acceleration[:, 0] - dx * acceleration[:, 1]) / speed**3
+    resolution = np.maximum(2.0 * np.maximum(own, spacing / np.cos(direction)), 0.5 * smoothing)
+    steady = 0.5 * _change(arc, curvature, 2.0 * resolution)
     return Ground(
         s,
         z,
         direction,
-        _arc_length(s, z, direction),
-        (dz * acceleration[:, 0] - dx * acceleration[:, 1]) / speed**3,
-        np.maximum(2.0 * np.maximum(own, spacing / np.cos(direction)), 0.5 * smoothing),
+        arc,
+        curvature,
+        resolution,
+        np.maximum(2.0 * (_change(arc, curvature, resolution) - steady), 0.0),
+        _change(arc, direction, resolution),
         float(spacing),
         profile.name,
         profile.notes + ((f"smoothed over {smoothing:g} m",) if smoothing > 0.0 else ()),
@@ -163,6 +172,14 @@ def _arc_length(s: Floats, z: Floats, direction: Floats) -> Floats:
     """Return the length along the curve [m]: each chord, longer by (turn^2 / 24) as that of a circle's arc."""
     turn = np.diff(direction)
     return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(s), np.diff(z)) * (1.0 + turn**2 / 24.0))])
+
+
+def _change(arc: Floats, values: Floats, length: Floats) -> Floats:
+    """Return by how much `values` change over a stretch of `length` [m] around every sample."""
+    difference: Floats = np.abs(
+        np.interp(arc + 0.5 * length, arc, values) - np.interp(arc - 0.5 * length, arc, values)
+    )
+    return difference
 
 
 def _check_forward(curve: CubicSpline, along: Floats) -> None:

@@ -127,10 +127,9 @@ def _draw_ground(axes: Axes, ride: Ride) -> None:
     else:
         lowered, words = ride.wheel_radius, "path of the hub less the wheel's radius"
         margin = 0.08 * max(float(np.ptp(z)), 0.05)
-        floor, top = (
-            float(z.min()) - margin,
-            max(float(z.max()), float(touch.hub_height.max()) - lowered) + margin,
-        )
+        wheel = touch.hub_height - lowered
+        floor = min(float(z.min()), float(wheel.min())) - margin
+        top = max(float(z.max()), float(wheel.max())) + margin
         axes.set_xlim(s[0], s[-1])
     axes.fill_between(s, z, floor, color=GROUND, alpha=0.45, linewidth=0)
     axes.plot(s, z, color=GROUND, linewidth=1.2, label="ground")
