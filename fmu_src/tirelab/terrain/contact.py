@@ -156,7 +156,7 @@ def _meet(
 ) -> Contact:
     row, column = np.arange(place.size), np.arange(points.shape[1])
     squared = (ground.s[points] - place[:, None]) ** 2 + (height[:, None] - ground.z[points]) ** 2
-    deepest = np.clip(np.argmin(squared, axis=1), 1, column.size - 2)
+    deepest = np.minimum(np.maximum(squared.argmin(axis=1), 1), column.size - 2)
     shift, change = _vertex(squared[row, deepest - 1], squared[row, deepest], squared[row, deepest + 1])
     deflection = wheel_radius - np.sqrt(np.maximum(squared[row, deepest] + change, 0.0))
     nearest = points[row, deepest] + shift
@@ -166,30 +166,30 @@ def _meet(
     before = np.where(~inside & (column < deepest[:, None]), column, 0).max(axis=1)
     after = np.where(~inside & (column > deepest[:, None]), column, column.size - 1).min(axis=1)
     touching = inside[row, deepest]
-    start = np.where(touching, points[row, before] + _crossing(squared, row, before, wheel_radius), nearest)
-    end = np.where(touching, points[row, after] - _crossing(squared, row, after, wheel_radius, -1), nearest)
+    first = np.where(touching, points[row, before] + _crossing(squared, row, before, wheel_radius), nearest)
+    last = np.where(touching, points[row, after] - _crossing(squared, row, after, wheel_radius, -1), nearest)
+    start, end, foot = (_between(sample, ground.s.size) for sample in (first, last, nearest))
 
     section = inside & (column > before[:, None]) & (column < after[:, None])
     section[row, deepest] = True
     length = _at(ground.arc, end) - _at(ground.arc, start)
-    local = _at(ground.curvature, nearest)
-    curvature = local.copy()
+    curvature = _at(ground.curvature, foot)
     turned = _at(ground.direction, start) - _at(ground.direction, end)
     np.divide(turned, length, out=curvature, where=length > 1e-9)
 
-    bend = ground.curvature[points]
+    foot_position, bend = _at(ground.s, foot), ground.curvature[points]
     return Contact(
         place,
         height,
         deflection,
-        _at(ground.s, nearest),
-        np.arctan2(place - _at(ground.s, nearest), height - _at(ground.z, nearest)),
+        foot_position,
+        np.arctan2(place - foot_position, height - _at(ground.z, foot)),
         length,
         curvature,
         np.minimum(np.where(section, bend, np.inf).min(axis=1), curvature),
         np.maximum(np.where(section, bend, -np.inf).max(axis=1), curvature),
         np.where(section, ground.jump[points], 0.0).max(axis=1),
-        _at(ground.resolution, nearest),
+        _at(ground.resolution, foot),
         np.where(section, ground.turn[points], 0.0).max(axis=1),
         np.where(touching, np.maximum(zones, 1), (deflection > 0.0).astype(np.int64)),
     )
@@ -204,7 +204,7 @@ def _blocks(ground: Ground, place: Floats, wheel_radius: float) -> Iterator[tupl
     half = _half_window(ground, wheel_radius)
     window = np.arange(-half, half + 2)
     base = np.floor((place - ground.s[0]) / ground.spacing).astype(np.int64)
-    base = np.clip(base, half, ground.s.size - half - 2)
+    base = np.minimum(np.maximum(base, half), ground.s.size - half - 2)
     rows = max(1, BLOCK // window.size)
     for first in range(0, place.size, rows):
         block = slice(first, first + rows)
@@ -231,7 +231,7 @@ def _vertex(left: Floats, middle: Floats, right: Floats) -> tuple[Floats, Floats
     curved = np.isfinite(bend) & (bend > 0.0)
     shift = np.zeros_like(middle)
     np.divide(0.5 * (left - right), bend, out=shift, where=curved)
-    shift = np.clip(shift, -0.5, 0.5)
+    shift = np.minimum(np.maximum(shift, -0.5), 0.5)
     change = np.zeros_like(middle)
     np.multiply(shift, 0.5 * (right - left) + 0.5 * shift * bend, out=change, where=curved)
     return shift, change
@@ -244,12 +244,18 @@ def _crossing(
     out, inn = squared[row, outer], squared[row, outer + step]
     share = np.zeros_like(out)
     np.divide(out - wheel_radius**2, out - inn, out=share, where=out > inn)
-    return np.clip(share, 0.0, 1.0)
+    return np.minimum(np.maximum(share, 0.0), 1.0)
 
 
-def _at(values: Floats, sample: Floats) -> Floats:
-    """Return `values` at fractional samples, linear in between."""
-    low = np.clip(np.floor(sample).astype(np.int64), 0, values.size - 2)
-    share = sample - low
-    between: Floats = (1.0 - share) * values[low] + share * values[low + 1]
+def _between(sample: Floats, size: int) -> tuple[NDArray[np.int64], Floats]:
+    """Return the samples below fractional ones, and by how much these are above."""
+    low = np.minimum(np.maximum(sample.astype(np.int64), 0), size - 2)
+    return low, sample - low
+
+
+def _at(values: Floats, where: tuple[NDArray[np.int64], Floats]) -> Floats:
+    """Return `values` between samples, linear."""
+    low, share = where
+    below = values[low]
+    between: Floats = below + share * (values[low + 1] - below)
     return between
