@@ -19,6 +19,9 @@ FEWEST_POINTS = 5
 STEEPEST_SLOPE = 10.0
 """Rise over run between neighbouring points above which z(s) is a step: 84 degrees from the horizontal."""
 
+FARTHEST = 4.1e7
+"""Distance [m] around the Earth; what is farther is a mistake."""
+
 
 @dataclass(frozen=True, eq=False)
 class Profile:
@@ -68,6 +71,12 @@ def check_points(s: Floats, z: Floats, place: Callable[[int], str]) -> None:
             i = int(bad[0])
             raise TirelabError(
                 f"{place(i)}: {symbol} is {values[i]}, not a finite number; give a number for every point"
+            )
+        bad = np.flatnonzero(np.abs(values) > FARTHEST)
+        if bad.size:
+            i = int(bad[0])
+            raise TirelabError(
+                f"{place(i)}: {symbol} is {values[i]:g} m, farther than around the Earth; check the column's unit"
             )
     run, rise = np.diff(s), np.diff(z)
     bad = np.flatnonzero((run <= 0.0) | (np.abs(rise) > STEEPEST_SLOPE * run))

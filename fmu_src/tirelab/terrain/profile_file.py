@@ -61,8 +61,14 @@ def read_columns(path: str | Path, symbols: tuple[str, ...]) -> tuple[list[Float
     if not filled:
         raise TirelabError(f"{path}: the file is empty; give columns {_wanted(symbols)}")
     delimiter = max(DELIMITERS, key=filled[0][1].count)
-    header, *cells = csv.reader((line for _, line in filled), delimiter=delimiter)
-    numbers = [n for n, _ in filled[1:]]
+    reader = csv.reader((line for _, line in filled), delimiter=delimiter)
+    try:
+        rows = [(filled[reader.line_num - 1][0], row) for row in reader]
+    except csv.Error as error:
+        raise TirelabError(
+            f"{path}, row {filled[reader.line_num - 1][0]}: {error}; save it as plain CSV"
+        ) from None
+    header, cells, numbers = rows[0][1], [row for _, row in rows[1:]], [n for n, _ in rows[1:]]
     columns = [_column(path, header, symbol, symbols) for symbol in symbols]
     values = np.empty((len(symbols), len(cells)))
     for i, row in enumerate(cells):

@@ -66,6 +66,8 @@ def test_columns_in_any_order_with_a_byte_order_mark(tmp_path: Path) -> None:
             r"row 4: the profile steps from z = 0 m to 0.3 m at s = 1 m",
         ),
         ("s [m],z [m]\n0,0\n", r"row 2: the profile has 1 point in all"),
+        ('s [m],z [m]\n0,0\n1,"0\n2,0\n3,0\n', r"row 5, column z: '0"),
+        ("s [m],z [m]\n0,0\n1," + "0" * 200_000 + "\n", r"row 3: field larger than field limit"),
         ("s [m],z [m]\n", r"the profile has 0 points in all"),
     ],
 )

@@ -16,6 +16,8 @@ LEVEL = np.arange(6.0)
         ([0.0, 1.0, 2.0, 1.5, 3.0], [0.0] * 5, r"point 4: the profile folds back, s falls from 2 m to 1.5 m"),
         ([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 0.0, np.nan, 0.0, 0.0], r"point 3: z is nan"),
         ([0.0, np.inf, 2.0, 3.0, 4.0], [0.0] * 5, r"point 2: s is inf"),
+        ([0.0, 1.0, 2.0, 3.0, 1e300], [0.0] * 5, r"point 5: s is 1e\+300 m, farther than around the Earth"),
+        ([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, -1e9, 0.0, 0.0, 0.0], r"point 2: z is -1e\+09 m"),
         (
             [0.0, 1.0, 1.0, 2.0, 3.0],
             [0.0, 0.0, 0.1, 0.1, 0.1],
