@@ -166,7 +166,7 @@ def _summary(result: Ride, tire: TireModel) -> list[str]:
     touch, force = result.contact, result.radial_force
     length = touch.position[-1] - touch.position[0]
     lines = [
-        f"{result.ground.name}: {length:.4g} m at {result.speed:g} m/s, {touch.position.size} positions",
+        f"{result.ground.name}: {length:.1f} m at {result.speed:g} m/s, {touch.position.size} positions",
         *(f"note: {note}" for note in result.ground.notes),
         f"tire: {tire.name}",
         f"deflection {1000.0 * touch.deflection.min():.1f} to {1000.0 * touch.deflection.max():.1f} mm",

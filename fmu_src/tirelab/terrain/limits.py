@@ -122,11 +122,11 @@ class LimitReport:
         """Return what to tell a user, the most frequent limit first; one sentence where there is none."""
         met = sorted((s for s in self.shares if s[1] > 0.0), key=lambda s: -s[1])
         if not met:
-            return (f"The article's model holds along all of the {self.length:.4g} m ridden.",)
+            return (f"The article's model holds along all of the {self.length:.1f} m ridden.",)
         head = (
-            f"The article's model cannot be trusted along {percent(self.doubtful)} of the {self.length:.4g} m ridden:"
+            f"The article's model cannot be trusted along {percent(self.doubtful)} of the {self.length:.1f} m ridden:"
             if self.doubtful > 0.0
-            else f"The article's model holds along all of the {self.length:.4g} m ridden."
+            else f"The article's model holds along all of the {self.length:.1f} m ridden."
         )
         return (head, *(f"{percent(share)} {MEANING[limit]}" for limit, share in met))
 

@@ -159,14 +159,14 @@ def test_report() -> None:
     assert report.share(Limit.AIRBORNE) == pytest.approx(0.1)
     assert report.doubtful == pytest.approx(0.2)
     words = report.sentences()
-    assert words[0] == "The article's model cannot be trusted along 20.0 % of the 12 m ridden:"
+    assert words[0] == "The article's model cannot be trusted along 20.0 % of the 12.0 m ridden:"
     assert words[1].startswith("20.0 % sharp edge")
     assert len(words) == 4
 
 
 def test_report_of_a_ride_without_doubt() -> None:
     assert limit_report(np.zeros(5, dtype=np.uint16), 3.0).sentences() == (
-        "The article's model holds along all of the 3 m ridden.",
+        "The article's model holds along all of the 3.0 m ridden.",
     )
     airborne = limit_report(np.full(4, Limit.AIRBORNE.value, dtype=np.uint16), 3.0)
     assert airborne.doubtful == 0.0
