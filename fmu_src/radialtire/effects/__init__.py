@@ -1,0 +1,18 @@
+"""The physics that an elastic law leaves out: one file each, one line each here."""
+
+from __future__ import annotations
+
+from ..effect import Effect
+from .deflection_offset import DEFLECTION_OFFSET
+from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
+from .viscous_damping import VISCOUS_DAMPING
+
+CATALOGUE: dict[str, Effect] = {
+    effect.name: effect
+    for effect in (
+        DEFLECTION_OFFSET,
+        RATE_INDEPENDENT_HYSTERESIS,
+        VISCOUS_DAMPING,
+    )
+}
+"""Every effect by its name, in the order in which effects of one place act."""
