@@ -1,0 +1,23 @@
+"""build_fmu.py and tirelab build: a tire file packed as an FMU."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from radialtire import TireModel, read_tire
+
+from ..fmu.build import build_fmu
+from ..fmu.loader import missing_compiler
+from .options import FILE, SentenceCommand, out
+
+
+@click.command("build", cls=SentenceCommand)
+@click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
+@out("dist")
+def command(tire: Path | None, out: Path) -> None:
+    """Pack a tire as DIR/BicycleTire.fmu, an FMI 2.0 Co-Simulation unit, and validate it."""
+    model = TireModel() if tire is None else read_tire(tire)
+    built = build_fmu(model, out)
+    click.echo(f"{built.path}: {model.name}, FMI 2.0 Co-Simulation, valid, guid {built.guid}")
+    click.echo(f"Linux loader: {built.compiler}" if built.compiler else missing_compiler())
