@@ -209,8 +209,7 @@ class BicycleTire(Fmi2Slave):
             reason, self._refused = self._refused, ""
         if reason:
             self._current = False
-            # The wrapper reads the message as a printf format.
-            self.log(reason.replace("%", "%%"), Fmi2Status.discard)
+            self.log(reason, Fmi2Status.discard)
             return False
         self._state = state
         return True

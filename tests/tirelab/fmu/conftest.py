@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +23,25 @@ def article_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return build_fmu(TireModel(), tmp_path_factory.mktemp("article")).path
 
 
-def run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) -> str:
-    """Run a host script in isolation and return what it printed; its failure is the test's."""
+@pytest.fixture(scope="session")
+def run_host() -> Callable[..., str]:
+    """Runs a host script in isolation and returns what it printed; its failure is the test's."""
+    return _run_host
+
+
+@pytest.fixture(scope="session")
+def run_fmpy() -> Callable[[list[Path], list[list[Any]]], list[Any]]:
+    """Runs calls on instances of FMUs in one fresh process with fmpy and returns their answers."""
+
+    def run(fmus: list[Path], calls: list[list[Any]]) -> list[Any]:
+        answers = json.loads(_run_host("with_fmpy.py", job={"fmus": list(map(str, fmus)), "calls": calls}))
+        assert isinstance(answers, list)
+        return answers
+
+    return run
+
+
+def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) -> str:
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     # The oneTBB that ecospy needs is installed beside the interpreter, where the linker does not look.
     environment["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
@@ -38,10 +56,3 @@ def run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) -> 
     )
     assert result.returncode == 0, f"{script} exited with {result.returncode}:\n{result.stderr}"
     return result.stdout
-
-
-def run_fmpy(fmus: list[Path], calls: list[list[Any]]) -> list[Any]:
-    """Run the calls on instances of the FMUs in one fresh process and return their answers."""
-    answers = json.loads(run_host("with_fmpy.py", job={"fmus": list(map(str, fmus)), "calls": calls}))
-    assert isinstance(answers, list)
-    return answers

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from conftest import run_fmpy
 from radialtire import PowerLaw, TireModel, read_tire
 from radialtire.effects import CATALOGUE
 from tirelab.fmu.build import build_fmu
 
+Run = Callable[..., Any]
 FLAT = 1e5
 
 
@@ -34,7 +36,7 @@ def article_force(x_cm: float, radius_cm: float) -> float:
 TOLERANCE = 1e-12
 
 
-def test_force_on_a_grid_of_ten_thousand_points(article_fmu: Path) -> None:
+def test_force_on_a_grid_of_ten_thousand_points(run_fmpy: Run, article_fmu: Path) -> None:
     rng = np.random.default_rng(1996)
     deflections = rng.uniform(-0.005, 0.032, 10_000)
     magnitude = 10 ** rng.uniform(-2, 1, 10_000)
@@ -54,7 +56,7 @@ CONCAVE_CM = (-38.1, -50.8, -58.4)
 
 
 @pytest.mark.parametrize("radius_cm", [*CONVEX_CM, math.inf, *CONCAVE_CM])
-def test_triangle_test_of_the_article(article_fmu: Path, radius_cm: float) -> None:
+def test_triangle_test_of_the_article(run_fmpy: Run, article_fmu: Path, radius_cm: float) -> None:
     top = 3.175
     while article_force(top, radius_cm) > 2240:
         top -= 0.001
@@ -71,14 +73,14 @@ def test_triangle_test_of_the_article(article_fmu: Path, radius_cm: float) -> No
     assert all(inside for _, inside in answers)
 
 
-def test_a_get_after_a_set_without_a_step_gives_the_new_value(article_fmu: Path) -> None:
+def test_a_get_after_a_set_without_a_step_gives_the_new_value(run_fmpy: Run, article_fmu: Path) -> None:
     calls = [[0, "set", {"deflection": 0.01}], [0, "step", 0.0, 0.1], [0, "set", {"deflection": 0.02}]]
     answers = run_fmpy([article_fmu], [*calls, [0, "get", ["radial_force", "radial_stiffness"]]])
     assert answers[-1][0] == pytest.approx(article_force(2.0, math.inf), rel=TOLERANCE)
     assert answers[-1][1] == pytest.approx(100 * 550.9 * 1.422 * 2.0**0.422, rel=TOLERANCE)
 
 
-def test_a_parameter_can_be_set(article_fmu: Path) -> None:
+def test_a_parameter_can_be_set(run_fmpy: Run, article_fmu: Path) -> None:
     """With the second reading of E0 the secant on the 1.27 cm bump is the article's 2.3e4 N/m (2.36e4)."""
     name = "law.convex_coefficient_decay"
     calls = [
@@ -105,7 +107,7 @@ def test_a_parameter_can_be_set(article_fmu: Path) -> None:
     ],
 )
 def test_bad_input_is_discarded_with_one_message_and_the_unit_goes_on(
-    article_fmu: Path, inputs: dict[str, float], words: list[str]
+    run_fmpy: Run, article_fmu: Path, inputs: dict[str, float], words: list[str]
 ) -> None:
     good = {
         "deflection": 0.02,
@@ -125,7 +127,7 @@ def test_bad_input_is_discarded_with_one_message_and_the_unit_goes_on(
     assert force[0] == pytest.approx(article_force(2.0, math.inf), rel=TOLERANCE)
 
 
-def test_a_negative_step_is_discarded(article_fmu: Path) -> None:
+def test_a_negative_step_is_discarded(run_fmpy: Run, article_fmu: Path) -> None:
     _, refused, accepted = run_fmpy(
         [article_fmu], [[0, "set", {"deflection": 0.01}], [0, "step", 1.0, -0.5], [0, "step", 1.0, 0.5]]
     )
@@ -134,7 +136,7 @@ def test_a_negative_step_is_discarded(article_fmu: Path) -> None:
     assert accepted is None
 
 
-def test_two_tires_in_one_process_give_two_forces(article_fmu: Path, tmp_path: Path) -> None:
+def test_two_tires_in_one_process_give_two_forces(run_fmpy: Run, article_fmu: Path, tmp_path: Path) -> None:
     other = build_fmu(
         TireModel(law=PowerLaw(718.5, 1.4), name="Wang & Hull"), tmp_path, with_loader=False
     ).path
@@ -156,7 +158,7 @@ def friction_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return build_fmu(tire, tmp_path_factory.mktemp("friction"), with_loader=False).path
 
 
-def test_states_of_effects_are_saved_and_restored(friction_fmu: Path) -> None:
+def test_states_of_effects_are_saved_and_restored(run_fmpy: Run, friction_fmu: Path) -> None:
     def to(deflection: float, t: float) -> list[list[object]]:
         return [[0, "set", {"deflection": deflection}], [0, "step", t, 0.1], [0, "get", ["radial_force"]]]
 
@@ -169,7 +171,7 @@ def test_states_of_effects_are_saved_and_restored(friction_fmu: Path) -> None:
     assert first[-1][0] != at_save  # the loop did not close: the history counts
 
 
-def test_friction_loop_through_the_fmu(friction_fmu: Path) -> None:
+def test_friction_loop_through_the_fmu(run_fmpy: Run, friction_fmu: Path) -> None:
     """Far from a reversal the force is the law's plus or minus the slip force; S = 50 N, reach 1 mm."""
     path = [*np.linspace(0, 0.025, 26), *np.linspace(0.025, 0, 26)]
     calls: list[list[object]] = []
@@ -182,7 +184,7 @@ def test_friction_loop_through_the_fmu(friction_fmu: Path) -> None:
     assert forces[26 + 13] - law == pytest.approx(-50.0, abs=1e-3)
 
 
-def test_reset_forgets_inputs_and_history(friction_fmu: Path) -> None:
+def test_reset_forgets_inputs_and_history(run_fmpy: Run, friction_fmu: Path) -> None:
     calls = [
         [0, "set", {"deflection": 0.02}],
         [0, "step", 0.0, 0.1],
@@ -192,7 +194,7 @@ def test_reset_forgets_inputs_and_history(friction_fmu: Path) -> None:
     assert run_fmpy([friction_fmu], calls)[-1] == [0.0]
 
 
-def test_tested_range_is_the_articles(article_fmu: Path) -> None:
+def test_tested_range_is_the_articles(run_fmpy: Run, article_fmu: Path) -> None:
     def inside(deflection: float, radius: float) -> bool:
         calls = [
             [0, "set", {"deflection": deflection, "surface_radius": radius}],
@@ -212,7 +214,7 @@ def test_tested_range_is_the_articles(article_fmu: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["hull1996", "hull1996_second_reading", "wang_hull_off_road", "wang_hull_road"]
 )
-def test_tires_of_the_examples_build(repository: Path, tmp_path: Path, name: str) -> None:
+def test_tires_of_the_examples_build(run_fmpy: Run, repository: Path, tmp_path: Path, name: str) -> None:
     tire = read_tire(repository / "examples" / "tires" / f"{name}.json")
     fmu = build_fmu(tire, tmp_path, with_loader=False).path
     answers = run_fmpy([fmu], [[0, "set", {"deflection": 0.01}], [0, "get", ["radial_force"]]])

@@ -16,4 +16,4 @@ with EcosSimulationStructure() as structure:
             simulation.step()
             forces.append(simulation.get_real("tire::radial_force"))
         simulation.terminate()
-print(json.dumps(forces))
+print("forces", json.dumps(forces))

@@ -20,4 +20,4 @@ for pair in json.load(sys.stdin):
     manipulator.slave_real_values(slave, inputs, pair)
     execution.step()
     forces.append(observer.last_real_values(slave, [references["radial_force"]])[0])
-print(json.dumps(forces))
+print("forces", json.dumps(forces))
