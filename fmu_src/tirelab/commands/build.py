@@ -8,7 +8,7 @@ import click
 from radialtire import TireModel, read_tire
 
 from ..fmu.build import build_fmu
-from ..fmu.loader import missing_compiler
+from ..fmu.loader import NO_COMPILER
 from .options import FILE, SentenceCommand, out
 
 
@@ -20,4 +20,12 @@ def command(tire: Path | None, out: Path) -> None:
     model = TireModel() if tire is None else read_tire(tire)
     built = build_fmu(model, out)
     click.echo(f"{built.path}: {model.name}, FMI 2.0 Co-Simulation, valid, guid {built.guid}")
-    click.echo(f"Linux loader: {built.compiler}" if built.compiler else missing_compiler())
+    if built.compiler is None:
+        click.echo(NO_COMPILER)
+    else:
+        glibc = (
+            f"glibc {built.compiler.glibc} or newer"
+            if built.compiler.glibc
+            else "this machine's glibc or newer"
+        )
+        click.echo(f"Linux binary: compiled by {built.compiler.name}, for {glibc}")

@@ -1,7 +1,7 @@
 """A tire file -> BicycleTire.fmu, byte for byte the same for the same source.
 
-pythonfmu packs the embedded sources and describes them; then its archive is written anew with what it lacks: a loader
-library for hosts that are not Python, documentation, licences, an icon, and a GUID made from the content.
+pythonfmu packs the embedded sources and describes them; then its archive is written anew with what it lacks: a Linux
+binary for hosts that are not Python, documentation, licences, an icon, and a GUID made from the content.
 """
 
 from __future__ import annotations
@@ -27,33 +27,30 @@ from radialtire import TireModel, write_tire
 
 from ..errors import TirelabError
 from . import documentation
-from .loader import compile_loader
+from .loader import Compiler, compile_loader
 
 SHELL = "bicycle_tire_fmu"
 PHYSICS = "radialtire"
 MODEL = "BicycleTire"
 LINUX_BINARY = f"binaries/linux64/{MODEL}.so"
-WRAPPER = "binaries/linux64/pythonfmu-export.so"
-"""Where the loader looks for pythonfmu's own library, which it stands in front of."""
-
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The date of every archive member: the earliest a ZIP can hold."""
 
 
 @dataclass(frozen=True)
 class BuiltFmu:
-    """An FMU that was written: its path, its GUID, and how its Linux library was compiled (None: not at all)."""
+    """An FMU that was written: its path, its GUID, and what compiled its Linux binary (None: it is pythonfmu's)."""
 
     path: Path
     guid: str
-    compiler: str | None
+    compiler: Compiler | None
 
 
 def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> BuiltFmu:
     """Write `folder`/BicycleTire.fmu for `tire` and return what was written.
 
-    with_loader: compile the loader library for Linux hosts that are not Python, if there is a compiler; an FMU
-    without it runs in Python hosts only
+    with_loader: compile the Linux binary for hosts that are not Python, if there is a compiler; an FMU without it has
+    pythonfmu's, which runs in Python hosts only
     Raises TirelabError where the folder cannot be written, a compiler fails, or the FMU is not valid FMI 2.0.
     """
     with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
@@ -61,7 +58,6 @@ def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> Bui
         members = _packed(tire, work)
         compiler = compile_loader(work / "loader.so") if with_loader else None
         if compiler is not None:
-            members[WRAPPER] = members[LINUX_BINARY]
             members[LINUX_BINARY] = (work / "loader.so").read_bytes()
 
         description = ElementTree.fromstring(members.pop("modelDescription.xml"))
@@ -75,7 +71,7 @@ def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> Bui
     problems = fmpy.validation.validate_fmu(str(path))
     if problems:
         raise TirelabError(f"{path} is not a valid FMU: {problems[0]}; report this with the tire file")
-    return BuiltFmu(path, guid, None if compiler is None else str(compiler))
+    return BuiltFmu(path, guid, compiler)
 
 
 def _sources() -> dict[str, bytes]:

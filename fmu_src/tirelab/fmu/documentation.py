@@ -14,11 +14,11 @@ This FMU runs Python code. It needs
 everywhere
     Python 3.10 or newer; the standard library is enough, no package has to be installed.
 
-Linux (x86-64)
-    - the shared library of Python (libpython3.x.so): Debian and Ubuntu have it in the package libpython3-dev or
-      python3-dev, conda brings it along. A host that is itself a Python (fmpy) needs none. The library is looked for
-      with the python3 on PATH; the environment variable TIRELAB_LIBPYTHON names one outright.
-    - glibc 2.32 and libstdc++ of GCC 12 (GLIBCXX_3.4.30) or newer, for the library of pythonfmu.
+Linux (x86-64, glibc 2.17 or newer; newer where the binary was compiled by a machine's own compiler)
+    - in a host that is itself a Python (fmpy): nothing more
+    - in any other host: Python's shared library, libpython3.x.so.1.0. Debian and Ubuntu have it in the package
+      libpython3.x, conda brings it along. It is looked for in this order: the path in the environment variable
+      TIRELAB_LIBPYTHON, the Python of the active virtual environment, python3 and python on PATH, the system's libraries.
 
 Windows (x86-64)
     - python3.dll and python3x.dll of one installation of Python on PATH
