@@ -18,7 +18,7 @@ Linux (x86-64, glibc 2.17 or newer; newer where the binary was compiled by a mac
     - in a host that is itself a Python (fmpy): nothing more
     - in any other host: Python's shared library, libpython3.x.so.1.0. Debian and Ubuntu have it in the package
       libpython3.x, conda brings it along. It is looked for in this order: the path in the environment variable
-      TIRELAB_LIBPYTHON, the Python of the active virtual environment, python3 and python on PATH, the system's libraries.
+      TIRELAB_LIBPYTHON, the Python of the active virtual environment, python3 and python on PATH, the system's.
 
 Windows (x86-64)
     - python3.dll and python3x.dll of one installation of Python on PATH
