@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..effect import Effect
 from .deflection_offset import DEFLECTION_OFFSET
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
+from .viscoelastic_relaxation import VISCOELASTIC_RELAXATION
 from .viscous_damping import VISCOUS_DAMPING
 
 CATALOGUE: dict[str, Effect] = {
@@ -13,6 +14,7 @@ CATALOGUE: dict[str, Effect] = {
         DEFLECTION_OFFSET,
         RATE_INDEPENDENT_HYSTERESIS,
         VISCOUS_DAMPING,
+        VISCOELASTIC_RELAXATION,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""
