@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..effect import Effect
 from .deflection_offset import DEFLECTION_OFFSET
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
+from .series_compliance import SERIES_COMPLIANCE
 from .viscoelastic_relaxation import VISCOELASTIC_RELAXATION
 from .viscous_damping import VISCOUS_DAMPING
 
@@ -12,6 +13,7 @@ CATALOGUE: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         DEFLECTION_OFFSET,
+        SERIES_COMPLIANCE,
         RATE_INDEPENDENT_HYSTERESIS,
         VISCOUS_DAMPING,
         VISCOELASTIC_RELAXATION,
