@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..effect import Effect
 from .deflection_offset import DEFLECTION_OFFSET
+from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
 from .series_compliance import SERIES_COMPLIANCE
 from .viscoelastic_relaxation import VISCOELASTIC_RELAXATION
@@ -14,6 +15,7 @@ CATALOGUE: dict[str, Effect] = {
     for effect in (
         DEFLECTION_OFFSET,
         SERIES_COMPLIANCE,
+        PRESSURE_LEAK,
         RATE_INDEPENDENT_HYSTERESIS,
         VISCOUS_DAMPING,
         VISCOELASTIC_RELAXATION,
