@@ -9,6 +9,7 @@ from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
 from .series_compliance import SERIES_COMPLIANCE
 from .viscoelastic_relaxation import VISCOELASTIC_RELAXATION
 from .viscous_damping import VISCOUS_DAMPING
+from .warm_up import WARM_UP
 
 CATALOGUE: dict[str, Effect] = {
     effect.name: effect
@@ -16,6 +17,7 @@ CATALOGUE: dict[str, Effect] = {
         DEFLECTION_OFFSET,
         SERIES_COMPLIANCE,
         PRESSURE_LEAK,
+        WARM_UP,
         RATE_INDEPENDENT_HYSTERESIS,
         VISCOUS_DAMPING,
         VISCOELASTIC_RELAXATION,
