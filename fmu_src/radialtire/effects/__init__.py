@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..effect import Effect
 from .deflection_offset import DEFLECTION_OFFSET
+from .gas_compression import GAS_COMPRESSION
 from .mullins_softening import MULLINS_SOFTENING
 from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
@@ -17,6 +18,7 @@ CATALOGUE: dict[str, Effect] = {
     for effect in (
         DEFLECTION_OFFSET,
         SERIES_COMPLIANCE,
+        GAS_COMPRESSION,
         MULLINS_SOFTENING,
         PRESSURE_LEAK,
         WARM_UP,
