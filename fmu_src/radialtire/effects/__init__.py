@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..effect import Effect
+from .bottoming import BOTTOMING
 from .deflection_offset import DEFLECTION_OFFSET
 from .gas_compression import GAS_COMPRESSION
 from .mullins_softening import MULLINS_SOFTENING
@@ -25,6 +26,7 @@ CATALOGUE: dict[str, Effect] = {
         RATE_INDEPENDENT_HYSTERESIS,
         VISCOUS_DAMPING,
         VISCOELASTIC_RELAXATION,
+        BOTTOMING,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""
