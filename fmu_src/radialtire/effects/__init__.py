@@ -6,6 +6,7 @@ from ..effect import Effect
 from .bottoming import BOTTOMING
 from .deflection_offset import DEFLECTION_OFFSET
 from .gas_compression import GAS_COMPRESSION
+from .inertia import INERTIA
 from .mullins_softening import MULLINS_SOFTENING
 from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
@@ -27,6 +28,7 @@ CATALOGUE: dict[str, Effect] = {
         VISCOUS_DAMPING,
         VISCOELASTIC_RELAXATION,
         BOTTOMING,
+        INERTIA,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""
