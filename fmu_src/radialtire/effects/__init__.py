@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..effect import Effect
 from .bottoming import BOTTOMING
 from .deflection_offset import DEFLECTION_OFFSET
+from .force_lag import FORCE_LAG
 from .gas_compression import GAS_COMPRESSION
 from .inertia import INERTIA
 from .mullins_softening import MULLINS_SOFTENING
@@ -29,6 +30,7 @@ CATALOGUE: dict[str, Effect] = {
         VISCOELASTIC_RELAXATION,
         BOTTOMING,
         INERTIA,
+        FORCE_LAG,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""
