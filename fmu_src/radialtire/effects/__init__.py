@@ -6,6 +6,7 @@ from ..effect import Effect
 from .bottoming import BOTTOMING
 from .deflection_offset import DEFLECTION_OFFSET
 from .force_lag import FORCE_LAG
+from .force_offset import FORCE_OFFSET
 from .gas_compression import GAS_COMPRESSION
 from .inertia import INERTIA
 from .mullins_softening import MULLINS_SOFTENING
@@ -31,6 +32,7 @@ CATALOGUE: dict[str, Effect] = {
         BOTTOMING,
         INERTIA,
         FORCE_LAG,
+        FORCE_OFFSET,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""
