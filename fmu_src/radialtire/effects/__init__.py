@@ -12,6 +12,7 @@ from .inertia import INERTIA
 from .mullins_softening import MULLINS_SOFTENING
 from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
+from .saturation import SATURATION
 from .series_compliance import SERIES_COMPLIANCE
 from .viscoelastic_relaxation import VISCOELASTIC_RELAXATION
 from .viscous_damping import VISCOUS_DAMPING
@@ -33,6 +34,7 @@ CATALOGUE: dict[str, Effect] = {
         INERTIA,
         FORCE_LAG,
         FORCE_OFFSET,
+        SATURATION,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""
