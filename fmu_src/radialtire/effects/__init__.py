@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..effect import Effect
 from .bottoming import BOTTOMING
+from .deflection_lag import DEFLECTION_LAG
 from .deflection_offset import DEFLECTION_OFFSET
 from .force_lag import FORCE_LAG
 from .force_offset import FORCE_OFFSET
@@ -22,6 +23,7 @@ CATALOGUE: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         DEFLECTION_OFFSET,
+        DEFLECTION_LAG,
         SERIES_COMPLIANCE,
         GAS_COMPRESSION,
         MULLINS_SOFTENING,
