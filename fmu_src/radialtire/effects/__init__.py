@@ -6,6 +6,7 @@ from ..effect import Effect
 from .bottoming import BOTTOMING
 from .deflection_lag import DEFLECTION_LAG
 from .deflection_offset import DEFLECTION_OFFSET
+from .force_drift import FORCE_DRIFT
 from .force_lag import FORCE_LAG
 from .force_offset import FORCE_OFFSET
 from .gas_compression import GAS_COMPRESSION
@@ -36,6 +37,7 @@ CATALOGUE: dict[str, Effect] = {
         INERTIA,
         FORCE_LAG,
         FORCE_OFFSET,
+        FORCE_DRIFT,
         SATURATION,
     )
 }
