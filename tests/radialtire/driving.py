@@ -77,12 +77,16 @@ def harmonic(time: FloatArray, signal: FloatArray, frequency: float) -> complex:
 
 
 def converges(force_at: Callable[[int], FloatArray], order: float, count: int) -> bool:
-    """Return whether halving the interval makes the error fall with `order`, against a grid 8 times finer.
+    """Return whether halving the interval three times makes the error fall with `order`, or below 1e-5 of the peak.
 
-    force_at: gives the forces on a grid of so many intervals; compared on the coarsest one's second half.
+    force_at: gives the forces on a grid of so many intervals; compared on the coarsest one's second half with a grid
+    8 times finer than the finest.
     """
-    fine = force_at(32 * count)[::32]
-    tail = slice(count // 2, None)
-    coarse = float(np.max(np.abs(force_at(count) - fine)[tail]))
-    half = float(np.max(np.abs(force_at(2 * count)[::2] - fine)[tail]))
-    return half < 1e-9 * float(np.max(np.abs(fine))) or math.log2(coarse / half) > order
+    exact = force_at(64 * count)[::64]
+
+    def error(times: int) -> float:
+        off = np.abs(force_at(times * count)[::times] - exact)
+        return float(np.max(off[count // 2 :]))
+
+    coarse, fine = error(1), error(8)
+    return fine < 1e-5 * float(np.max(np.abs(exact))) or math.log2(coarse / fine) / 3.0 > order
