@@ -225,8 +225,7 @@ class BicycleTire(Fmi2Slave):
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         self._inputs = [float(value) for value in state["inputs"]]
         self._pending = dict(state["parameters"])
-        history = ModelState(*state["history"])
-        self._state = history._replace(effects=tuple(tuple(values) for values in history.effects))
+        self._state = ModelState.restored(state["history"])
         self._start_time = state["start_time"]
         self._current = False
 
