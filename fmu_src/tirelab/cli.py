@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import sys
+from pathlib import Path
+
 import click
+
+if (
+    sys.prefix != sys.base_prefix
+):  # matplotlib keeps its font cache in the user's home if it is not told otherwise
+    os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
 from .commands import build, compare
 

@@ -60,7 +60,8 @@ def plot(comparison: Comparison, path: Path) -> None:
     computed: dict[str, Any] = {"color": "tab:blue", "lw": 1.0, "label": "simulated"}
     loops.plot(mm, r.force, ".", ms=2, color="0.55", label="recorded", rasterized=True)
     order = np.lexsort((r.deflection, r.surface_radius))
-    breaks = np.flatnonzero(np.diff(r.surface_radius[order])) + 1
+    sorted_radii = r.surface_radius[order]
+    breaks = np.flatnonzero(sorted_radii[1:] != sorted_radii[:-1]) + 1
     for i, part in enumerate(np.split(order, breaks)):
         loops.plot(mm[part], simulated[part], color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
     mark: dict[str, Any] = {

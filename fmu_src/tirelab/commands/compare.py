@@ -8,10 +8,11 @@ from pathlib import Path
 import click
 from radialtire import TireModel, read_tire
 
+from ..channels import parse_columns
 from ..compare import compare, plot
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
-from ..recording import parse_columns, read_recording
+from ..recording import read_recording
 from ..replay import replay
 from .options import FILE, SentenceCommand, out, reading
 
