@@ -6,7 +6,6 @@ The tire is the file tire.json in the FMU's resources, so a corrected tire diffe
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -37,6 +36,7 @@ BASE_UNITS: dict[str, dict[str, str]] = {
     "Pa": {"kg": "1", "m": "-1", "s": "-2"},
     "N/m": {"kg": "1", "s": "-2"},
     "N.s/m": {"kg": "1", "s": "-1"},
+    "N/s": {"kg": "1", "m": "1", "s": "-3"},
     "m/s": {"m": "1", "s": "-1"},
     "m3": {"m": "3"},
     "1/s": {"s": "-1"},
@@ -80,9 +80,6 @@ class BicycleTire(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        # The wrapper puts the resources on sys.path at every instantiation and never takes them off.
-        while sys.path.count(self.resources) > 1:
-            sys.path.remove(self.resources)
         self.modelName = "BicycleTire"
         self.default_experiment = DefaultExperiment(start_time=0.0, stop_time=30.0, step_size=0.2)
         self._tire = read_tire(Path(self.resources) / "tire.json")
