@@ -9,7 +9,7 @@ from typing import Any
 from urllib.parse import quote
 
 import pytest
-from loader_bench import FORCE_1_CM, FORCE_2_CM, Bench, numbers
+from loader_bench import FORCE_1_CM, FORCE_2_CM, Bench, numbers, unpacked
 
 
 @pytest.fixture(scope="module")
@@ -53,3 +53,11 @@ def test_speed_against_a_native_fmu(run: Callable[..., str], bench: Bench) -> No
     native, ours, ratio = numbers(run("bench", 30_000, bench.native))
     print(f"native {native:.2e} s, FMU {ours:.2e} s, ratio {ratio:.0f}")
     assert ratio <= 60
+
+
+def test_speed_through_fmpy(run_host: Callable[..., str], tire: Path, bench: Bench, tmp_path: Path) -> None:
+    """The same calls through fmpy: at most 1.7 times as long as with the same law in C, in turns."""
+    native = unpacked(tmp_path / "native", bench.native)
+    ratio = float(run_host("time_with_fmpy.py", tire, native, job=None))
+    print(f"ratio {ratio:.2f}")
+    assert ratio <= 1.7
