@@ -1,0 +1,33 @@
+"""A wrong zero of the deflection: the tire touched before, or after, the gauge read zero.
+
+    x = x_read + x0
+
+Hull, Wang & Moore (1996) explain the difference to an earlier rig by 1 mm of it, or by 22 N of preload.
+"""
+
+from __future__ import annotations
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Shift the deflection [m] by x0."""
+    return signal + values[0], state
+
+
+DEFLECTION_OFFSET = Effect(
+    name="deflection_offset",
+    place="deflection",
+    parameters=(
+        Parameter(
+            "offset", "x0", "m", 0.0, -0.01, 0.01, "added to the deflection read", off=0.0, typical=1e-3
+        ),
+    ),
+    rest=(),
+    respond=respond,
+    statement="the deflection's zero is shifted",
+    tell_tale="misfit at small deflections, where the tangent of the force against the deflection is steepest",
+    imitators=("recalibration", "series_compliance", "force_offset"),
+    source="Hull, Wang & Moore, Cycling Science, Spring 1996: 1 mm, or 22 N of preload, between two rigs",
+)

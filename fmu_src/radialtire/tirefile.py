@@ -1,0 +1,202 @@
+"""A tire as a file: JSON that says law, effects, tested range and where the numbers come from.
+
+    {"schema": 1, "name": "...", "source": "...",
+     "law": {"name": "power_law", "parameters": {"coefficient": 718.5, "exponent": 1.4}},
+     "effects": [{"name": "viscous_damping", "parameters": {"damping": 300.0}}],
+     "tracking_time": 0.002,
+     "tested_range": {"curvature_min": -2.62, "curvature_max": 78.7, "deflection_max": 0.0318, "force_max": 2240.0}}
+
+A parameter that is not given has its start value; an unknown name is an error, never passed over. `tested_range` may be
+null: then it is not known. `tracking_time` [s], 0 where it is not given, is that of `TireModel`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, fields, replace
+from pathlib import Path
+from typing import Any
+
+from .effect import PLACES
+from .effects import CATALOGUE
+from .hull1996 import Hull1996
+from .model import Law, TestedRange, TireModel
+from .parameter import Parameter, ParameterError
+from .power_law import PowerLaw
+
+SCHEMA = 1
+
+LAWS: dict[str, type[Hull1996] | type[PowerLaw]] = {law.name: law for law in (Hull1996, PowerLaw)}
+
+
+class TireFileError(ValueError):
+    """A tire file that cannot be used; the sentence says where and what to do."""
+
+
+def read_tire(path: str | Path) -> TireModel:
+    """Return the tire of the file at `path`, or raise TireFileError."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise TireFileError(f"{path}: {error.strerror or error}; name a tire file that can be read") from None
+    except UnicodeDecodeError:
+        raise TireFileError(f"{path}: not UTF-8 text; a tire file is JSON in UTF-8") from None
+    try:
+        return from_text(text)
+    except TireFileError as error:
+        raise TireFileError(f"{path}: {error}") from None
+
+
+def write_tire(tire: TireModel, path: str | Path) -> None:
+    """Write `tire` to the file at `path`; `read_tire` gives it back exactly."""
+    Path(path).write_text(to_text(tire), encoding="utf-8")
+
+
+def to_text(tire: TireModel) -> str:
+    """Return `tire` as the text of a tire file."""
+    law = {p.name: getattr(tire.law, p.name) for p in tire.law.parameters}
+    effects = [
+        {
+            "name": effect.name,
+            "parameters": {p.name: v for p, v in zip(effect.parameters, values, strict=True)},
+        }
+        for effect, values in tire.effects
+    ]
+    content = {
+        "schema": SCHEMA,
+        "name": tire.name,
+        "source": tire.source,
+        "law": {"name": tire.law.name, "parameters": law},
+        "effects": effects,
+        "tracking_time": tire.tracking_time,
+        "tested_range": None if tire.tested_range is None else asdict(tire.tested_range),
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def from_text(text: str) -> TireModel:
+    """Return the tire described by the text of a tire file, or raise TireFileError."""
+    try:
+        content = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
+    known = {"schema", "name", "source", "law", "effects", "tracking_time", "tested_range"}
+    entry = _entry(content, "the tire", known, {"schema", "law"})
+    if entry["schema"] != SCHEMA:
+        raise TireFileError(
+            f"schema {entry['schema']!r} is not {SCHEMA}; use the version that wrote the file"
+        )
+    try:
+        return TireModel(
+            law=_law(entry["law"]),
+            effects=tuple(sorted(_effects(entry.get("effects", [])), key=lambda e: _order(e[0].name))),
+            tested_range=_tested_range(entry.get("tested_range")),
+            name=_text(entry, "name"),
+            source=_text(entry, "source"),
+            tracking_time=entry.get("tracking_time", 0.0),
+        )
+    except ParameterError as error:
+        raise TireFileError(str(error)) from None
+
+
+def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
+    """Return `tire` with the parameters of `values`, named as `parameters_of` names them, in place of its own.
+
+    Raises ParameterError where one is not allowed, KeyError where there is none of that name.
+    """
+    of_law: dict[str, float] = {}
+    of_effect: dict[str, dict[str, float]] = {}
+    known = parameters_of(tire)
+    for key, value in values.items():
+        owner, name = key.split(".")
+        with _owned_by(owner):
+            known[key][0].checked(value)
+        (of_law if owner == "law" else of_effect.setdefault(owner, {}))[name] = value
+    effects = tuple(
+        (e, tuple(of_effect.get(e.name, {}).get(p.name, v) for p, v in zip(e.parameters, old, strict=True)))
+        for e, old in tire.effects
+    )
+    with _owned_by("law"):
+        law = replace(tire.law, **of_law)  # type: ignore[type-var]
+    return replace(tire, law=law, effects=effects)
+
+
+def parameters_of(tire: TireModel) -> dict[str, tuple[Parameter, float]]:
+    """Return every parameter of `tire` with its value, by the name `law.NAME` or `EFFECT.NAME`."""
+    found = {f"law.{p.name}": (p, float(getattr(tire.law, p.name))) for p in tire.law.parameters}
+    for effect, values in tire.effects:
+        found |= {f"{effect.name}.{p.name}": (p, v) for p, v in zip(effect.parameters, values, strict=True)}
+    return found
+
+
+@contextmanager
+def _owned_by(owner: str) -> Iterator[None]:
+    """Name the parameter in a ParameterError in full."""
+    try:
+        yield
+    except ParameterError as error:
+        raise ParameterError(f"{owner}.{error}") from None
+
+
+def _order(name: str) -> tuple[int, int]:
+    return PLACES.index(CATALOGUE[name].place), list(CATALOGUE).index(name)
+
+
+def _entry(value: Any, what: str, known: set[str], needed: set[str]) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise TireFileError(f"{what} must be an object with {', '.join(sorted(needed))}, not {value!r}")
+    for key in sorted(value.keys() - known):
+        raise TireFileError(f"{what} has an unknown entry {key!r}; known are {', '.join(sorted(known))}")
+    for key in sorted(needed - value.keys()):
+        raise TireFileError(f"{what} lacks its entry {key!r}; add it")
+    return value
+
+
+def _text(entry: dict[str, Any], key: str) -> str:
+    value = entry.get(key, "")
+    if not isinstance(value, str):
+        raise TireFileError(f"{key} must be text, not {value!r}")
+    return value
+
+
+def _law(value: Any) -> Law:
+    entry = _entry(value, "the law", {"name", "parameters"}, {"name"})
+    if not isinstance(entry["name"], str) or entry["name"] not in LAWS:
+        raise TireFileError(f"unknown law {entry['name']!r}; known are {', '.join(LAWS)}")
+    law = LAWS[entry["name"]]
+    return law(**_values(entry, law.name, law.parameters))
+
+
+def _effects(value: Any) -> list[tuple[Any, tuple[float, ...]]]:
+    if not isinstance(value, list):
+        raise TireFileError(f"effects must be a list, not {value!r}")
+    found = []
+    for item in value:
+        entry = _entry(item, "an effect", {"name", "parameters"}, {"name"})
+        if not isinstance(entry["name"], str) or entry["name"] not in CATALOGUE:
+            raise TireFileError(f"unknown effect {entry['name']!r}; known are {', '.join(CATALOGUE)}")
+        effect = CATALOGUE[entry["name"]]
+        values = _values(entry, effect.name, effect.parameters)
+        found.append((effect, tuple(values[p.name] for p in effect.parameters)))
+    return found
+
+
+def _values(entry: dict[str, Any], owner: str, parameters: tuple[Parameter, ...]) -> dict[str, float]:
+    given = entry.get("parameters", {})
+    known = {p.name: p for p in parameters}
+    given = _entry(given, f"the parameters of {owner}", set(known), set())
+    return {name: p.checked(given.get(name, p.start)) for name, p in known.items()}
+
+
+def _tested_range(value: Any) -> TestedRange | None:
+    if value is None:
+        return None
+    names = {field.name for field in fields(TestedRange)}
+    entry = _entry(value, "tested_range", names, names)
+    for name, number in entry.items():
+        if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
+            raise TireFileError(f"tested_range {name} = {number!r} is not a finite number")
+    return TestedRange(**{name: float(number) for name, number in entry.items()})
