@@ -1,12 +1,16 @@
-"""The quarter bicycle stepped beside a tire that is asked once per step, as a co-simulation master would.
+"""The quarter bicycle stepped beside a tire that is asked once per step: a co-simulation, master and all, in Python.
 
-Once per step the bicycle tells deflection and surface radius, the tire answers with its force, and the bicycle, which
-is linear while that force is held, moves on by the step H exactly. Two ways to choose the moment that is told:
+Once per step H the bicycle tells deflection and surface radius, the tire answers with its force, and the bicycle, which
+is linear while that force is held, moves on exactly. Two things decide how good that is.
 
-- held: the start of the step. The force then lags by H / 2 on average, which to a tire of stiffness k is a damping of
-  -k H / 2 that works against the fork's: the error falls with the first power of H;
-- midway: the middle of the step, to where the hub's present velocity carries it. Still one question per step, but the
-  error falls with the second power of H.
+When the answer acts. A master that runs the two units one after the other has it act at once; one that runs them side
+by side hands it over at the step's end, so that it acts during the next step (`late`).
+
+What is told. As it is at the start of the step, the force lags behind the motion by H / 2 on average, and by 3 H / 2
+where it acts late. To a tire of stiffness k a lag T is a damping of -k T, which works against the fork's: the error falls
+with the first power of H, and the coupling makes T times the integral of k deflection'^2 out of nothing. Told by T ahead
+instead, where the hub's present velocity carries it (`look_ahead`), the lag is gone and the error falls with the second
+power of H, still with one question per step.
 """
 
 from __future__ import annotations
@@ -16,10 +20,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from model import GRAVITY, Floats, QuarterBicycle, meet
-from scipy.linalg import expm
+from bicycle import HeldStep, QuarterBicycle, State, held_step
+from model import Floats, track_of
 from tirelab.errors import TirelabError
 from tirelab.terrain import Ground
+from wheel import Meeting, OffTheGroundError, Track, meet
 
 SteppedTire = Callable[[float, float, float], float]
 """(time [s], deflection [m], negative in the air, surface radius [m]) -> radial force [N]."""
@@ -27,9 +32,10 @@ SteppedTire = Callable[[float, float, float], float]
 
 @dataclass(frozen=True, eq=False)
 class SteppedMotion:
-    """A stepped ride; arrays of shape (n,), `states` (n, 4) as in `Motion`.
+    """A stepped ride; arrays of shape (n,), `states` (n, 4) with z_s [m], v_s [m/s], z_u [m], v_u [m/s].
 
-    time [s] of the states; asked [s]: when the tire was told deflection and radius, and answered with its force.
+    time [s] of the states; asked [s]: the moment for which the tire was told deflection [m] and surface_radius [m] and
+    answered with its radial_force [N]; upward_force [N]: what acts on the hub in the step that begins at `time`.
     """
 
     time: Floats
@@ -38,21 +44,25 @@ class SteppedMotion:
     deflection: Floats
     surface_radius: Floats
     radial_force: Floats
+    upward_force: Floats
+
+    @property
+    def hub_height(self) -> Floats:
+        """Height of the hub [m]."""
+        height: Floats = self.states[:, 2]
+        return height
 
 
-def step_matrices(bicycle: QuarterBicycle, step: float) -> tuple[Floats, Floats, Floats]:
-    """Return M, b, c of state(t + step) = M state(t) + b upward_force + c, exact while the force [N] is held."""
-    system = np.zeros((6, 6))
-    system[0, 1] = system[2, 3] = 1.0
-    spring = np.array(
-        [-bicycle.fork_stiffness, -bicycle.fork_damping, bicycle.fork_stiffness, bicycle.fork_damping]
-    )
-    system[1, :4] = spring / bicycle.sprung_mass
-    system[3, :4] = -spring / bicycle.unsprung_mass
-    system[3, 4] = 1.0 / bicycle.unsprung_mass
-    system[1, 5] = system[3, 5] = -GRAVITY
-    moved = expm(system * step)
-    return moved[:4, :4], moved[:4, 4], moved[:4, 5]
+def lag(step: float, late: bool) -> float:
+    """Return by how much [s] a force that is held for a step [s] comes after what was told: what to look ahead by."""
+    return (1.5 if late else 0.5) * step
+
+
+def ahead(
+    track: Track, bicycle: QuarterBicycle, state: State, position: float, speed: float, time: float
+) -> Meeting:
+    """Return how the wheel will meet the ground in `time` [s], the hub going on at its velocity."""
+    return meet(track, position + speed * time, state[2] + time * state[3], bicycle.wheel_radius)
 
 
 def run(
@@ -65,23 +75,43 @@ def run(
     duration: float,
     step: float,
     state: Floats,
-    midway: bool = True,
+    look_ahead: float | None = None,
+    late: bool = False,
 ) -> SteppedMotion:
-    """Return the ride from `start` [m] in `state` for `duration` [s] at `speed` [m/s], asking once a `step` [s]."""
+    """Return the ride from `start` [m] in `state` for `duration` [s] at `speed` [m/s], asking once a `step` [s].
+
+    look_ahead [s]: None takes the `lag` of the coupling; late: the force acts one step after the answer, the first
+    answer during the first two
+    Raises TirelabError for steps outside the ride, ground that ends before it, and rides that diverge.
+    """
     if not 0.0 < step <= duration:
         raise TirelabError(
             f"step {step:g} s of a ride of {duration:g} s; give a step above 0 s and within the ride"
         )
-    moved, pushed, fallen = step_matrices(bicycle, step)
+    told_ahead = lag(step, late) if look_ahead is None else look_ahead
     count = round(duration / step) + 1
-    states, told = np.empty((count, 4)), np.empty((count, 3))
-    state, ahead = np.array(state, dtype=np.float64), 0.5 * step if midway else 0.0
+    last = start + speed * ((count - 1) * step + max(told_ahead, 0.5 * step))
+    track = track_of(ground, start, last, bicycle.wheel_radius)
+    moving: HeldStep = held_step(bicycle, step)
+    here: State = (float(state[0]), float(state[1]), float(state[2]), float(state[3]))
+    states, told, upward = np.empty((count, 4)), np.empty((count, 3)), np.empty(count)
+    answer = math.nan
     for i in range(count):
-        time = i * step + ahead
-        hub = float(state[2] + ahead * state[3])
-        meeting = meet(ground, start + speed * time, hub, bicycle.wheel_radius)
-        force = tire(time, meeting.deflection, meeting.surface_radius)
-        states[i], told[i] = state, (meeting.deflection, meeting.surface_radius, force)
-        state = moved @ state + pushed * (force * math.cos(meeting.inclination)) + fallen
+        time = i * step
+        try:
+            position = start + speed * time
+            meeting = ahead(track, bicycle, here, position, speed, told_ahead)
+            middle = (
+                meeting
+                if told_ahead == 0.5 * step
+                else ahead(track, bicycle, here, position, speed, 0.5 * step)
+            )
+        except OffTheGroundError as error:
+            raise TirelabError(f"the ride ends at {time:g} s: {error}") from None
+        before, answer = answer, tire(time + told_ahead, meeting.deflection, meeting.surface_radius)
+        acting = before if late and i else answer
+        upward[i] = acting * math.cos(middle.inclination)
+        states[i], told[i] = here, (meeting.deflection, meeting.surface_radius, answer)
+        here = moving.advance(here, float(upward[i]))
     moments: Floats = step * np.arange(count, dtype=np.float64)
-    return SteppedMotion(moments, moments + ahead, states, *told.T)
+    return SteppedMotion(moments, moments + told_ahead, states, *told.T, upward)

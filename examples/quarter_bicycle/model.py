@@ -16,26 +16,7 @@ the fork hangs free. Three works complete the energies, so that the balance clos
 of one radius gives back all that it has stored; where the radius changes under load it does not: the law then makes or
 takes energy, and `stored` less the energy in the tire is that amount.
 
-What is left out: the fork's rake, its friction and end stops (`Motion.fork_travel` tells what it was asked for), pitch,
-and the rider's arms and legs.
-
-Parameters and sources:
-
-- 80 kg of rider and frame, 40 % of them over the front wheel, 3.5 kg of front wheel and lower fork, fork stiffness
-  18 kN/m, damping ratio 0.25 of the mass on the fork: B. Blockmans, half-car model of a mountain bicycle,
-  github.com/bartblockmans/halfcar, matlab/Main_downhill.m (commit 6a4d93d). The damping coefficient is
-  2 x 0.25 x sqrt(18 kN/m x 32 kg) = 379 N s/m.
-- They sag the fork by 17 mm: 17 % of 100 mm of travel, within the 15 to 30 % that a manufacturer asks for (Ideal Bikes,
-  Instructions for use EN 4210, section 40.1); a magazine advises 18 to 20 % (Mountain Biking UK, September 2022).
-- The front wheel of bicycles that were weighed, without a fork: 2.0 kg (J. K. Moore, as quoted with his model's
-  parameters, rider and frame 86 kg).
-- To compare with: measured off-road, downhill, the largest loads came near 3 times the rider's weight at the front
-  wheel, and the energy lay between 0 and 50 Hz (D. S. De Lorenzo, M. L. Hull, "Quantification of structural loading
-  during off-road cycling", Journal of Biomechanical Engineering 121 (1999) 399-405; its abstract).
-- Not found in the open: the parameters of Wilczynski & Hull (1994), Wang & Hull (1996, 1997), Good & McPhee (1999) and
-  Redfield (2005); a measured damping of such a fork; and the identified values of N. Schoeneck, M. Nagurka,
-  "Identification and modeling of a mountain bike front suspension subsystem", Bicycle and Motorcycle Dynamics 2023,
-  the ones to replace the damping with.
+Values, sources and what is left out are in `bicycle.py`.
 """
 
 from __future__ import annotations
@@ -45,70 +26,48 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from bicycle import GRAVITY, WHEEL_RADIUS, QuarterBicycle
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from tirelab.errors import TirelabError
-from tirelab.terrain import WHEEL_RADIUS, Ground, contact, rolling_path
+from tirelab.terrain import Ground, contact, reach, rolling_path
+from wheel import Meeting, Track, meet
 
 Floats = NDArray[np.float64]
 Tire = Callable[[float, float], float]
 """(deflection [m] > 0, surface radius [m]) -> radial force [N]."""
 
-GRAVITY = 9.80665
-"""Standard acceleration of gravity [m/s^2]."""
-
 LONGEST_STEP = 5e-3
 """Longest step [s] of the integrator, lest it pass over an obstacle: 5 cm at 10 m/s."""
 
 
-@dataclass(frozen=True)
-class QuarterBicycle:
-    """Masses [kg], fork stiffness [N/m], fork damping [N s/m] and wheel radius [m]; sources in the module's text."""
+def energy(bicycle: QuarterBicycle, states: Floats) -> Floats:
+    """Return E [J] in `states`, rows of (z_s, v_s, z_u, v_u); shape (n,)."""
+    z_s, v_s, z_u, v_u = states.T[:4]
+    joules: Floats = (
+        0.5 * (bicycle.sprung_mass * v_s**2 + bicycle.unsprung_mass * v_u**2)
+        + GRAVITY * (bicycle.sprung_mass * z_s + bicycle.unsprung_mass * z_u)
+        + 0.5 * bicycle.fork_stiffness * (z_u - z_s) ** 2
+    )
+    return joules
 
-    sprung_mass: float = 0.4 * 80.0
-    unsprung_mass: float = 3.5
-    fork_stiffness: float = 18e3
-    fork_damping: float = 2.0 * 0.25 * math.sqrt(18e3 * 32.0)
-    wheel_radius: float = WHEEL_RADIUS
 
-    @property
-    def weight(self) -> float:
-        """Weight on the ground at rest [N]."""
-        return (self.sprung_mass + self.unsprung_mass) * GRAVITY
+def track_of(ground: Ground, first: float, last: float, wheel_radius: float = WHEEL_RADIUS) -> Track:
+    """Return what of `ground` a wheel meets with its hub between `first` and `last` [m].
 
-    def accelerations(self, state: Floats, upward_force: float) -> tuple[float, float]:
-        """Return z_s'' and z_u'' [m/s^2] in `state` (z_s, v_s, z_u, v_u) under the tire's `upward_force` [N]."""
-        fork = self.fork_stiffness * (state[2] - state[0]) + self.fork_damping * (state[3] - state[1])
-        return (
-            fork / self.sprung_mass - GRAVITY,
-            (upward_force - fork) / self.unsprung_mass - GRAVITY,
+    Raises TirelabError where the ground does not reach as far.
+    """
+    start, end = reach(ground, wheel_radius)
+    if not start - 1e-9 <= first <= last <= end + 1e-9:
+        raise TirelabError(
+            f"a ride from s = {first:g} m to {last:g} m on {ground.name}; its wheel has ground beneath it from "
+            f"{start:g} m to {end:g} m"
         )
-
-    def energy(self, states: Floats) -> Floats:
-        """Return E [J] in `states`, rows of (z_s, v_s, z_u, v_u); shape (n,)."""
-        z_s, v_s, z_u, v_u = states.T[:4]
-        energy: Floats = (
-            0.5 * (self.sprung_mass * v_s**2 + self.unsprung_mass * v_u**2)
-            + GRAVITY * (self.sprung_mass * z_s + self.unsprung_mass * z_u)
-            + 0.5 * self.fork_stiffness * (z_u - z_s) ** 2
-        )
-        return energy
-
-
-@dataclass(frozen=True)
-class Meeting:
-    """What the tire is asked: deflection [m] (negative in the air) and surface radius [m]; with the force's angle."""
-
-    deflection: float
-    surface_radius: float
-    inclination: float
-
-
-def meet(ground: Ground, position: float, hub_height: float, wheel_radius: float) -> Meeting:
-    """Return how the wheel meets the ground with its hub at (`position`, `hub_height`) [m]."""
-    touch = contact(ground, np.array([position]), np.array([hub_height]), wheel_radius)
-    return Meeting(float(touch.deflection[0]), float(touch.surface_radius[0]), float(touch.inclination[0]))
+    margin = wheel_radius + 4.0 * ground.spacing
+    kept = (ground.s >= first - margin) & (ground.s <= last + margin)
+    columns = (ground.s, ground.z, ground.direction, ground.arc, ground.curvature)
+    return Track(ground.spacing, *(tuple(column[kept].tolist()) for column in columns))
 
 
 def pressed(tire: Tire, meeting: Meeting) -> float:
@@ -159,9 +118,10 @@ class Motion:
 def at_rest(bicycle: QuarterBicycle, ground: Ground, tire: Tire, position: float) -> Floats:
     """Return the state (z_s, v_s, z_u, v_u) in which the bicycle stands still at `position` [m]."""
     free = float(rolling_path(ground, np.array([position]), bicycle.wheel_radius)[0])
+    track = track_of(ground, position, position, bicycle.wheel_radius)
 
     def excess(hub_height: float) -> float:
-        meeting = meet(ground, position, hub_height, bicycle.wheel_radius)
+        meeting = meet(track, position, hub_height, bicycle.wheel_radius)
         return pressed(tire, meeting) * math.cos(meeting.inclination) - bicycle.weight
 
     deepest = free - 0.5 * bicycle.wheel_radius
@@ -192,10 +152,11 @@ def integrate(
     of order 5 whose absolute tolerance is 1e-3 of it (in m, m/s and J). The sampled ground is smooth in pieces only,
     where higher orders gain nothing: order 8 took four times as long.
     """
+    track = track_of(ground, start, start + speed * duration, bicycle.wheel_radius)
     first = at_rest(bicycle, ground, tire, start) if state is None else np.asarray(state, dtype=np.float64)
 
     def met(time: float, y: Floats) -> Meeting:
-        return meet(ground, start + speed * time, float(y[2]), bicycle.wheel_radius)
+        return meet(track, start + speed * time, float(y[2]), bicycle.wheel_radius)
 
     def derivative(time: float, y: Floats) -> list[float]:
         meeting = met(time, y)
@@ -235,7 +196,7 @@ def integrate(
         touch.deflection,
         touch.surface_radius,
         np.array(force),
-        bicycle.energy(states),
+        energy(bicycle, states),
         *solution.y[4:7],
         *solution.t_events,
     )
