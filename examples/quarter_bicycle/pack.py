@@ -41,10 +41,13 @@ SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 OSP = "http://opensimulationplatform.com/SSP/OSPAnnotations"
 
 CONNECTORS: dict[str, dict[str, tuple[str, str]]] = {
-    MODEL: {"radial_force": ("input", "N"), **{n: ("output", unit) for n, (unit, _) in shell.OUTPUTS.items()}},
     TIRE: {"deflection": ("input", "m"), "surface_radius": ("input", "m"), "radial_force": ("output", "N")},
+    MODEL: {
+        "radial_force": ("input", "N"),
+        **{n: ("output", unit) for n, (unit, _) in shell.OUTPUTS.items()},
+    },
 }
-"""Kind and unit of each component's connectors."""
+"""Kind and unit of each component's connectors; a master that runs one after the other begins with the tire."""
 
 CONNECTIONS = (
     (MODEL, TIRE, "deflection"),
@@ -107,12 +110,14 @@ def structure(ride: RideOnGround, step: float, look_ahead: float) -> ElementTree
     for prefix, namespace in (("ssc", SSC), ("ssd", SSD), ("ssv", SSV), ("osp", OSP)):
         ElementTree.register_namespace(prefix, namespace)
 
-    def add(parent: ElementTree.Element, tag: str, namespace: str = SSD, /, **attributes: str) -> ElementTree.Element:
+    def add(
+        parent: ElementTree.Element, tag: str, namespace: str = SSD, /, **attributes: str
+    ) -> ElementTree.Element:
         return ElementTree.SubElement(parent, f"{{{namespace}}}{tag}", attributes)
 
     root = ElementTree.Element(
         f"{{{SSD}}}SystemStructureDescription",
-        {"version": "1.0", "name": MODEL, "description": f"{ride.name}, {ride.speed:g} m/s"},
+        {"version": "1.0", "name": MODEL, "description": ride.name},
     )
     system = add(root, "System", name="Ride")
     elements = add(system, "Elements")
@@ -129,7 +134,9 @@ def structure(ride: RideOnGround, step: float, look_ahead: float) -> ElementTree
             add(add(listed, "Connector", name=name, kind=kind), "Real", SSC, unit=unit)
         if component == MODEL:
             values = add(add(add(element, "ParameterBindings"), "ParameterBinding"), "ParameterValues")
-            parameters = add(add(values, "ParameterSet", SSV, version="1.0", name="coupling"), "Parameters", SSV)
+            parameters = add(
+                add(values, "ParameterSet", SSV, version="1.0", name="coupling"), "Parameters", SSV
+            )
             parameter = add(parameters, "Parameter", SSV, name="look_ahead")
             add(parameter, "Real", SSV, value=f"{look_ahead:.17g}", unit="s")
     connections = add(system, "Connections")
@@ -143,7 +150,9 @@ def structure(ride: RideOnGround, step: float, look_ahead: float) -> ElementTree
             endConnector=name,
         )
     units = add(root, "Units")
-    for unit in sorted({unit for connectors in CONNECTORS.values() for _, unit in connectors.values()} | {"s"}):
+    for unit in sorted(
+        {unit for connectors in CONNECTORS.values() for _, unit in connectors.values()} | {"s"}
+    ):
         add(add(units, "Unit", SSC, name=unit), "BaseUnit", SSC, **shell.UNITS[unit])
     experiment = add(root, "DefaultExperiment", startTime="0", stopTime=f"{ride.duration:g}")
     annotation = add(add(experiment, "Annotations"), "Annotation", SSC, type="com.opensimulationplatform")

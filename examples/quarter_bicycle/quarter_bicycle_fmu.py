@@ -33,7 +33,10 @@ UNITS: dict[str, dict[str, str]] = {
 """Units as products of SI base units."""
 
 OUTPUTS: dict[str, tuple[str, str]] = {
-    "deflection": ("m", "Radial compression of the tire, look_ahead from now; negative by the gap in the air"),
+    "deflection": (
+        "m",
+        "Radial compression of the tire, look_ahead from now; negative by the gap in the air",
+    ),
     "surface_radius": ("m", "Average radius of curvature of the ground in contact, look_ahead from now"),
     "position": ("m", "Distance of the hub along the ground"),
     "hub_height": ("m", "Height of the hub"),
@@ -162,11 +165,15 @@ class QuarterBicycleFmu(Fmi2Slave):
         try:
             for name, (_, least, _) in PARAMETERS.items():
                 if not least <= self._values[name] < math.inf:
-                    raise ValueError(f"{name} = {self._values[name]:g} is not allowed; give {least:g} or more")
+                    raise ValueError(
+                        f"{name} = {self._values[name]:g} is not allowed; give {least:g} or more"
+                    )
             if not math.isfinite(force):
                 raise ValueError(f"radial_force = {force} is not allowed; it must be a finite number")
             if not step_size > 0.0:
-                raise ValueError(f"communicationStepSize = {step_size:g} s is not allowed; give more than 0 s")
+                raise ValueError(
+                    f"communicationStepSize = {step_size:g} s is not allowed; give more than 0 s"
+                )
             self._elapsed = current_time - self._start_time
             middle = self._meet(0.5 * step_size)
             upward = force * math.cos(middle.inclination)

@@ -32,7 +32,9 @@ class RideOnGround:
     @property
     def track(self) -> Track:
         """The ground that the ride needs."""
-        last = min(self.start + self.speed * self.duration + SLACK, reach(self.ground, self.bicycle.wheel_radius)[1])
+        last = min(
+            self.start + self.speed * self.duration + SLACK, reach(self.ground, self.bicycle.wheel_radius)[1]
+        )
         return track_of(self.ground, self.start, last, self.bicycle.wheel_radius)
 
     def integrated(self, tire: Tire, samples: int) -> Motion:
@@ -81,7 +83,7 @@ def over_rough_ground(
 ) -> RideOnGround:
     """Return a ride over `length` [m] of ISO 8608 ground."""
     ground = ground_from(iso8608(road_class, length + 1.5, seed), 0.005)
-    return _from_rest(ground.name, ground, tire, speed, 0.5, length)
+    return _from_rest(f"{ground.name}, {speed:g} m/s", ground, tire, speed, 0.5, length)
 
 
 GROUNDS: dict[str, Callable[[TireModel, float], RideOnGround]] = {
@@ -92,7 +94,9 @@ GROUNDS: dict[str, Callable[[TireModel, float], RideOnGround]] = {
 """The grounds to choose from: (tire, speed [m/s]) -> ride."""
 
 
-def _from_rest(name: str, ground: Ground, tire: TireModel, speed: float, start: float, length: float) -> RideOnGround:
+def _from_rest(
+    name: str, ground: Ground, tire: TireModel, speed: float, start: float, length: float
+) -> RideOnGround:
     bicycle = QuarterBicycle()
     state = at_rest(bicycle, ground, elastic(tire), start)
     return RideOnGround(name, bicycle, ground, speed, start, length / speed, state)

@@ -1,7 +1,7 @@
 """Where one wheel touches sampled ground, in plain numbers.
 
-The same contact as `tirelab.terrain.contact`, which explains it, for one position of the hub at a time: a test holds the
-two to 1e-12. Standard library only: QuarterBicycle.fmu carries this file.
+The same contact as `tirelab.terrain.contact`, which explains it, for one position of the hub at a time: a test holds
+the two to 1e-12. Standard library only: QuarterBicycle.fmu carries this file.
 """
 
 from __future__ import annotations
