@@ -24,8 +24,8 @@ from tirelab.terrain import Ground, TireForce, contact
 class Account:
     """Energies of a stepped ride [J].
 
-    change of the bicycle's energy; damped by the fork; received from the tire; made by the coupling; stiffness_work: the
-    integral of k deflection'^2 over the ride [J/s], of which a lag T makes T times as much.
+    change of the bicycle's energy; damped by the fork; received from the tire; made by the coupling; stiffness_work:
+    the integral of k deflection'^2 over the ride [J/s], of which a lag T makes T times as much.
     """
 
     change: float

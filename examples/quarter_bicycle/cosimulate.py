@@ -29,7 +29,7 @@ def cosimulate(ssp: Path, *, step: float, duration: float, one_after_the_other: 
     """Run the system of `ssp` for `duration` [s] in steps of `step` [s] and return what its units put out.
 
     one_after_the_other: each unit, in the archive's order, steps on what those before it have just put out; otherwise
-    all step at once on what was put out before. The rows are the moments at which the steps begin, and what the units were told there.
+    all step at once on what was put out before. The rows are the moments at which the steps begin.
     Raises TirelabError where a unit refuses a step.
     """
     system = read_ssd(str(ssp)).system

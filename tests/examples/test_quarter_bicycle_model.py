@@ -210,7 +210,9 @@ def test_stepped_ride_approaches_the_monolithic_one(
 
     errors = []
     for step in (0.002, 0.001, 0.0005):
-        stepped = coupled.run(bicycle, ground, tire, **ride, step=step, state=truth.states[0], look_ahead=look_ahead, late=late)
+        stepped = coupled.run(
+            bicycle, ground, tire, **ride, step=step, state=truth.states[0], look_ahead=look_ahead, late=late
+        )
         at = np.round(stepped.time / 5e-4).astype(int)
         errors.append(np.sqrt(np.mean((stepped.states[:, 2] - truth.hub_height[at]) ** 2)))
     rates = np.log2(np.divide(errors[:-1], errors[1:]))

@@ -1,4 +1,4 @@
-"""The command `ride`: terrain and a tire in, deflection, radius and force out, with the share that is doubtful."""
+"""tirelab ride: terrain and a tire in, deflection, radius and force out, with the share that is doubtful."""
 
 from __future__ import annotations
 
@@ -6,23 +6,32 @@ from pathlib import Path
 
 import click
 import numpy as np
-from radialtire import TireFileError, TireModel, read_tire
+from radialtire import TireModel, read_tire
 
-from tirelab.errors import TirelabError
+from ..errors import TirelabError
+from ..terrain import (
+    OBSTACLES,
+    WHEEL_RADIUS,
+    Profile,
+    Ride,
+    TireForce,
+    add_roughness,
+    animate_ride,
+    draw_ride,
+    flat,
+    ground_from,
+    iso8608,
+    place,
+    read_profile,
+    ride,
+)
+from ..terrain.iso8608 import GEOMETRIC_MEAN
+from ..terrain.profile import Floats
+from ..terrain.profile_file import read_columns
+from .options import FILE, SentenceCommand
 
-from .contact import WHEEL_RADIUS
-from .curvature import ground_from
-from .iso8608 import GEOMETRIC_MEAN, iso8608
-from .obstacles import OBSTACLES, place
-from .picture import animate_ride, draw_ride
-from .profile import Floats, Profile, flat
-from .profile_file import add_roughness, read_columns, read_profile
-from .ride import Ride, TireForce, ride
 
-FILE = click.Path(dir_okay=False, path_type=Path)
-
-
-@click.command("ride")
+@click.command("ride", cls=SentenceCommand)
 @click.argument("profile", required=False, type=FILE)
 @click.option(
     "--iso-class", type=click.Choice(list(GEOMETRIC_MEAN)), help="Random ground of this ISO 8608 class."
@@ -71,7 +80,7 @@ def command(
     Prints the range of deflection and force, and how much of the ride is outside of what the article's tire stands for.
     """
     terrain = _terrain(profile, iso_class, seed, length, obstacle, smoothing_length)
-    model = _tire(tire)
+    model = TireModel() if tire is None else read_tire(tire)
     position, hub_height = (None, None) if hub_path is None else read_columns(hub_path, ("s", "h"))[0]
     if load is None and hub_path is None:
         load = 500.0
@@ -153,13 +162,6 @@ def _terrain(
             ) from None
         terrain = place(terrain, shape(), position)
     return terrain
-
-
-def _tire(path: Path | None) -> TireModel:
-    try:
-        return TireModel() if path is None else read_tire(path)
-    except TireFileError as error:
-        raise TirelabError(str(error)) from None
 
 
 def _summary(result: Ride, tire: TireModel) -> list[str]:

@@ -34,15 +34,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire.hull1996 import CONCAVE_RADII, CONVEX_RADII, DEFLECTION_MAX, FORCE_MAX
 
 from .contact import WHEEL_RADIUS, Contact
 from .profile import Floats
-
-SMALLEST_CONVEX_RADIUS = 0.0127
-TIGHTEST_CONCAVE_RADIUS = 0.381
-LARGEST_DEFLECTION = 0.03175
-LARGEST_FORCE = 2240.0
-"""What the article tested: radii of its surfaces [m], deflection [m] and force [N]."""
 
 EDGE_TURN = math.radians(15.0)
 """A circle drawn with fewer than 24 points per half turn cannot be told from a corner."""
@@ -91,13 +86,13 @@ def limits(touch: Contact, radial_force: Floats, wheel_radius: float = WHEEL_RAD
     light_contact = 2.0 * math.sqrt(2.0 * wheel_radius * LIGHT_DEFLECTION)
     room = SPREAD_LIMIT * np.maximum(effective, 0.0)
     tests = {
-        Limit.SHARP_EDGE: (touch.curvature_max > 1.0 / SMALLEST_CONVEX_RADIUS) | (touch.turn > EDGE_TURN),
+        Limit.SHARP_EDGE: (touch.curvature_max > 1.0 / CONVEX_RADII[0]) | (touch.turn > EDGE_TURN),
         Limit.DISCONTINUOUS_RADIUS: touch.curvature_jump > room,
         Limit.CHANGING_RADIUS: touch.curvature_max - touch.curvature_min > room,
-        Limit.TIGHT_CONCAVE: touch.curvature < -1.0 / TIGHTEST_CONCAVE_RADIUS,
+        Limit.TIGHT_CONCAVE: touch.curvature < 1.0 / CONCAVE_RADII[1],
         Limit.SEVERAL_CONTACTS: touch.zones > 1,
-        Limit.DEFLECTION_UNTESTED: touch.deflection > LARGEST_DEFLECTION,
-        Limit.FORCE_UNTESTED: radial_force > LARGEST_FORCE,
+        Limit.DEFLECTION_UNTESTED: touch.deflection > DEFLECTION_MAX,
+        Limit.FORCE_UNTESTED: radial_force > FORCE_MAX,
         Limit.COARSE_GROUND: touch.resolution > np.maximum(touch.section_length, light_contact),
     }
     bits = np.where(loaded, 0, Limit.AIRBORNE.value).astype(np.uint16)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import csv
 import math
-import re
 from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from tirelab.errors import TirelabError
+from tirelab.units import Conversion, UnitError, conversion, split_header
 
 from .curvature import smoothed_heights
 from .gpx import track_points
@@ -33,9 +33,6 @@ SAME_PLACE = 1.0
 """Points nearer than this [m] are one place to a satellite receiver, whatever its elevations say."""
 
 DELIMITERS = ",;\t"
-
-UNIT = re.compile(r"[^\W\d_]{1,16}")
-"""A unit's name and no arithmetic: pint would also work out 9**9**9 for us."""
 
 
 def read_profile(path: str | Path) -> Profile:
@@ -81,7 +78,7 @@ def read_columns(path: str | Path, symbols: tuple[str, ...]) -> tuple[list[Float
                     f"{path}, row {numbers[i]}, column {symbols[j]}: '{cell[:40]}' is not a number; write one, with a "
                     "decimal point"
                 ) from None
-    return [values[j] * factor for j, (_, factor) in enumerate(columns)], numbers
+    return [to_metres.to_si(values[j]) for j, (_, to_metres) in enumerate(columns)], numbers
 
 
 def read_gpx(path: str | Path, smoothing_length: float = GPX_SMOOTHING_LENGTH) -> Profile:
@@ -143,33 +140,26 @@ def _wanted(symbols: tuple[str, ...]) -> str:
     return " and ".join(f"'{symbol} [m]'" for symbol in symbols)
 
 
-def _column(path: str | Path, header: list[str], symbol: str, symbols: tuple[str, ...]) -> tuple[int, float]:
-    """Return where the column `symbol` stands and how many metres its unit has."""
+def _column(
+    path: str | Path, header: list[str], symbol: str, symbols: tuple[str, ...]
+) -> tuple[int, Conversion]:
+    """Return where the column `symbol` stands and how its unit becomes metres."""
     for i, cell in enumerate(header):
-        name, bracket, unit = cell.strip().partition("[")
-        if name.strip().lower() != symbol:
+        name, unit = split_header(cell)
+        if name.lower() != symbol:
             continue
-        if not bracket or not unit.rstrip().endswith("]"):
+        if unit is None:
             raise TirelabError(
                 f"{path}, header: column '{cell.strip()}' has no unit; write it in brackets, '{symbol} [m]'"
             )
-        return i, _metres(path, unit.rstrip()[:-1].strip(), cell.strip())
+        try:
+            return i, conversion(unit, "m")
+        except UnitError as error:
+            raise TirelabError(f"{path}, header: '{cell.strip()}': {error}") from None
     raise TirelabError(
         f"{path}, header: no column '{symbol}' among {', '.join(repr(c.strip()) for c in header)[:200]}; "
         f"name the columns {_wanted(symbols)}"
     )
-
-
-def _metres(path: str | Path, unit: str, cell: str) -> float:
-    import pint  # takes half a second that only readers of CSV need
-
-    try:
-        factor = float(pint.Quantity(1.0, unit).to("m").magnitude) if UNIT.fullmatch(unit) else math.nan
-    except pint.PintError:
-        factor = math.nan
-    if not (math.isfinite(factor) and factor > 0.0):
-        raise TirelabError(f"{path}, header: '{cell}' is not in a unit of length; use m, cm, mm, in or ft")
-    return factor
 
 
 def _bytes(path: Path) -> bytes:

@@ -51,8 +51,8 @@ def test_columns_in_any_order_with_a_byte_order_mark(tmp_path: Path) -> None:
         ("", r"trail.csv: the file is empty"),
         ("s [m],h [m]\n0,0\n", r"header: no column 'z' among 's \[m\]', 'h \[m\]'"),
         ("s,z [m]\n0,0\n", r"header: column 's' has no unit; write it in brackets, 's \[m\]'"),
-        ("s [m],z [kg]\n0,0\n", r"header: 'z \[kg\]' is not in a unit of length"),
-        ("s [m],z [9**9**9]\n0,0\n", r"header: 'z \[9\*\*9\*\*9\]' is not in a unit of length"),
+        ("s [m],z [kg]\n0,0\n", r"header: 'z \[kg\]': 'kg' is not a unit of length"),
+        ("s [m],z [9**9**9]\n0,0\n", r"header: 'z \[9\*\*9\*\*9\]': unknown unit '9\*\*9\*\*9' of length"),
         ("s [m],z [m]\n0,0\n\n1,abc\n", r"row 4, column z: 'abc' is not a number"),
         ("s [m],z [m]\n0,0\n1\n", r"row 3, column z: '' is not a number"),
         (
