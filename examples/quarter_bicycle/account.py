@@ -24,15 +24,16 @@ from tirelab.terrain import Ground, TireForce, contact
 class Account:
     """Energies of a stepped ride [J].
 
-    change of the bicycle's energy; damped by the fork; received from the tire; made by the coupling; stiffness_work:
-    the integral of k deflection'^2 over the ride [J/s], of which a lag T makes T times as much.
+    change of the bicycle's energy; damped by the fork; received from the tire; made by the coupling; lag_power: what
+    the coupling makes per second of lag [W], the integral of k deflection' w over the ride, with k the law's stiffness
+    and w the velocity at which the hub is pressed on the tire.
     """
 
     change: float
     damped: float
     received: float
     made: float
-    stiffness_work: float
+    lag_power: float
 
     @property
     def imbalance(self) -> float:
@@ -52,30 +53,31 @@ def account(
     """Return the energies of `ride`, which began at `start` [m] and went on at `speed` [m/s] under the tire's `law`."""
     step = float(ride.time[1] - ride.time[0])
     shares, weights = np.polynomial.legendre.leggauss(4)
-    damped = received = by_law = stiffness_work = 0.0
+    damped = received = by_law = lag_power = 0.0
     first, held = ride.states[:-1], ride.upward_force[:-1]
     for share, weight in zip(0.5 * (shares + 1.0), 0.5 * step * weights, strict=True):
         part = held_step(bicycle, float(share * step))
         states = first @ np.array(part.moved).T + np.outer(held, part.pushed) + part.fallen
         time = ride.time[:-1] + share * step
-        upward, stiffness, rate = _pressed(bicycle, ground, law, states, start + speed * time, speed)
+        upward, power = _pressed(bicycle, ground, law, states, start + speed * time, speed)
         damped += weight * bicycle.fork_damping * float(np.sum((states[:, 3] - states[:, 1]) ** 2))
         received += weight * float(held @ states[:, 3])
         by_law += weight * float(upward @ states[:, 3])
-        stiffness_work += weight * float(np.sum(stiffness * rate**2))
+        lag_power += weight * float(np.sum(power))
     level = energy(bicycle, ride.states[[0, -1]])
-    return Account(float(level[1] - level[0]), damped, received, received - by_law, stiffness_work)
+    return Account(float(level[1] - level[0]), damped, received, received - by_law, lag_power)
 
 
 def _pressed(
     bicycle: QuarterBicycle, ground: Ground, law: TireForce, states: Floats, position: Floats, speed: float
-) -> tuple[Floats, Floats, Floats]:
-    """Return the law's upward force [N], its stiffness [N/m] and the deflection's rate [m/s] in `states`."""
+) -> tuple[Floats, Floats]:
+    """Return the law's upward force [N] and k deflection' w [W/s] in `states`."""
     touch = contact(ground, position, states[:, 2], bicycle.wheel_radius)
     down = touch.deflection > 0.0
     force, stiffness = np.zeros(position.size), np.zeros(position.size)
     x, radius = touch.deflection[down], touch.surface_radius[down]
     force[down] = law(x, radius)
     stiffness[down] = (law(1.001 * x, radius) - law(0.999 * x, radius)) / (0.002 * x)
-    rate = -np.sin(touch.inclination) * speed - np.cos(touch.inclination) * states[:, 3]
-    return force * np.cos(touch.inclination), stiffness, rate
+    pressing = -np.cos(touch.inclination) * states[:, 3]
+    rate = pressing - np.sin(touch.inclination) * speed
+    return force * np.cos(touch.inclination), stiffness * rate * pressing

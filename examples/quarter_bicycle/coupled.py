@@ -8,9 +8,9 @@ by side hands it over at the step's end, so that it acts during the next step (`
 
 What is told. As it is at the start of the step, the force lags behind the motion by H / 2 on average, and by 3 H / 2
 where it acts late. To a tire of stiffness k a lag T is a damping of -k T, which works against the fork's: the error
-falls with the first power of H, and the coupling makes T times the integral of k deflection'^2 out of nothing. Told by
-T ahead instead, where the hub's present velocity carries it (`look_ahead`), the lag is gone and the error falls with
-the second power of H, still with one question per step.
+falls with the first power of H, and the coupling makes energy out of nothing, on level ground T times the integral of
+k deflection'^2. Told by T ahead instead, where the hub's present velocity carries it (`look_ahead`), the lag is gone
+and the error falls with the second power of H, still with one question per step.
 """
 
 from __future__ import annotations

@@ -37,7 +37,9 @@ def main() -> None:
     step = 1e-3 * options.step
     rows: list[list[object]] = [["time", *(column for columns in COLUMNS.values() for column in columns)]]
     with EcosSimulation(step_size=step, ssp_path=options.ssp) as simulation:
-        simulation.init()
+        simulation.init(
+            parameter_set="coupling"
+        )  # the archive's look-ahead: ecos takes a set only if it is named
         for _ in range(round(options.duration / step)):
             time = simulation.step()
             values = [
