@@ -7,6 +7,7 @@ import importlib.util
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -361,3 +362,38 @@ def test_parameters_of_the_ride_are_in_the_fmu(
     assert variables["fork_stiffness"].unit == "N/m"
     with zipfile.ZipFile(path) as archive:
         assert json.loads(archive.read("resources/ride.json"))["state"] == wavy.state.tolist()
+
+
+def test_the_readmes_example_runs(
+    example: dict[str, ModuleType], repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (repository / "examples" / "quarter_bicycle" / "README.md").read_text()
+    (code,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    assert (tmp_path / "log.png").is_file()
+
+
+def test_the_readmes_commands_run(
+    repository: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """What the README says to type, shortened: pack, ride and the table of one step."""
+    folder = repository / "examples" / "quarter_bicycle"
+    environment = {**os.environ, "PYTHONPATH": str(repository / "fmu_src"), "CC": "", "PATH": ""}
+    for command in (
+        ["pack.py", "--ground", "root", "--out", "dist"],
+        ["cosimulate.py", "dist/QuarterBicycle.ssp", "--duration", "0.1"],
+        ["ride_with_fmu.py", "--ground", "root", "--speed", "8", "--step", "1"],
+    ):
+        subprocess.run(
+            [sys.executable, folder / command[0], *command[1:]], cwd=tmp_path, env=environment, check=True
+        )
+    rows = np.genfromtxt(tmp_path / "ride.csv", delimiter=",", names=True)
+    assert rows.size == 201
+    shown = re.findall(r"^ +1 +([\d.]+)%", capfd.readouterr().out, flags=re.MULTILINE)
+    table = (folder / "README.md").read_text()
+    printed = re.findall(r"^\|[^|]*\| 1 ms \|[^|]*\|[^|]*\|[^|]*\| ([\d.]+) \|", table, flags=re.MULTILINE)
+    # The README lists side by side first.
+    assert [float(value) for value in (*shown[2:], *shown[:2])] == pytest.approx(
+        [float(value) for value in printed], rel=0.15
+    )
