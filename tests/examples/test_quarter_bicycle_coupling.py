@@ -374,26 +374,40 @@ def test_the_readmes_example_runs(
     assert (tmp_path / "log.png").is_file()
 
 
-def test_the_readmes_commands_run(
-    repository: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """What the README says to type, shortened: pack, ride and the table of one step."""
-    folder = repository / "examples" / "quarter_bicycle"
-    environment = {**os.environ, "PYTHONPATH": str(repository / "fmu_src"), "CC": "", "PATH": ""}
-    for command in (
-        ["pack.py", "--ground", "root", "--out", "dist"],
-        ["cosimulate.py", "dist/QuarterBicycle.ssp", "--duration", "0.1"],
-        ["ride_with_fmu.py", "--ground", "root", "--speed", "8", "--step", "1"],
-    ):
-        subprocess.run(
-            [sys.executable, folder / command[0], *command[1:]], cwd=tmp_path, env=environment, check=True
-        )
-    rows = np.genfromtxt(tmp_path / "ride.csv", delimiter=",", names=True)
-    assert rows.size == 201
-    shown = re.findall(r"^ +1 +([\d.]+)%", capfd.readouterr().out, flags=re.MULTILINE)
-    table = (folder / "README.md").read_text()
-    printed = re.findall(r"^\|[^|]*\| 1 ms \|[^|]*\|[^|]*\|[^|]*\| ([\d.]+) \|", table, flags=re.MULTILINE)
-    # The README lists side by side first.
-    assert [float(value) for value in (*shown[2:], *shown[:2])] == pytest.approx(
-        [float(value) for value in printed], rel=0.15
+def _command(repository: Path, folder: Path, *words: str) -> str:
+    """Run a script of the example as the README does, and return what it printed."""
+    script = repository / "examples" / "quarter_bicycle" / words[0]
+    environment = {**os.environ, "PYTHONPATH": str(repository / "fmu_src")}
+    done = subprocess.run(
+        [sys.executable, script, *words[1:]],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_readmes_table_is_what_its_command_prints(repository: Path, tmp_path: Path) -> None:
+    output = _command(
+        repository, tmp_path, "ride_with_fmu.py", "--ground", "root", "--speed", "8", "--step", "1"
+    )
+    shown = [float(value) for value in re.findall(r"^ +1 +([\d.]+)%", output, flags=re.MULTILINE)]
+    table = (repository / "examples" / "quarter_bicycle" / "README.md").read_text()
+    printed = re.findall(r"^\|[^|]*\| 1 ms \|[^|]*\|[^|]*\|[^|]*\| ([\d.]+) \|", table, flags=re.MULTILINE)
+    # The README lists side by side first, to one or two digits.
+    assert [*shown[2:], *shown[:2]] == pytest.approx([float(value) for value in printed], rel=0.15)
+
+
+@pytest.mark.slow
+def test_the_readmes_archive_rides(repository: Path, master: Callable[..., Any], tmp_path: Path) -> None:
+    """As packed by the command, with the compiled binaries, in all masters."""
+    _command(repository, tmp_path, "pack.py", "--ground", "root", "--step", "1", "--out", ".")
+    archive = tmp_path / "QuarterBicycle.ssp"
+    _command(repository, tmp_path, "cosimulate.py", str(archive), "--step", "1", "--duration", "0.3")
+    rows = np.genfromtxt(tmp_path / "ride.csv", delimiter=",", names=True)
+    for name, package in MASTERS:
+        found = master(name, package, archive, 1e-3)
+        np.testing.assert_allclose(found["hub_height"], rows["QuarterBicyclehub_height"][1:], atol=1e-12)
