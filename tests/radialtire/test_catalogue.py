@@ -171,15 +171,16 @@ def test_a_saved_state_continues_identically(effect: Effect, data: st.DataObject
     tire = tire_with((effect.name, data.draw(any_values(effect))))
     time, x, R = data.draw(motions())
     state = tire.rest
+    moments = list(zip(x.tolist(), R.tolist(), time.tolist(), strict=True))
     half = time.size // 2
-    for i in range(half):
-        _, state = tire.step(x[i], R[i], time[i], state)
+    for moment in moments[:half]:
+        _, state = tire.step(*moment, state)
     saved = json.dumps(state)
     for _ in range(2):
         again = ModelState.restored(json.loads(saved))
         forces = []
-        for i in range(half, time.size):
-            force, again = tire.step(x[i], R[i], time[i], again)
+        for moment in moments[half:]:
+            force, again = tire.step(*moment, again)
             forces.append(force)
         assert np.array_equal(forces, drive(tire, time, x, R)[half:])
 
