@@ -9,10 +9,11 @@ from radialtire import write_tire
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
+from ..channels import parse_columns
 from ..errors import TirelabError
 from ..identify import LAWS, Identification, identify
 from ..identify.table import constant_table, surface_table
-from ..recording import Recording, parse_columns, read_recording
+from ..recording import Recording, read_recording
 from .options import FILE, SentenceCommand, reading
 
 WIDTH_LEAST = 100
