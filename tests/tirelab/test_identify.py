@@ -100,7 +100,7 @@ def test_the_rmse_is_of_the_force_and_not_of_its_logarithm() -> None:
 def test_the_inner_products_are_those_of_numpy() -> None:
     (surface,) = surfaces_of([triangle(noise=10.0)])
     (piece,) = surface.pieces
-    weight = np.where(piece.branch > 0, surface.weights[0], surface.weights[2])
+    weight = np.where(piece.branch > 0, surface.weights[1], surface.weights[2])
     power = np.exp(1.3 * piece.log_deflection)
     rows = np.stack([power, power * piece.log_deflection, piece.force - 500.0 * power])
     np.testing.assert_allclose(inner_products(surface, 500.0, 1.3), rows * weight @ rows.T, rtol=1e-12)
@@ -224,7 +224,7 @@ def test_three_concave_radii_hardly_fix_three_constants() -> None:
     assert law == pytest.approx(Hull1996().coefficients(-0.381), rel=0.01)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_heavy_noise_leaves_a_tire_within_the_laws_bounds(seed: int) -> None:
     # 150 N: the concave side is lost in it, and its constants run to their bounds
     found = identify(rig.record_all(noise=150.0, seed=seed))
@@ -357,10 +357,69 @@ def test_the_command_closes_the_loop_through_files(tmp_path: Path) -> None:
     assert np.array(beside["correlation"]).shape == (10, 10)
 
 
-def test_the_command_tells_bad_input_in_a_sentence(tmp_path: Path) -> None:
-    write_recording(flat(UP, -1e5 * UP), tmp_path / "wrong.csv")
-    done = CliRunner().invoke(
-        command, [str(tmp_path / "wrong.csv"), "--law", "curvature_law", "--out", str(tmp_path)]
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["flat.csv", "--law", "hull1996"], "1 surface (flat) cannot tell the constants"),
+        (["absent.csv"], "absent.csv"),
+        (["flat.csv", "--out", "."], "cannot be written"),
+        (["flat.csv", "--law", "spline"], "'spline' is not one of"),
+        ([], "Missing argument"),
+    ],
+)
+def test_the_command_tells_bad_input_in_a_sentence(
+    arguments: list[str], sentence: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_recording(triangle(), "flat.csv")
+    done = CliRunner().invoke(command, arguments)
+    assert done.exit_code == 2
+    assert sentence in done.output
+    assert not Path("tire.json").exists()
+
+
+def test_a_recording_of_several_surfaces_is_taken_apart() -> None:
+    parts = [
+        triangle(0.0508, noise=5.0, seed=1),
+        triangle(math.inf, noise=5.0, seed=2),
+        triangle(0.0508, seed=3),
+    ]
+    whole = Recording(
+        "whole",
+        np.arange(3 * 151) / 5.0,
+        np.concatenate([p.deflection for p in parts]),
+        np.concatenate([p.surface_radius for p in parts]),
+        np.concatenate([p.force for p in parts]),
     )
-    assert done.exit_code in (0, 2)
-    assert "Traceback" not in done.output
+    found = identify([whole])
+    assert [(s.surface_radius, s.samples) for s in found.surfaces] == [(0.0508, 298), (math.inf, 149)]
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(2, 300),
+    stretches=st.integers(1, 6),
+    walk=st.booleans(),
+    noise=st.sampled_from([0.0, 1e-12, 1.0, 1e3, 1e6]),
+    scale=st.sampled_from([1e-9, 1e-3, 1e-2, 0.1]),
+)
+def test_no_recording_ends_in_anything_but_a_tire_or_a_sentence(
+    seed: int, count: int, stretches: int, walk: bool, noise: float, scale: float
+) -> None:
+    generator = np.random.default_rng(seed)
+    x = generator.standard_normal(count)
+    x = scale * (np.cumsum(x) if walk else np.abs(x))
+    radius = np.repeat(generator.choice(rig.SURFACES, stretches), -(-count // stretches))[:count]
+    force = 5e4 * np.maximum(x, 0.0) + noise * generator.standard_normal(count)
+    recording = Recording("any", np.arange(count) / 5.0, x, radius, force)
+    try:
+        found = identify([recording])
+    except TirelabError as error:
+        sentence = str(error)
+        assert sentence.startswith(("any (", "no recording has", "1 surface", f"{len(set(radius))} surfaces"))
+    else:
+        json.loads(found.to_json())
+        A, B = found.tire.law.coefficients(math.inf)
+        assert A > 0.0
+        assert B > 0.0

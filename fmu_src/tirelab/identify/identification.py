@@ -13,7 +13,7 @@ from ..errors import TirelabError
 from ..recording import Recording
 from .forms import Form, HullForm, form_of
 from .intervals import profile
-from .joint import joint_fit
+from .joint import JointFit, joint_fit
 from .noise import PowerFit, with_covariance
 from .power_fit import chunks, fit_power, inner_products
 from .result import Constant, Identification, SurfaceFit, recording_notes, statements
@@ -69,34 +69,34 @@ def identify(
         progress(what, done, total)
 
     joint = joint_fit(surfaces, fits, form, start, lambda: step("joint fit", 0))
-    uncertainties = np.sqrt(np.diag(joint.covariance))
     done = 0
     profiles = profile(
         form,
         fits,
         joint.logs,
-        uncertainties,
+        joint.uncertainties,
         lambda: step("intervals of the constants", len(form.parameters)),
     )
-    uncertainties = uncertainties * profiles.widening
+    uncertainties = profiles.widening * joint.uncertainties
 
     constants = _constants(form, joint.logs, start, uncertainties, profiles.intervals)
     rows = tuple(
         _row(surface, fit, pair)
         for surface, fit, pair in zip(surfaces, fits, form.coefficients(joint.logs).tolist(), strict=True)
     )
+    recorded = ", ".join(dict.fromkeys(recording.name for recording in recordings))
     tire = TireModel(
         law=form.law(joint.logs),
         tested_range=_tested_range(surfaces),
-        name=name or f"tire identified from {', '.join(dict.fromkeys(r.name for r in recordings))}",
-        source=f"identified by tirelab from {', '.join(dict.fromkeys(str(r.source or r.name) for r in recordings))}",
+        name=name or f"tire identified from {recorded}",
+        source=f"identified by tirelab from the recordings {recorded}",
     )
-    alone = tuple(0 in (s.samples[0], s.samples[2]) for s in surfaces)
+    alone = tuple(0 in s.samples for s in surfaces)
     return Identification(
         tire=tire,
         surfaces=rows,
         constants=constants,
-        correlation=_correlation(joint.covariance),
+        correlation=_correlation(joint),
         condition=joint.condition,
         rmse=_rmse(surfaces, form.coefficients(joint.logs)),
         two_stage_rmse=_rmse(surfaces, form.coefficients(start)),
@@ -108,7 +108,7 @@ def identify(
             *statements(
                 constants,
                 rows,
-                profiles.widening * _law_uncertainties(form, joint.logs, joint.covariance),
+                profiles.widening * _law_uncertainties(form, joint),
                 profiles.chi_square,
                 profiles.freedom,
             ),
@@ -187,8 +187,8 @@ def _row(surface: Surface, fit: PowerFit, pair: list[float]) -> SurfaceFit:
     return SurfaceFit(
         surface_radius=surface.radius,
         recordings=tuple(dict.fromkeys(p.name for p in surface.pieces)),
-        samples=surface.samples[0] + surface.samples[2],
-        resting=surface.samples[1],
+        samples=sum(surface.samples),
+        resting=surface.resting,
         coefficient=fit.coefficient,
         coefficient_uncertainty=float(uncertainty[0]),
         exponent=fit.exponent,
@@ -209,14 +209,12 @@ def _row(surface: Surface, fit: PowerFit, pair: list[float]) -> SurfaceFit:
 
 
 def _largest_error(surface: Surface, coefficient: float, exponent: float) -> tuple[float, float]:
-    """Return the largest error [N], without sign, of a sample that loads or unloads, and its deflection [m]."""
+    """Return the largest error [N], without sign, and its deflection [m]."""
     largest, at = 0.0, 0.0
     for piece in surface.pieces:
         for chunk in chunks(piece):
             x = piece.log_deflection[chunk]
-            error = np.abs(piece.force[chunk] - coefficient * np.exp(exponent * x)) * (
-                piece.branch[chunk] != 0
-            )
+            error = np.abs(piece.force[chunk] - coefficient * np.exp(exponent * x))
             worst = int(error.argmax())
             if error[worst] > largest:
                 largest, at = float(error[worst]), float(np.exp(x[worst])) / CM_PER_M
@@ -230,20 +228,21 @@ def _rmse(surfaces: Sequence[Surface], pairs: Array) -> float:
     return float((squares / sum(s.weight_sum for s in surfaces)) ** 0.5)
 
 
-def _law_uncertainties(form: Form, logs: Array, covariance: Array) -> Array:
+def _law_uncertainties(form: Form, joint: JointFit) -> Array:
     """Return the standard uncertainties of the law's A and B on each surface (n, 2)."""
-    finite = np.where(np.isfinite(covariance), covariance, 0.0)
-    by_constants = form.derivatives(logs) @ np.linalg.inv(form.combination())
-    found: Array = np.sqrt(np.einsum("nik,kl,nil->ni", by_constants, finite, by_constants))
+    by_constants = form.derivatives(joint.logs) @ np.linalg.inv(form.combination())
+    variances = np.einsum("nik,kl,nil->ni", by_constants, joint.covariance, by_constants)
+    found: Array = np.sqrt(np.maximum(variances, 0.0))
     return found
 
 
-def _correlation(covariance: Array) -> Array:
-    spread = np.sqrt(np.diag(covariance))
+def _correlation(joint: JointFit) -> Array:
+    """Return the correlation of the constants' logarithms; that of an undetermined constant with others is 0."""
+    spread = joint.uncertainties
     known = np.isfinite(spread) & (spread > 0.0)
     found = np.eye(spread.size)
     both = np.ix_(known, known)
-    found[both] = covariance[both] / np.outer(spread[known], spread[known])
+    found[both] = joint.covariance[both] / np.outer(spread[known], spread[known])
     return found
 
 

@@ -30,15 +30,24 @@ EVALUATIONS_MOST = 200
 class JointFit:
     """What the fit found.
 
-    logs: what the form searches (k,); covariance: of the logarithms of the constants (k, k), inf where undetermined
+    logs: what the form searches (k,)
+    covariance: of the logarithms of the constants (k, k), without the combinations that nothing determines
+    unknown: which constants take part in such a combination (k,)
     condition: of the scaled derivatives, how much worse the worst combination of constants is known than the best
     evaluations: passes through the samples
     """
 
     logs: Array
     covariance: Array
+    unknown: NDArray[np.bool_]
     condition: float
     evaluations: int
+
+    @property
+    def uncertainties(self) -> Array:
+        """Standard uncertainties of the logarithms of the constants (k,), infinite where nothing determines them."""
+        found: Array = np.where(self.unknown, np.inf, np.sqrt(np.maximum(np.diag(self.covariance), 0.0)))
+        return found
 
 
 def joint_fit(
@@ -89,12 +98,13 @@ def joint_fit(
         gtol=1e-15,
         max_nfev=EVALUATIONS_MOST,
     )
-    covariance, condition = _covariance(form, found.x, fits, weights)
-    return JointFit(found.x, covariance, condition, int(found.nfev))
+    return JointFit(found.x, *_covariance(form, found.x, fits, weights), int(found.nfev))
 
 
-def _covariance(form: Form, logs: Array, fits: Sequence[PowerFit], weights: Array) -> tuple[Array, float]:
-    """Return the covariance of the constants' logarithms and the condition of what determines them."""
+def _covariance(
+    form: Form, logs: Array, fits: Sequence[PowerFit], weights: Array
+) -> tuple[Array, NDArray[np.bool_], float]:
+    """Return covariance, unknown and condition of the JointFit."""
     by_logs = form.derivatives(logs)
     bread = np.zeros((logs.size, logs.size))
     meat = np.zeros_like(bread)
@@ -109,6 +119,5 @@ def _covariance(form: Form, logs: Array, fits: Sequence[PowerFit], weights: Arra
     combination = form.combination()
     covariance = combination @ inverse @ meat @ inverse @ combination.T
     unknown = (np.abs(combination @ vectors[:, ~known]) > 1e-6).any(axis=1)
-    covariance[unknown, unknown] = np.inf
     condition = float(np.sqrt(values[-1] / values[0])) if values[0] > 0.0 else np.inf
-    return covariance, condition
+    return covariance, unknown, condition

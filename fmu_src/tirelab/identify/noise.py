@@ -119,7 +119,7 @@ def _power_fit(
         repeats = float(1.0 + 2.0 * ((1.0 - np.arange(1, count) / count) @ correlation[1:]))
         of_block = max(float(b.noise @ b.noise) / float(_expected(b, correlation, 0)[0]), b.floor**2)
         meat += of_block * b.scores.T @ matmul_toeplitz(correlation, b.scores)
-        independent += count * (b.within + of_block) / (of_block * repeats)
+        independent += min(count * (b.within + of_block) / (of_block * repeats), count * b.size)
         variance += (b.within + of_block) / len(blocks)
     inverse = np.linalg.inv(products)
     loops = [b.loop for b in blocks if b.loop is not None]
@@ -149,7 +149,7 @@ def _blocks(piece: Piece, surface: Surface, coefficient: float, exponent: float)
     noise = mean(error)
     within = max(float(error @ error) / error.size - float(np.mean(noise**2)), 0.0)
     del error
-    power *= surface.weights[1 - piece.branch]
+    power *= surface.weights[piece.branch]
     scores = np.empty((edges.size, 2))
     scores[:, 0] = mean(power)
     power *= piece.log_deflection
@@ -188,14 +188,14 @@ def _autocorrelation(blocks: list[_Blocks]) -> NDArray[np.float64]:
     correlation[0] = 1.0
     if not noisy:
         return correlation
-    highest = min(ORDER_MOST, min(b.noise.size for b in noisy) // 10)
+    highest = min(ORDER_MOST, longest // 10)
     total = float(sum(b.noise.size for b in noisy))
     seen = np.zeros(highest + 1)
     for b in noisy:
         seen += b.noise.size / total * _products(b.noise, b.noise, highest) / (b.noise @ b.noise)
     order = _order(seen, total)
     lags = seen[: order + 1]
-    counts = total - len(noisy) * np.arange(order + 1)
+    counts = sum(np.maximum(b.noise.size - np.arange(order + 1), 0) for b in noisy)
     for _ in range(CORRECTIONS if order else 0):
         extended = _extended(lags, longest)
         if extended is None:
@@ -216,7 +216,7 @@ def _autocorrelation(blocks: list[_Blocks]) -> NDArray[np.float64]:
 
 def _products(left: NDArray[np.float64], right: NDArray[np.float64], highest: int) -> NDArray[np.float64]:
     """Return the sums over t of left[t] . right[t + lag] for the lags 0 to `highest`."""
-    return np.array([np.vdot(left[: left.shape[0] - lag], right[lag:]) for lag in range(highest + 1)])
+    return np.array([np.vdot(left[: max(left.shape[0] - lag, 0)], right[lag:]) for lag in range(highest + 1)])
 
 
 def _expected(b: _Blocks, correlation: NDArray[np.float64], highest: int) -> NDArray[np.float64]:
@@ -224,8 +224,9 @@ def _expected(b: _Blocks, correlation: NDArray[np.float64], highest: int) -> NDA
     count = b.noise.size
     seen = matmul_toeplitz(correlation[:count], b.fitted)
     twice = b.fitted @ (b.fitted.T @ seen)
+    lags = np.arange(highest + 1)
     expected: NDArray[np.float64] = (
-        (count - np.arange(highest + 1)) * correlation[: highest + 1]
+        np.maximum(count - lags, 0) * correlation[: highest + 1]
         - _products(b.fitted, seen, highest)
         - _products(seen, b.fitted, highest)
         + _products(b.fitted, twice, highest)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
-from .surfaces import Piece, Surface, describe
+from .surfaces import Piece, Surface
 
 CHUNK = 16384
 """Samples taken together: three rows of them fit into the second-level cache."""
@@ -31,8 +31,11 @@ EXPONENT_STARTS = np.geomspace(0.2, 5.0, 40)
 THINNED = 500
 """Samples of each recording on which the starts are compared."""
 
-STEPS = 60
-PRECISION = 1e-13
+STEPS = 100
+"""Most steps of the exponent."""
+
+PRECISION, PRECISION_LEAST = 1e-12, 1e-6
+"""Step of the exponent after which there is no other, and the largest last step of a fit that has come to its end."""
 
 
 def inner_products(surface: Surface, coefficient: float, exponent: float) -> NDArray[np.float64]:
@@ -48,7 +51,7 @@ def inner_products(surface: Surface, coefficient: float, exponent: float) -> NDA
             np.multiply(m[0], x, out=m[1])
             np.multiply(m[0], -coefficient, out=m[2])
             m[2] += piece.force[chunk]
-            np.multiply(m, surface.weights[1 - piece.branch[chunk]], out=w)
+            np.multiply(m, surface.weights[piece.branch[chunk]], out=w)
             total += w @ m.T
     return total
 
@@ -73,27 +76,31 @@ def fit_power(surface: Surface) -> tuple[float, float]:
         best = squares
         coefficient += pr / pp
         curvature = coefficient * (ll - pl * pl / pp)
+        if not curvature > 0.0:
+            step = np.inf
+            break
         step = (lr - pl * pr / pp) / curvature
         if abs(step) < PRECISION:
             break
         limited = float(np.clip(exponent + step, *EXPONENT_BOUNDS))
+        if limited == exponent:
+            break
         step, exponent = limited - exponent, limited
         coefficient -= step * coefficient * pl / pp
-    if coefficient <= 0.0 or not EXPONENT_BOUNDS[0] < exponent < EXPONENT_BOUNDS[1]:
-        raise TirelabError(
-            f"{', '.join(p.name for p in surface.pieces)} ({describe(surface.radius)}): the force does not grow as a "
-            f"power of the deflection between {EXPONENT_BOUNDS[0]:g} and {EXPONENT_BOUNDS[1]:g}; check which columns "
-            "are deflection and force, and their zeros"
-        )
-    return float(coefficient), float(exponent)
+    if abs(step) < PRECISION_LEAST and coefficient > 0.0:
+        return float(coefficient), float(exponent)
+    raise TirelabError(
+        f"{surface.where}: the force does not grow as a power of the deflection between {EXPONENT_BOUNDS[0]:g} and "
+        f"{EXPONENT_BOUNDS[1]:g}; check which columns are deflection and force, and their zeros"
+    )
 
 
 def _start(surface: Surface) -> float:
     """Return the best of EXPONENT_STARTS on every so-manieth sample: no logarithm of a noisy force is taken."""
-    fits = np.zeros((3, EXPONENT_STARTS.size))
+    fits = np.zeros((2, EXPONENT_STARTS.size))
     for piece in surface.pieces:
         thin = slice(None, None, max(1, piece.force.size // THINNED))
-        weight = surface.weights[1 - piece.branch[thin]]
+        weight = surface.weights[piece.branch[thin]]
         power = np.exp(np.outer(EXPONENT_STARTS, piece.log_deflection[thin]))
         fits[0] += power**2 @ weight
         fits[1] += power @ (weight * piece.force[thin])

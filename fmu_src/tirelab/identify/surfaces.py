@@ -2,7 +2,7 @@
 
 Only the samples with a compressed tire (deflection > 0) are kept: elsewhere the law is 0 whatever its constants.
 Loading and unloading count alike, as in the article: the samples of each branch get the weight that makes the
-branches' sums equal, and the samples at rest get none.
+branches' sums equal. Samples at rest between the branches are left out and counted.
 """
 
 from __future__ import annotations
@@ -26,16 +26,20 @@ CM_PER_M = 100.0
 SAMPLES_LEAST = 20
 """Fewest samples with a compressed tire from which A and B are taken."""
 
+SPAN_LEAST = 0.05
+"""Least span of the deflection's logarithm: where it stays within 5 % there is no exponent to see."""
+
 STRETCHES_MOST = 100
 """Most stretches of constant radius in one recording: with more it was made on terrain, not on surfaces."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """One recording's samples with a compressed tire on one surface, in the order of time.
+    """One recording's samples of a tire being compressed or released on one surface, in the order of time.
 
-    log_deflection: ln of the deflection in cm (n,); force: [N] (n,); branch: LOADING, RESTING or UNLOADING (n,)
-    interval: median time between samples [s]
+    log_deflection: ln of the deflection in cm (n,); force: [N] (n,); branch: LOADING or UNLOADING (n,)
+    interval: median time between samples [s]; resting: samples left out because the tire was held
+    deflection_max: [m] and force_max: [N], those at rest included
     """
 
     name: str
@@ -43,51 +47,62 @@ class Piece:
     force: NDArray[np.float64]
     branch: NDArray[np.int8]
     interval: float
+    resting: int
+    deflection_max: float
+    force_max: float
 
 
 @dataclass(frozen=True)
 class Surface:
-    """One surface and what was recorded on it; radius [m]: convex > 0, concave < 0, flat infinite."""
+    """One surface and what was recorded on it.
+
+    radius: [m] convex > 0, concave < 0, flat infinite; pieces: none of them empty
+    resting: number of samples left out because the tire was held
+    """
 
     radius: float
     pieces: tuple[Piece, ...]
+    resting: int
 
     @property
     def curvature(self) -> float:
         """1/R [1/m]."""
         return 1.0 / self.radius
 
+    @property
+    def where(self) -> str:
+        """The recordings' names and the surface, for sentences."""
+        return _where(self.radius, self.pieces)
+
     @cached_property
-    def samples(self) -> tuple[int, int, int]:
-        """Numbers of samples that load, rest and unload."""
+    def samples(self) -> tuple[int, int]:
+        """Numbers of samples that load and unload."""
         loading = sum(int(np.count_nonzero(p.branch == LOADING)) for p in self.pieces)
-        resting = sum(int(np.count_nonzero(p.branch == RESTING)) for p in self.pieces)
-        total = sum(p.branch.size for p in self.pieces)
-        return loading, resting, total - loading - resting
+        return loading, sum(p.branch.size for p in self.pieces) - loading
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
-        """Weights of a sample that loads, rests, unloads (3,), to be indexed by 1 - branch."""
-        loading, _, unloading = self.samples
+        """Weights (3,) of a sample that unloads and one that loads, to be indexed by branch: -1 and 1."""
+        loading, unloading = self.samples
         if loading == 0 or unloading == 0:
-            return np.array([1.0, 0.0, 1.0])
+            return np.array([0.0, 1.0, 1.0])
         half = (loading + unloading) / 2.0
-        return np.array([half / loading, 0.0, half / unloading])
+        return np.array([0.0, half / loading, half / unloading])
 
     @cached_property
     def weight_sum(self) -> float:
-        """Sum of the weights: the number of samples that load or unload."""
-        return float(self.samples[0] + self.samples[2])
+        """Sum of the weights: the number of samples."""
+        return float(sum(self.samples))
 
     @cached_property
     def deflection_max(self) -> float:
         """Largest deflection [m]."""
-        return max(math.exp(float(p.log_deflection.max())) for p in self.pieces) / CM_PER_M
+        return max(p.deflection_max for p in self.pieces)
 
     @cached_property
     def force_max(self) -> float:
         """Largest force [N]."""
-        return max(float(p.force.max()) for p in self.pieces)
+        return max(p.force_max for p in self.pieces)
 
 
 def surfaces_of(recordings: Iterable[Recording]) -> tuple[Surface, ...]:
@@ -105,9 +120,7 @@ def surfaces_of(recordings: Iterable[Recording]) -> tuple[Surface, ...]:
         raise TirelabError(
             "no recording has a compressed tire (deflection > 0); name recordings of a tire under load"
         )
-    surfaces = tuple(Surface(radius, tuple(pieces)) for radius, pieces in found.items())
-    for surface in surfaces:
-        _check(surface)
+    surfaces = [_surface(radius, pieces) for radius, pieces in found.items()]
     return tuple(sorted(surfaces, key=lambda surface: -surface.curvature))
 
 
@@ -156,32 +169,45 @@ def _piece(recording: Recording, stretch: slice) -> Piece | None:
     if not loaded.any():
         return None
     branch = branches(time, deflection)
-    log_deflection = deflection[loaded]
+    moving = loaded & (branch != RESTING)
+    log_deflection = deflection[moving]
     log_deflection *= CM_PER_M
     np.log(log_deflection, out=log_deflection)
     interval = float(np.median(np.diff(time))) if time.size > 1 else 1.0
-    return Piece(recording.name, log_deflection, force[loaded], branch[loaded], interval)
+    return Piece(
+        name=recording.name,
+        log_deflection=log_deflection,
+        force=force[moving],
+        branch=branch[moving],
+        interval=interval,
+        resting=int(np.count_nonzero(loaded)) - log_deflection.size,
+        deflection_max=float(deflection.max()),
+        force_max=float(force[loaded].max()),
+    )
 
 
-def _check(surface: Surface) -> None:
-    loading, _, unloading = surface.samples
-    where = f"{', '.join(p.name for p in surface.pieces)} ({describe(surface.radius)})"
-    if loading + unloading < SAMPLES_LEAST:
+def _surface(radius: float, pieces: list[Piece]) -> Surface:
+    """Return the surface that `pieces` were recorded on, or raise TirelabError where they cannot tell A and B."""
+    where = _where(radius, pieces)
+    count = sum(p.force.size for p in pieces)
+    if count < SAMPLES_LEAST:
         raise TirelabError(
-            f"{where}: only {loading + unloading} samples with a tire being compressed or released; A and B need at "
-            f"least {SAMPLES_LEAST}"
+            f"{where}: only {count} samples with a tire being compressed or released; A and B need at least "
+            f"{SAMPLES_LEAST}"
         )
-    if (
-        max(p.log_deflection.max() for p in surface.pieces)
-        - min(p.log_deflection.min() for p in surface.pieces)
-        < 0.05
-    ):
+    surface = Surface(radius, tuple(p for p in pieces if p.force.size), sum(p.resting for p in pieces))
+    logs = [p.log_deflection for p in surface.pieces]
+    if max(x.max() for x in logs) - min(x.min() for x in logs) < SPAN_LEAST:
         raise TirelabError(
             f"{where}: the deflection stays at {1e3 * surface.deflection_max:.4g} mm; A and B need it to vary"
         )
-    force = sum(float(p.force.sum()) for p in surface.pieces)
-    if force <= 0.0:
+    if sum(float(p.force.sum()) for p in pieces) <= 0.0:
         raise TirelabError(
             f"{where}: the force on the compressed tire is negative on average; compression must be positive, so turn "
             "the sign of the force"
         )
+    return surface
+
+
+def _where(radius: float, pieces: Sequence[Piece]) -> str:
+    return f"{', '.join(dict.fromkeys(p.name for p in pieces))} ({describe(radius)})"
