@@ -59,7 +59,7 @@ def command(
 
         found = identify(read, law=law, name=name, progress=show)
     _print(console, read, found)
-    beside = out.with_name(f"{out.stem}.identification.json")
+    beside = out.parent / f"{out.stem}.identification.json"
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         write_tire(found.tire, out)
