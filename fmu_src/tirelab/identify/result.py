@@ -152,23 +152,27 @@ def statements(
 ) -> list[str]:
     """Return the sentences about what the surfaces do not determine; uncertainties of the law's A and B (n, 2)."""
     found = [c.statement() for c in constants if c.standing != "determined"]
-    if found:
+    if found and any(c.name.endswith("_decay") for c in constants):
         found.append(
             "such constants make up for each other, so the law itself is known where it was measured: "
-            + "; ".join(
-                f"on {describe(surfaces[i].surface_radius)}, A = {surfaces[i].law_coefficient:.4g} ± {A:.2g} N/cm^B "
-                f"and B = {surfaces[i].law_exponent:.4g} ± {B:.2g}"
-                for i, (A, B) in ((i, law_uncertainties[i]) for i in sorted({0, len(surfaces) - 1}))
-            )
+            + "; ".join(_known(surfaces[i], *law_uncertainties[i]) for i in sorted({0, len(surfaces) - 1}))
         )
     if freedom and chi_square / freedom > 1.0 + 4.0 * math.sqrt(2.0 / freedom):
         worst = max(surfaces, key=lambda s: s.law_rmse - s.rmse)
         found.append(
             f"the law does not follow all surfaces within their noise: on {describe(worst.surface_radius)} it leaves "
             f"{worst.law_rmse:.3g} N where A and B of that surface alone leave {worst.rmse:.3g} N; the uncertainties "
-            f"are {math.sqrt(chi_square / freedom):.2g} times wider for it"
+            f"are {digits(math.sqrt(chi_square / freedom), 2)} times wider for it"
         )
     return found
+
+
+def _known(surface: SurfaceFit, coefficient_uncertainty: float, exponent_uncertainty: float) -> str:
+    return (
+        f"on {describe(surface.surface_radius)}, A = {digits(surface.law_coefficient, 4)} ± "
+        f"{digits(coefficient_uncertainty, 2)} N/cm^B and B = {digits(surface.law_exponent, 4)} ± "
+        f"{digits(exponent_uncertainty, 2)}"
+    )
 
 
 def recording_notes(surfaces: tuple[SurfaceFit, ...], one_sided: tuple[bool, ...]) -> list[str]:
