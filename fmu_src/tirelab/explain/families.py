@@ -1,0 +1,346 @@
+"""Every explanation as columns: what each effect, in every form its physics allows, would add to the force.
+
+A family is linear in its coefficients around a point (the elastic law and the shifts found so far), so that thousands of
+sets can be compared on one matrix of products. Which form an effect takes (Dahl or Iwan elements, one relaxation time
+or a spectrum, sharp knee or soft) is left to the coefficients of its own family.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+from scipy.signal import lfilter
+
+from .motion import FloatArray
+from .scene import DEEP_IN_CM, Record, Scene
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where the columns are taken.
+
+    shape (surfaces, 4): coefficients of log(force/law) in powers of the logarithm of the deflection
+    offset [m]; compliance [m/N]; lag [s] and the number of first-order stages that share it, 0 for a pure delay
+    """
+
+    shape: FloatArray
+    offset: float = 0.0
+    compliance: float = 0.0
+    lag: float = 0.0
+    stages: int = 0
+
+
+@dataclass(frozen=True)
+class Place:
+    """One recording at a point: deflection of the tire, elastic force [N], its tangents, and the scales."""
+
+    record: Record
+    scene: Scene
+    deflection: FloatArray
+    elastic: FloatArray
+    stiffness: FloatArray
+    logarithm: FloatArray
+    reading: FloatArray = field(repr=False)
+
+
+POWERS = 4
+
+
+def logarithm_of(deflection: FloatArray, deepest: float) -> FloatArray:
+    """Return log(x / x_half) with x_half half the largest deflection, held below DEEP_IN_CM."""
+    return np.log(np.maximum(100.0 * deflection, DEEP_IN_CM) / (50.0 * deepest))
+
+
+def place_at(record: Record, scene: Scene, point: Point) -> Place:
+    """Return the recording at the point: x = x_read + offset - compliance * force, force = law * exp(shape)."""
+    x = record.motion.deflection + point.offset
+
+    def elastic(deflection: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        logarithm = logarithm_of(deflection, scene.deepest)
+        coefficients = record.surface @ point.shape
+        exponent = np.zeros_like(deflection)
+        slope = np.zeros_like(deflection)
+        for power in range(POWERS):
+            exponent += coefficients[:, power] * logarithm**power
+            if power:
+                slope += power * coefficients[:, power] * logarithm ** (power - 1)
+        factor = np.exp(np.clip(exponent, -3.0, 3.0))
+        force = record.elastic(deflection) * factor
+        loaded = np.maximum(deflection, 1e-2 * DEEP_IN_CM)
+        stiffness = np.where(deflection > 0.0, record.stiffness(deflection) * factor + force * slope / loaded, 0.0)
+        return force, stiffness, logarithm
+
+    deflection = x
+    if point.compliance != 0.0:
+        for _ in range(6):
+            force, stiffness, _ = elastic(deflection)
+            gap = deflection + point.compliance * force - x
+            deflection = deflection - gap / np.maximum(1.0 + point.compliance * stiffness, 0.2)
+    force, stiffness, logarithm = elastic(deflection)
+    if point.compliance != 0.0:
+        stiffness = stiffness / np.maximum(1.0 + point.compliance * stiffness, 0.2)
+    return Place(record, scene, deflection, force, stiffness, logarithm, x)
+
+
+Builder = Callable[[Place], FloatArray]
+
+
+@dataclass(frozen=True)
+class Family:
+    """One explanation: its columns, how they group into variants, and the sign that its physics demands.
+
+    variants: lists of column numbers, one of which is used; None means all columns together
+    sign: +1 or -1 where the projection on the first variant's leading column must be so, 0 where both are allowed
+    agnostic: True for a smooth function of coordinates that is no physics of the catalogue
+    after_lag: True where the columns are added behind the lag of the force's reading
+    """
+
+    name: str
+    build: Builder
+    variants: Callable[[int], list[list[int]]] = lambda count: [list(range(count))]
+    sign: float = 0.0
+    agnostic: bool = False
+    after_lag: bool = False
+
+
+def one_each(count: int) -> list[list[int]]:
+    """Return variants of one column each."""
+    return [[i] for i in range(count)]
+
+
+def _law(powers: tuple[int, ...]) -> Builder:
+    def build(p: Place) -> FloatArray:
+        return np.stack(
+            [w * p.elastic * p.logarithm**k for w in p.record.surface.T for k in powers], axis=1
+        )
+
+    return build
+
+
+def _dahl(deflection: FloatArray, reach: float) -> FloatArray:
+    """Return z with dz/dx = (sign(dx) - z)/reach, exactly between reversals."""
+    travel = np.diff(deflection, prepend=deflection[0])
+    return dahl_states(deflection, travel, reach)
+
+
+def dahl_states(deflection: FloatArray, travel: FloatArray, reach: float) -> FloatArray:
+    """Return Dahl's state by the recursion z <- s + (z - s) exp(-|dx|/reach)."""
+    decay = np.exp(-np.abs(travel) / reach)
+    decay[deflection <= 0.0] = 0.0
+    drive = np.sign(travel) * (1.0 - decay)
+    drive[deflection <= 0.0] = 0.0
+    return linear_recursion(decay, drive)
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def linear_recursion(decay: FloatArray, drive: FloatArray) -> FloatArray:
+    """Return z with z[i] = decay[i] z[i-1] + drive[i], z[-1] = 0."""
+    state = np.empty_like(drive)
+    z = 0.0
+    for i in range(drive.size):
+        z = decay[i] * z + drive[i]
+        state[i] = z
+    return state
+
+
+REACHES = (1e-4, 3e-4, 8e-4, 2e-3, 5e-3)
+
+
+def _friction(p: Place) -> FloatArray:
+    load = p.elastic / p.scene.strongest
+    states = [_dahl(p.record.motion.deflection, reach) for reach in REACHES]
+    return np.stack([z * share for z in states for share in (1.0, load)], axis=1)
+
+
+def _viscous(p: Place) -> FloatArray:
+    rate = np.where(p.deflection > 0.0, p.record.motion.rate, 0.0)
+    depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
+    return np.stack([rate, rate * depth, rate * depth**2], axis=1)
+
+
+def relaxation_times(scene: Scene) -> FloatArray:
+    """Return the relaxation times [s] that the recordings can show, a factor of about 2.5 apart."""
+    low, high = 2.0 * scene.finest, 0.7 * scene.longest
+    return np.geomspace(low, high, max(2, int(np.ceil(np.log(high / low) / np.log(2.5))) + 1))
+
+
+def high_pass(time: FloatArray, signal: FloatArray, time_constant: float) -> FloatArray:
+    """Return the Maxwell force of a signal, dq/dt = ds/dt - q/tau, exact for a signal linear between samples."""
+    interval = np.diff(time, prepend=time[0])
+    rise = np.diff(signal, prepend=signal[0])
+    ratio = interval / time_constant
+    gain = np.where(ratio > 1e-9, -np.expm1(-ratio) / np.maximum(ratio, 1e-9), 1.0)
+    if np.ptp(interval[1:]) <= 1e-3 * interval[-1]:
+        return np.asarray(lfilter([gain[-1]], [1.0, -np.exp(-ratio[-1])], rise))
+    return linear_recursion(np.exp(-ratio), gain * rise)
+
+
+def _relaxation(p: Place) -> FloatArray:
+    return np.stack([high_pass(p.record.time, p.elastic, tau) for tau in relaxation_times(p.scene)], axis=1)
+
+
+def _mullins(p: Place) -> FloatArray:
+    deepest = np.maximum.accumulate(p.deflection)
+    below = np.clip(1.0 - p.deflection / np.maximum(deepest, 1e-9), 0.0, 1.0)
+    return np.stack([p.elastic * below**k for k in (0.25, 0.5, 1.0)] , axis=1)
+
+
+KNEES = np.linspace(0.40, 0.985, 40)
+
+
+def _bottoming(p: Place) -> FloatArray:
+    depth = p.deflection / p.scene.deepest
+    beyond = [np.maximum(depth - knee, 0.0) for knee in KNEES]
+    return np.stack([*beyond, *(b**2 for b in beyond)], axis=1)
+
+
+def _soft_knees(count: int) -> list[list[int]]:
+    """Return one variant for each knee: sharp there, soft over the next ones, stiffening beyond."""
+    last = KNEES.size - 1
+    return [[i, min(i + 2, last), i + KNEES.size] if i + 2 <= last else [i, i + KNEES.size] for i in range(KNEES.size)]
+
+
+CEILINGS = np.linspace(0.30, 0.99, 40)
+
+
+def _saturation(p: Place) -> FloatArray:
+    force = p.elastic / p.scene.strongest
+    return np.stack([np.maximum(force - c, 0.0) for c in CEILINGS], axis=1)
+
+
+def _lag(p: Place) -> FloatArray:
+    """First and second derivative of the elastic force: every short lag is -tau1 F' + tau2 F'' at first."""
+    first = np.gradient(p.elastic, p.record.time)
+    return np.stack([first, np.gradient(first, p.record.time)], axis=1)
+
+
+def _warm(p: Place) -> FloatArray:
+    part = p.record.time / p.scene.longest
+    return np.stack([-p.elastic * np.expm1(-part / share) for share in (0.03, 0.1, 0.3)], axis=1)
+
+
+def _leak(p: Place) -> FloatArray:
+    part = p.record.time / p.scene.longest
+    return np.stack([p.elastic * part, p.elastic * part**2], axis=1)
+
+
+CATALOGUE_FAMILIES: tuple[Family, ...] = (
+    Family("deflection_offset", lambda p: p.stiffness[:, None]),
+    Family("force_offset", lambda p: np.ones((p.elastic.size, 1)), after_lag=True),
+    Family("rate_independent_hysteresis", _friction, sign=1.0),
+    Family("viscous_damping", _viscous, sign=1.0),
+    Family("viscoelastic_relaxation", _relaxation, sign=1.0),
+    Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),
+    Family("gas_compression", lambda p: (p.elastic * np.maximum(p.deflection, 0.0))[:, None], sign=1.0),
+    Family("bottoming", _bottoming, _soft_knees, sign=1.0),
+    Family("mullins_softening", _mullins, sign=-1.0),
+    Family("pressure_leak", _leak, sign=-1.0),
+    Family("warm_up", _warm, sign=1.0),
+    Family("inertia", lambda p: p.record.motion.acceleration[:, None], sign=1.0),
+    Family("force_lag", _lag, sign=-1.0),
+    Family("saturation", _saturation, one_each, sign=-1.0),
+)
+
+LAW_FAMILIES: tuple[Family, ...] = (Family("recalibration", _law((0, 1))), Family("shape", _law((2, 3))))
+
+
+def _cosines(values: FloatArray, first: int, last: int) -> list[FloatArray]:
+    return [np.cos(np.pi * j * values) for j in range(first, last + 1)]
+
+
+def _fine_deflection(p: Place) -> FloatArray:
+    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
+    return np.stack(_cosines(depth, 3, 26), axis=1)
+
+
+def _branch(p: Place) -> FloatArray:
+    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
+    return np.stack([p.record.motion.direction * c for c in _cosines(depth, 0, 6)], axis=1)
+
+
+def _rate_scale(p: Place) -> float:
+    return float(np.sqrt(np.mean(p.record.motion.rate ** 2))) + 1e-12
+
+
+def _rate(p: Place) -> FloatArray:
+    w = np.tanh(p.record.motion.rate / (2.0 * _scale(p, "rate")))
+    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
+    return np.stack([w**k * c for k in (1, 2, 3, 4, 5) for c in (1.0, depth, depth**2)], axis=1)
+
+
+def _scale(p: Place, what: str) -> float:
+    return max(float(np.sqrt(np.mean(getattr(r.motion, what) ** 2))) for r in p.scene.records) + 1e-12
+
+
+def _rate_and_deflection(p: Place) -> FloatArray:
+    w = np.tanh(p.record.motion.rate / (2.0 * _scale(p, "rate")))
+    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
+    return np.stack([w**k * c for k in (1, 2) for c in _cosines(depth, 1, 12)], axis=1)
+
+
+def _acceleration(p: Place) -> FloatArray:
+    w = np.tanh(p.record.motion.acceleration / (2.0 * _scale(p, "acceleration")))
+    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
+    return np.stack([w**k * c for k in (1, 2, 3) for c in (1.0, depth)], axis=1)
+
+
+def _time_scale(p: Place) -> FloatArray:
+    part = p.record.time / p.record.time[-1]
+    return np.stack([p.elastic * c for c in _cosines(part, 1, 16)], axis=1)
+
+
+def _time_added(p: Place) -> FloatArray:
+    part = p.record.time / p.record.time[-1]
+    return np.stack(_cosines(part, 1, 10), axis=1)
+
+
+def _jump(p: Place) -> FloatArray:
+    part = p.record.time / p.record.time[-1]
+    return np.stack([p.elastic * (part > at) for at in np.linspace(0.04, 0.96, 24)], axis=1)
+
+
+def _history(p: Place) -> FloatArray:
+    reach = np.clip(np.maximum.accumulate(p.deflection) / p.scene.deepest, 0.0, 1.0)
+    turned = np.clip(p.record.motion.turned / p.scene.deepest, 0.0, 1.0)
+    return np.stack(
+        [p.elastic * c for c in _cosines(reach, 1, 4)]
+        + [p.record.motion.direction * c for c in _cosines(turned, 1, 5)],
+        axis=1,
+    )
+
+
+AGNOSTIC_FAMILIES: tuple[Family, ...] = (
+    Family("deflection", _fine_deflection, agnostic=True),
+    Family("direction", _branch, agnostic=True),
+    Family("rate", _rate, agnostic=True),
+    Family("rate and deflection", _rate_and_deflection, agnostic=True),
+    Family("acceleration", _acceleration, agnostic=True),
+    Family("time", _time_scale, agnostic=True),
+    Family("time, added", _time_added, agnostic=True, after_lag=True),
+    Family("jump", _jump, one_each, agnostic=True),
+    Family("history", _history, agnostic=True),
+)
+
+
+def lagged(time: FloatArray, values: FloatArray, lag: float, stages: int) -> FloatArray:
+    """Return `values` (n, k) read through a lag [s]: a pure delay, or `stages` equal first-order stages."""
+    if lag <= 0.0:
+        return values
+    if stages == 0:
+        step = float(np.median(np.diff(time)))
+        whole = int(lag / step)
+        part = lag / step - whole
+        padded = np.concatenate([np.repeat(values[:1], whole + 1, axis=0), values])
+        count = values.shape[0]
+        return np.asarray((1.0 - part) * padded[1 : count + 1] + part * padded[:count])
+    # Each stage answers exactly to a signal linear between samples.
+    step = float(np.median(np.diff(time)))
+    ratio = step * stages / lag
+    decay = np.exp(-ratio)
+    gain = -np.expm1(-ratio) / ratio
+    for _ in range(stages):
+        values, _ = lfilter([1.0 - gain, gain - decay], [1.0, -decay], values, axis=0, zi=gain * values[:1])
+    return np.asarray(values)

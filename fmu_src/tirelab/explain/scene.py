@@ -1,0 +1,110 @@
+"""The recordings of one diagnosis, brought to the form that every candidate needs: motion, law, and what to fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from radialtire import FLAT_RADIUS, TireModel
+
+from .motion import FloatArray, Motion, motion_of
+
+DEEP_IN_CM = 1e-2
+"""Below this deflection [cm] the logarithm of the deflection is held: the force there is below every noise."""
+
+MOST_FREE_SURFACES = 12
+"""Recordings with more radii than this (terrain) share these many support points of the law's shape."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """One recording as the candidates see it.
+
+    time [s], force [N] as read; motion; surface: weights (n, surfaces) of the law's support points, rows sum to 1;
+    coefficient A [N/cm^B], exponent B [1] of the believed law; keep: indices of the samples that are compared
+    """
+
+    time: FloatArray
+    force: FloatArray
+    motion: Motion
+    surface: FloatArray
+    coefficient: FloatArray
+    exponent: FloatArray
+
+    @property
+    def step(self) -> float:
+        """Median time between samples [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    def elastic(self, deflection: FloatArray) -> FloatArray:
+        """Return the believed law's force [N] at `deflection` [m], sample by sample."""
+        return self.coefficient * np.maximum(100.0 * deflection, 0.0) ** self.exponent
+
+    def stiffness(self, deflection: FloatArray) -> FloatArray:
+        """Return the believed law's tangent dF/dx [N/m] at `deflection` [m]."""
+        loaded = np.maximum(100.0 * deflection, DEEP_IN_CM)
+        slope = 100.0 * self.coefficient * self.exponent * loaded ** (self.exponent - 1.0)
+        return np.where(deflection > 0.0, slope, 0.0)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All recordings of one diagnosis with the scales that make their columns comparable.
+
+    radii [m]: support points of the law's shape; deepest [m] and strongest [N]: largest deflection and elastic force
+    longest [s]: duration of the longest recording; finest [s]: shortest sampling step
+    """
+
+    records: tuple[Record, ...]
+    radii: tuple[float, ...]
+    deepest: float
+    strongest: float
+    longest: float
+    finest: float
+
+
+def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]], tire: TireModel) -> Scene:
+    """Return the scene of recordings given as time [s], deflection [m], surface radius [m] and force [N]."""
+    radii = _support(np.concatenate([np.unique(r) for _, _, r, _ in recordings]))
+    records = []
+    for time, deflection, radius, force in recordings:
+        distinct, inverse = np.unique(radius, return_inverse=True)
+        pairs = np.array([tire.law.coefficients(float(r)) for r in distinct])
+        weights = np.stack([_hats(float(r), radii) for r in distinct])
+        records.append(
+            Record(
+                time - time[0],
+                force,
+                motion_of(time, deflection),
+                weights[inverse],
+                pairs[inverse, 0],
+                pairs[inverse, 1],
+            )
+        )
+    return Scene(
+        tuple(records),
+        radii,
+        max(float(r.motion.deflection.max()) for r in records),
+        max(float(r.elastic(r.motion.deflection).max()) for r in records),
+        max(float(r.time[-1]) for r in records),
+        min(r.step for r in records),
+    )
+
+
+def _curvature(radius: float) -> float:
+    return 0.0 if abs(radius) >= FLAT_RADIUS else 1.0 / radius
+
+
+def _support(radii: FloatArray) -> tuple[float, ...]:
+    distinct = sorted({_curvature(float(r)) for r in radii})
+    if len(distinct) > MOST_FREE_SURFACES:
+        distinct = list(np.quantile(distinct, np.linspace(0.0, 1.0, MOST_FREE_SURFACES)))
+    return tuple(np.inf if c == 0.0 else 1.0 / c for c in distinct)
+
+
+def _hats(radius: float, radii: tuple[float, ...]) -> FloatArray:
+    """Return the weights of linear interpolation over the curvature at `radius` [m]."""
+    bends = np.array([_curvature(r) for r in radii])
+    here = _curvature(radius)
+    return np.array([np.interp(here, bends, row) for row in np.eye(bends.size)])
