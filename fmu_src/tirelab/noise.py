@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
-from .explain.motion import FloatArray
+from .explain.motion import BoolArray, FloatArray, IndexArray
 
 ORDERS = (0, 1, 2, 4, 8, 16)
 """Orders of autoregression tried; 16 holds a slow drift and a mains hum at once."""
@@ -60,6 +60,17 @@ class Noise:
         return np.asarray(scaled * self.weight[across])
 
 
+    def whitened_at(self, values: FloatArray, rows: IndexArray) -> FloatArray:
+        """Return the rows `rows` of `whitened(values)`, without the others."""
+        across = (slice(None),) + (None,) * (values.ndim - 1)
+        inverse = 1.0 / (self.innovation * self.spread)
+        result = np.zeros((rows.size, *values.shape[1:]))
+        for back, coefficient in enumerate(self.filter):
+            source = np.maximum(rows - back, 0)
+            result += (coefficient * inverse[source])[across] * values[source]
+        return result * self.weight[rows][across]
+
+
 def first_guess(residual: FloatArray) -> Noise:
     """Return white noise of the size that the second differences of a residual [N] show."""
     sigma = MEDIAN_TO_SIGMA * float(np.median(np.abs(np.diff(residual, 2)))) / np.sqrt(6.0)
@@ -68,12 +79,15 @@ def first_guess(residual: FloatArray) -> Noise:
     return Noise(sigma, sigma, np.ones(1), ones, ones)
 
 
-def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: float) -> Noise:
+def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: float, resolved: BoolArray) -> Noise:
     """Return the noise whose sample is `residual` [N], left by a model of `freedom` effective coefficients.
 
-    through_deflection [N]: stiffness times the deflection's noise, sample by sample
+    through_deflection [N]: stiffness times the deflection's noise, sample by sample; resolved: False where the motion
+    turns within a sample
     """
     count = residual.size
+    if np.mean(resolved) < 0.8:
+        resolved = np.ones(count, dtype=bool)
     median_square = (MEDIAN_TO_SIGMA * float(np.median(np.abs(residual)))) ** 2
     floor = max(median_square - float(np.median(through_deflection**2)), 0.05 * median_square, 1e-18)
     spread = np.sqrt((floor + through_deflection**2) / (floor + float(np.median(through_deflection**2))))
@@ -82,12 +96,15 @@ def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: floa
     filter_ = _autoregression(np.clip(scaled, -4.0 * robust, 4.0 * robust))
     innovations = lfilter(filter_, [1.0], scaled)
     sigma = MEDIAN_TO_SIGMA * float(np.median(np.abs(innovations)))
-    weight = np.where(np.abs(innovations) > SPIKE * sigma, 0.0, 1.0)
+    # Two samples in a row at most: what lasts longer is no spike but something left out.
+    out = np.abs(innovations) > SPIKE * sigma
+    lone = out & ~(np.roll(out, 1) & np.roll(out, -1)) & ~(np.roll(out, 1) & np.roll(out, 2)) & ~(np.roll(out, -1) & np.roll(out, -2))
+    weight = np.where(lone | ~resolved, 0.0, 1.0)
     weight[: filter_.size - 1] = 0.0
     corrected = count / max(count - freedom, 0.2 * count)
     kept = weight > 0.0
     innovation = np.sqrt(corrected * float(np.mean(innovations[kept] ** 2)))
-    level = np.sqrt(corrected * float(np.mean(residual**2)))
+    level = np.sqrt(corrected * float(np.mean(residual[kept] ** 2)))
     return Noise(float(innovation), float(level), filter_, spread, weight)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from scipy.signal import lfilter
 
-from .motion import FloatArray
+from .motion import BoolArray, FloatArray
 from .scene import DEEP_IN_CM, Record, Scene
 
 
@@ -24,6 +24,7 @@ class Point:
 
     shape (surfaces, 4): coefficients of log(force/law) in powers of the logarithm of the deflection
     offset [m]; compliance [m/N]; lag [s] and the number of first-order stages that share it, 0 for a pure delay
+    lifted: for each recording, where the tire has lost the ground: it cannot pull, so that nothing acts there
     """
 
     shape: FloatArray
@@ -31,6 +32,7 @@ class Point:
     compliance: float = 0.0
     lag: float = 0.0
     stages: int = 0
+    lifted: tuple[BoolArray, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -120,19 +122,18 @@ def _law(powers: tuple[int, ...]) -> Builder:
     return build
 
 
-def _dahl(deflection: FloatArray, reach: float) -> FloatArray:
-    """Return z with dz/dx = (sign(dx) - z)/reach, exactly between reversals."""
+def dahl(deflection: FloatArray, reach: float, forgets: bool) -> FloatArray:
+    """Return z with dz/dx = (sign(dx) - z)/reach, exact between reversals.
+
+    forgets: True where a tire that has left the ground starts anew, False where it comes back as it left
+    """
     travel = np.diff(deflection, prepend=deflection[0])
-    return dahl_states(deflection, travel, reach)
-
-
-def dahl_states(deflection: FloatArray, travel: FloatArray, reach: float) -> FloatArray:
-    """Return Dahl's state by the recursion z <- s + (z - s) exp(-|dx|/reach)."""
     decay = np.exp(-np.abs(travel) / reach)
-    decay[deflection <= 0.0] = 0.0
     drive = np.sign(travel) * (1.0 - decay)
-    drive[deflection <= 0.0] = 0.0
-    return linear_recursion(decay, drive)
+    if forgets:
+        decay[deflection <= 0.0] = 0.0
+        drive[deflection <= 0.0] = 0.0
+    return np.asarray(linear_recursion(decay, drive))
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -151,8 +152,14 @@ REACHES = (1e-4, 3e-4, 8e-4, 2e-3, 5e-3)
 
 def _friction(p: Place) -> FloatArray:
     load = p.elastic / p.scene.strongest
-    states = [_dahl(p.record.motion.deflection, reach) for reach in REACHES]
+    states = [
+        dahl(p.record.motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES
+    ]
     return np.stack([z * share for z in states for share in (1.0, load)], axis=1)
+
+
+def _both_memories(count: int) -> list[list[int]]:
+    return [list(range(count // 2)), list(range(count // 2, count))]
 
 
 def _viscous(p: Place) -> FloatArray:
@@ -185,22 +192,36 @@ def _relaxation(p: Place) -> FloatArray:
 def _mullins(p: Place) -> FloatArray:
     deepest = np.maximum.accumulate(p.deflection)
     below = np.clip(1.0 - p.deflection / np.maximum(deepest, 1e-9), 0.0, 1.0)
-    return np.stack([p.elastic * below**k for k in (0.25, 0.5, 1.0)] , axis=1)
+    shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
+    return np.stack([p.elastic * shape for shape in shapes], axis=1)
 
 
 KNEES = np.linspace(0.40, 0.985, 40)
+SOFTNESSES = (0.0, 0.006, 0.018)
+"""Knees of a rim strike, and how softly they bend, as parts of the largest deflection."""
 
 
 def _bottoming(p: Place) -> FloatArray:
     depth = p.deflection / p.scene.deepest
-    beyond = [np.maximum(depth - knee, 0.0) for knee in KNEES]
-    return np.stack([*beyond, *(b**2 for b in beyond)], axis=1)
+    beyond = []
+    for softness in SOFTNESSES:
+        for knee in KNEES:
+            if softness == 0.0:
+                beyond.append(np.maximum(depth - knee, 0.0))
+            else:
+                beyond.append(softness * np.logaddexp(0.0, (depth - knee) / softness))
+    return np.stack([*beyond, *(b**2 for b in beyond[: KNEES.size])], axis=1)
 
 
 def _soft_knees(count: int) -> list[list[int]]:
-    """Return one variant for each knee: sharp there, soft over the next ones, stiffening beyond."""
-    last = KNEES.size - 1
-    return [[i, min(i + 2, last), i + KNEES.size] if i + 2 <= last else [i, i + KNEES.size] for i in range(KNEES.size)]
+    """Return one variant for each knee and softness: with its neighbour, and stiffening beyond."""
+    squares = KNEES.size * len(SOFTNESSES)
+    variants = []
+    for first in range(0, squares, KNEES.size):
+        for i in range(KNEES.size):
+            near = [first + i, first + i + 1] if i + 1 < KNEES.size else [first + i]
+            variants.append([*near, squares + i])
+    return variants
 
 
 CEILINGS = np.linspace(0.30, 0.99, 40)
@@ -211,10 +232,20 @@ def _saturation(p: Place) -> FloatArray:
     return np.stack([np.maximum(force - c, 0.0) for c in CEILINGS], axis=1)
 
 
+LAGS = tuple((lag, stages) for stages in (0, 1, 2) for lag in (1e-3, 2e-3, 4e-3, 8e-3, 16e-3, 32e-3, 64e-3))
+"""Lags [s] and their stages that a screening from no lag tries."""
+
+
 def _lag(p: Place) -> FloatArray:
-    """First and second derivative of the elastic force: every short lag is -tau1 F' + tau2 F'' at first."""
-    first = np.gradient(p.elastic, p.record.time)
-    return np.stack([first, np.gradient(first, p.record.time)], axis=1)
+    """The slope in time, and from no lag what each of LAGS would change."""
+    slope = np.gradient(p.elastic, p.record.time)
+    steps = [lagged(p.record.time, p.elastic[:, None], *lag)[:, 0] - p.elastic for lag in LAGS]
+    return np.stack([slope, *steps, np.zeros_like(slope)], axis=1)
+
+
+def _lag_variants(count: int) -> list[list[int]]:
+    """Return the slope with its bend (nothing from no lag), and each finite lag."""
+    return [[0, count - 1], *([i] for i in range(1, count - 1))]
 
 
 def _warm(p: Place) -> FloatArray:
@@ -230,7 +261,7 @@ def _leak(p: Place) -> FloatArray:
 CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("deflection_offset", lambda p: p.stiffness[:, None]),
     Family("force_offset", lambda p: np.ones((p.elastic.size, 1)), after_lag=True),
-    Family("rate_independent_hysteresis", _friction, sign=1.0),
+    Family("rate_independent_hysteresis", _friction, _both_memories, sign=1.0),
     Family("viscous_damping", _viscous, sign=1.0),
     Family("viscoelastic_relaxation", _relaxation, sign=1.0),
     Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),
@@ -240,9 +271,12 @@ CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("pressure_leak", _leak, sign=-1.0),
     Family("warm_up", _warm, sign=1.0),
     Family("inertia", lambda p: p.record.motion.acceleration[:, None], sign=1.0),
-    Family("force_lag", _lag, sign=-1.0),
+    Family("force_lag", _lag, _lag_variants, sign=-1.0),
     Family("saturation", _saturation, one_each, sign=-1.0),
 )
+
+STATIC = ("deflection_offset", "series_compliance", "gas_compression")
+"""Effects that depend on deflection and radius alone and everywhere: they compete with the law's own shape."""
 
 LAW_FAMILIES: tuple[Family, ...] = (Family("recalibration", _law((0, 1))), Family("shape", _law((2, 3))))
 

@@ -10,6 +10,8 @@ from scipy.ndimage import correlate1d, uniform_filter1d
 from scipy.signal import savgol_filter
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IndexArray = NDArray[np.intp]
 
 WINDOWS = (5, 7, 9, 13, 19, 27, 39)
 """Lengths [samples] of the local cubic fits among which each sample chooses."""
@@ -17,6 +19,10 @@ WINDOWS = (5, 7, 9, 13, 19, 27, 39)
 MISFIT_ALLOWED = 1.6
 """A local fit is kept while its mean square residual stays below this multiple of the noise variance: with the 9
 samples of a usual window, one window in twenty of pure noise exceeds it."""
+
+CORNER = 9.0
+"""Where five samples miss a cubic by this multiple of the noise variance, the motion turns within a sample: one in 400
+of pure noise."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +33,7 @@ class Motion:
     noise: standard deviation [m] of the deflection's reading
     deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
     -1 unloading, kept through holds; turned: deflection [m] travelled since the last reversal
+    resolved: False where the motion turns within a sample, so that its rate there is anybody's guess
     """
 
     deflection: FloatArray
@@ -37,15 +44,16 @@ class Motion:
     cycle: FloatArray
     direction: FloatArray
     turned: FloatArray
+    resolved: BoolArray
 
 
 def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]."""
     noise = deflection_noise(deflection)
-    smooth, rate, acceleration = _local_cubics(time, deflection, noise)
+    smooth, rate, acceleration, resolved = _local_cubics(time, deflection, noise)
     direction, cycle, turned = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
     return Motion(
-        smooth, rate, acceleration, noise, np.maximum.accumulate(smooth), cycle, direction, turned
+        smooth, rate, acceleration, noise, np.maximum.accumulate(smooth), cycle, direction, turned, resolved
     )
 
 
@@ -62,23 +70,27 @@ def deflection_noise(deflection: FloatArray) -> float:
 
 def _local_cubics(
     time: FloatArray, deflection: FloatArray, noise: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
     """Fit cubics over windows before, around and after each sample; keep the longest that fits within the noise."""
     step = float(np.median(np.diff(time)))
     count = deflection.size
     if np.ptp(np.diff(time)) > 1e-3 * step:
         grid = np.linspace(time[0], time[-1], count)
         even = _local_cubics(grid, np.interp(grid, time, deflection), noise)
-        return (deflection, np.interp(time, grid, even[1]), np.interp(time, grid, even[2]))
+        return deflection, np.interp(time, grid, even[1]), np.interp(time, grid, even[2]), even[3]
     smooth = deflection.copy()
     rate = np.gradient(deflection, time)
     acceleration = np.gradient(rate, time)
+    resolved = np.ones(count, dtype=bool)
     for window in WINDOWS:
         if window > count // 4:
             break
         half = window // 2
         cubic, misfit = _cubic_at_centres(deflection, window, step)
         good = misfit < MISFIT_ALLOWED * noise**2
+        if window == WINDOWS[0]:
+            resolved = misfit < CORNER * noise**2
+        resolved[half : count - half] |= good[half : count - half]
         votes = np.zeros(count)
         votes_centred = np.zeros(count)
         sums = np.zeros((3, count))
@@ -98,7 +110,7 @@ def _local_cubics(
                 votes_centred = votes.copy()
         fitted = votes > 0.0
         smooth[fitted], rate[fitted], acceleration[fitted] = sums[:, fitted] / votes[fitted]
-    return smooth, rate, acceleration
+    return smooth, rate, acceleration, resolved
 
 
 def _cubic_at_centres(values: FloatArray, window: int, step: float) -> tuple[FloatArray, FloatArray]:

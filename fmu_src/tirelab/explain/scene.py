@@ -8,10 +8,13 @@ import numpy as np
 
 from radialtire import FLAT_RADIUS, TireModel
 
-from .motion import FloatArray, Motion, motion_of
+from .motion import FloatArray, IndexArray, Motion, motion_of
 
 DEEP_IN_CM = 1e-2
 """Below this deflection [cm] the logarithm of the deflection is held: the force there is below every noise."""
+
+ROWS = 8000
+"""Samples compared in the search, evenly taken after whitening; the coarsened evidence is worth fewer."""
 
 MOST_FREE_SURFACES = 12
 """Recordings with more radii than this (terrain) share these many support points of the law's shape."""
@@ -22,7 +25,7 @@ class Record:
     """One recording as the candidates see it.
 
     time [s], force [N] as read; motion; surface: weights (n, surfaces) of the law's support points, rows sum to 1;
-    coefficient A [N/cm^B], exponent B [1] of the believed law; keep: indices of the samples that are compared
+    coefficient A [N/cm^B], exponent B [1] of the believed law; rows: indices of the samples that are compared
     """
 
     time: FloatArray
@@ -31,6 +34,7 @@ class Record:
     surface: FloatArray
     coefficient: FloatArray
     exponent: FloatArray
+    rows: IndexArray
 
     @property
     def step(self) -> float:
@@ -68,6 +72,7 @@ def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArr
     """Return the scene of recordings given as time [s], deflection [m], surface radius [m] and force [N]."""
     radii = _support(np.concatenate([np.unique(r) for _, _, r, _ in recordings]))
     records = []
+    stride = -(-sum(time.size for time, _, _, _ in recordings) // ROWS)
     for time, deflection, radius, force in recordings:
         distinct, inverse = np.unique(radius, return_inverse=True)
         pairs = np.array([tire.law.coefficients(float(r)) for r in distinct])
@@ -80,6 +85,7 @@ def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArr
                 weights[inverse],
                 pairs[inverse, 0],
                 pairs[inverse, 1],
+                np.arange(0, time.size, stride),
             )
         )
     return Scene(

@@ -7,16 +7,16 @@ carried along until they stand still. Screening around the best settled set goes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import product as combinations
 
 import numpy as np
+from scipy.ndimage import median_filter
 
-from ..noise import Noise
+from ..noise import Noise, first_guess
 from .evidence import Explained, Products, explain, products_of
-from .families import Family, Place, Point, lagged, place_at
-from .motion import FloatArray
+from .families import LAGS, STATIC, Family, Place, Point, lagged, place_at
+from .motion import BoolArray, FloatArray
 from .scene import Scene
 
 EFFECT_PRIOR = -3.0
@@ -25,7 +25,20 @@ EFFECT_PRIOR = -3.0
 AGNOSTIC_PRIOR = -8.0
 """Log prior odds that something beyond the catalogue acts in one given coordinate: one in three thousand."""
 
+HIDDEN_PRIOR = -8.0
+"""Log prior odds of an effect of the deflection alone beside a law whose shape is free: it explains what that can."""
+
+MATERIAL = 0.15
+"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by one
+percent: it is not named, whatever its significance."""
+
+POOR = 1.15
+"""Where no settled set comes nearer to the noise than this chi square per sample, every effect is settled alone too."""
+
 BEAM = 6
+FEW_VARIANTS = 3
+"""Up to so many variants of a family are compared as wholes, more by what their leading columns explain."""
+
 DEEPEST_SET = 6
 CLOSE = 30.0
 """Sets within this log evidence of the best one in the screening are settled."""
@@ -47,20 +60,64 @@ class Built:
 def build(scene: Scene, point: Point, families: Sequence[Family]) -> list[Built]:
     """Return the columns of `families` for each recording, around `point`, and the residual there."""
     built = []
-    for record in scene.records:
+    for number, record in enumerate(scene.records):
         place = place_at(record, scene, point)
         columns = {f.name: f.build(place) for f in families}
-        elastic = place.elastic
-        if point.lag > 0.0:
-            elastic = lagged(record.time, elastic[:, None], point.lag, point.stages)[:, 0]
-            for f in families:
-                if not f.after_lag:
-                    columns[f.name] = lagged(record.time, columns[f.name], point.lag, point.stages)
-            if "force_lag" in columns:
-                first = np.gradient(elastic, record.time)
-                columns["force_lag"] = np.stack([first, np.gradient(first, record.time)], axis=1)
-        built.append(Built(place, columns, record.force - elastic))
+        force = place.elastic
+        on_ground = None
+        if point.lifted is not None:
+            on_ground = ~point.lifted[number]
+            force = force * on_ground
+        read = _through_reading(record.time, force, point)
+        for f in families:
+            if f.after_lag:
+                continue
+            if on_ground is not None:
+                columns[f.name] = columns[f.name] * on_ground[:, None]
+            if f.name == "force_lag" and point.lag > 0.0:
+                # Away from no lag its slope alone is a column: the other lags are reached by moving the point.
+                moving = np.zeros_like(columns[f.name])
+                moving[:, 0] = np.gradient(read, record.time)
+                moving[:, -1] = np.gradient(moving[:, 0], record.time)
+                columns[f.name] = moving
+            else:
+                columns[f.name] = _through_reading(record.time, columns[f.name], point)
+        built.append(Built(place, columns, record.force - read))
     return built
+
+
+def _through_reading(time: FloatArray, values: FloatArray, point: Point) -> FloatArray:
+    if point.lag <= 0.0:
+        return values
+    flat = values[:, None] if values.ndim == 1 else values
+    return lagged(time, flat, point.lag, point.stages).reshape(values.shape)
+
+
+def lifted_from_force(scene: Scene) -> tuple[BoolArray, ...]:
+    """Return where each recording reads no force although the bare law has some: a first guess of lift-off."""
+    found = []
+    for record in scene.records:
+        elastic = record.elastic(record.motion.deflection)
+        sigma = first_guess(record.force - elastic).innovation
+        found.append((median_filter(record.force, 3) < 2.0 * sigma) & (elastic > 4.0 * sigma))
+    return tuple(found)
+
+
+def lifted_at(
+    scene: Scene, point: Point, families: Sequence[Family], coefficients: Sequence[FloatArray], groups: Sequence[FloatArray]
+) -> tuple[BoolArray, ...]:
+    """Return where the force of the point and its families would be a pull."""
+    found = []
+    for number, record in enumerate(scene.records):
+        place = place_at(record, scene, point)
+        force = place.elastic.copy()
+        for f, values, columns in zip(families, coefficients, groups, strict=True):
+            if f.after_lag or f.name in ("force_lag", "inertia"):
+                continue
+            held = pointed(point, f.name, f.build(place).shape[1])
+            force += f.build(place)[:, columns] @ (values - held[columns])
+        found.append(force <= 0.0)
+    return tuple(found)
 
 
 def pointed(point: Point, name: str, columns: int) -> FloatArray:
@@ -75,11 +132,12 @@ def pointed(point: Point, name: str, columns: int) -> FloatArray:
     elif name == "series_compliance":
         values = np.array([-point.compliance])
     elif name == "force_lag":
-        values = np.array([-point.lag, 0.0])
+        values = np.zeros(columns)
+        values[0] = -point.lag
     return values
 
 
-def moved(point: Point, name: str, values: FloatArray) -> Point:
+def moved(point: Point, name: str, values: FloatArray, group: FloatArray) -> Point:
     """Return the point with the coefficients of family `name` taken up, as far as one step may go."""
     if name in ("recalibration", "shape"):
         shape = point.shape.copy()
@@ -92,7 +150,11 @@ def moved(point: Point, name: str, values: FloatArray) -> Point:
     if name == "series_compliance":
         return replace(point, compliance=float(np.clip(-values[0], 0.0, point.compliance * 2.0 + 3e-6)))
     if name == "force_lag":
-        return replace(point, lag=float(np.clip(-values[0], 0.0, 2.0 * point.lag + 0.02)))
+        if group[0] == 0:
+            return replace(point, lag=float(np.clip(-values[0], 0.0, 2.0 * point.lag + 0.02)))
+        # One of the finite lags: its coefficient is near 1 where it is the right one.
+        lag, _ = LAGS[int(group[0]) - 1]
+        return replace(point, lag=lag * float(np.clip(values[0], 0.3, 1.5)))
     return point
 
 
@@ -122,7 +184,7 @@ def layout_of(built: Sequence[Built], families: Sequence[Family]) -> Layout:
 
 
 def measure(
-    built: Sequence[Built], noises: Sequence[Noise], families: Sequence[Family], point: Point, samples: Sequence[slice | FloatArray] | None = None
+    built: Sequence[Built], noises: Sequence[Noise], families: Sequence[Family], point: Point
 ) -> Products:
     """Return the products of all columns, with the coefficients that the point holds given back to the data."""
     columns, data = [], []
@@ -132,8 +194,9 @@ def measure(
             values = pointed(point, f.name, b.columns[f.name].shape[1])
             if np.any(values):
                 held += b.columns[f.name] @ values
-        columns.append(noise.whitened(np.concatenate([b.columns[f.name] for f in families], axis=1)))
-        data.append(noise.whitened(held))
+        rows = b.place.record.rows
+        columns.append(noise.whitened_at(np.concatenate([b.columns[f.name] for f in families], axis=1), rows))
+        data.append(noise.whitened_at(held, rows))
     return products_of(np.concatenate(columns), np.concatenate(data))
 
 
@@ -151,9 +214,7 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
     """Return the candidate of the families `names`: best variants, evidence with priors, signs checked."""
     choice = {n: layout.variants[n][0] for n in names}
     many = [n for n in names if len(layout.variants[n]) > 1]
-    prior = 0.0
-    for n in names:
-        prior += AGNOSTIC_PRIOR if layout.families[n].agnostic else EFFECT_PRIOR
+    prior = sum(_prior(layout.families[n], "recalibration" in names) for n in names)
     for turn in range(2 if len(many) > 1 else 1):
         for n in many:
             others = [choice[m] for m in names if m != n and (turn or m not in many[many.index(n) :])]
@@ -161,15 +222,41 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
     prior -= sum(float(np.log(len(layout.variants[n]))) for n in many)
     groups = tuple(choice[n] for n in names)
     explained = explain(p, groups, zeta)
+    if "force_lag" in names and not _lag_is_one(names, groups, explained):
+        number = names.index("force_lag")
+        groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
+        explained = explain(p, groups, zeta)
     evidence = explained.log_evidence + prior
-    if not _signs_hold(p, layout, names, groups, explained):
+    immaterial = any(
+        u < MATERIAL for n, u in zip(names, explained.unique, strict=True) if n not in ("recalibration", "shape")
+    )
+    if immaterial or not np.isfinite(evidence) or not _signs_hold(p, layout, names, groups, explained):
         evidence = -np.inf
     return Candidate(names, evidence, groups, explained)
+
+
+def _lag_is_one(names: SetName, groups: Sequence[FloatArray], explained: Explained) -> bool:
+    """Return whether slope and bend of the force belong to one lag: a bend of at most about half its square."""
+    number = names.index("force_lag")
+    if groups[number].size < 2:
+        return True
+    slope, bend = explained.coefficients[number]
+    return bool(abs(bend) <= 0.6 * slope**2)
+
+
+def _prior(family: Family, recalibrated: bool) -> float:
+    if family.name == "shape":
+        return 0.0
+    if family.agnostic:
+        return AGNOSTIC_PRIOR
+    return HIDDEN_PRIOR if recalibrated and family.name in STATIC else EFFECT_PRIOR
 
 
 def _best_variant(p: Products, layout: Layout, others: Sequence[FloatArray], name: str) -> FloatArray:
     """Return the variant whose leading column explains most on top of the others."""
     variants = layout.variants[name]
+    if len(variants) <= FEW_VARIANTS:
+        return max(variants, key=lambda v: explain(p, [*others, v], 1.0).log_evidence)
     leads = np.array([v[0] for v in variants])
     moment, square = p.moment[leads], np.diag(p.gram)[leads]
     if others:
@@ -235,19 +322,23 @@ def _settle(
     chosen = [families[n] for n in names]
     point = _only(start, names)
     best: Settled | None = None
-    for _ in range(6):
+    for turn in range(6):
         built = build(scene, point, chosen)
         layout = layout_of(built, chosen)
         p = measure(built, noises, chosen, point) if chosen else _nothing(built, noises)
         candidate = judge(p, layout, names, zeta)
         settled = Settled(candidate, point, p, layout)
         gained = candidate.log_evidence - best.log_evidence if best else np.inf
-        if best is None or gained > 0.0:
+        # The first guess of lift-off follows the noise and flatters: the model's own replaces it at once.
+        if best is None or turn == 1 or gained > 0.0:
             best = settled
-        following = point
-        for name, values in zip(names, candidate.explained.coefficients, strict=True):
-            following = moved(following, name, values)
-        if _same(point, following) or (np.isfinite(gained) and abs(gained) < 0.05):
+        starts = np.cumsum([0, *(layout.count[n] for n in names)])
+        own = [g - start for g, start in zip(candidate.groups, starts, strict=False)]
+        lifted = lifted_at(scene, point, chosen, candidate.explained.coefficients, own)
+        following = replace(point, lifted=lifted)
+        for name, values, group in zip(names, candidate.explained.coefficients, own, strict=True):
+            following = moved(following, name, values, group)
+        if _same(point, following) or (turn > 1 and abs(gained) < 0.05):
             break
         point = following
     assert best is not None
@@ -266,21 +357,46 @@ def _only(point: Point, names: SetName) -> Point:
         point.compliance if "series_compliance" in names else 0.0,
         point.lag if "force_lag" in names else 0.0,
         point.stages,
+        point.lifted,
     )
 
 
 def _same(a: Point, b: Point) -> bool:
     return (
-        np.allclose(a.shape, b.shape, atol=1e-4)
+        _same_ground(a, b)
+        and np.allclose(a.shape, b.shape, atol=1e-4)
         and abs(a.offset - b.offset) < 1e-7
         and abs(a.compliance - b.compliance) < 1e-9
         and abs(a.lag - b.lag) < 1e-6
     )
 
 
+def _same_ground(a: Point, b: Point) -> bool:
+    if a.lifted is None or b.lifted is None:
+        return a.lifted is b.lifted
+    return all(np.array_equal(m, n) for m, n in zip(a.lifted, b.lifted, strict=True))
+
+
 def _nothing(built: Sequence[Built], noises: Sequence[Noise]) -> Products:
-    data = np.concatenate([n.whitened(b.residual) for b, n in zip(built, noises, strict=True)])
+    data = np.concatenate(
+        [n.whitened_at(b.residual, b.place.record.rows) for b, n in zip(built, noises, strict=True)]
+    )
     return Products(np.zeros((0, 0)), np.zeros(0), float(data @ data), data.size, np.zeros(0))
+
+
+def law_whole(names: Iterable[str]) -> SetName:
+    """Return the set in order, with the law's shape beside its coefficients and never alone."""
+    distinct = set(names) - {"shape"}
+    return tuple(sorted(distinct | {"shape"} if "recalibration" in distinct else distinct))
+
+
+def material(candidate: Candidate) -> SetName:
+    """Return the set without the families that are not material in it."""
+    return law_whole(
+        n
+        for n, unique in zip(candidate.names, candidate.explained.unique, strict=True)
+        if n == "recalibration" or unique >= MATERIAL
+    )
 
 
 @dataclass(frozen=True)
@@ -300,21 +416,23 @@ class Screen:
 
     def judged(self, names: SetName) -> Candidate:
         """Return the candidate of `names`, judged now or before."""
-        key = tuple(sorted(names))
+        key = law_whole(names)
         if key not in self.seen:
             self.seen[key] = judge(self.products, self.layout, key, self.zeta)
         return self.seen[key]
 
     def allowed(self, names: SetName, name: str) -> bool:
         """Return whether `name` may be added: not twice, and the law's shape only beside its coefficients."""
-        return name not in names and (name != "shape" or "recalibration" in names)
+        return name not in names and name != "shape"
 
     def beam(self) -> None:
         """Grow sets one family at a time, keeping the best of each size."""
         level: list[SetName] = [()]
         best = self.judged(()).log_evidence
         for _ in range(DEEPEST_SET):
-            grown = {tuple(sorted((*s, n))) for s in level for n in self.layout.families if self.allowed(s, n)}
+            grown = {
+                self.judged((*s, n)).names for s in level for n in self.layout.families if self.allowed(s, n)
+            }
             level = sorted(grown, key=lambda s: -self.judged(s).log_evidence)[:BEAM]
             top = self.judged(level[0]).log_evidence
             if top < best - 3.0:
@@ -324,13 +442,16 @@ class Screen:
     def neighbours(self, names: SetName) -> None:
         """Judge every set that differs from `names` by one family more, less or other."""
         for gone in ("", *names):
-            left = tuple(n for n in names if n != gone)
-            if "shape" in left and "recalibration" not in left:
-                left = tuple(n for n in left if n != "shape")
+            left = tuple(n for n in names if n not in (gone, "shape"))
             self.judged(left)
             for n in self.layout.families:
                 if self.allowed(left, n):
                     self.judged((*left, n))
+
+    def seeds(self) -> list[SetName]:
+        """Return every family of the catalogue alone and beside a free law."""
+        known = [n for n, f in self.layout.families.items() if not f.agnostic and n not in ("shape", "recalibration")]
+        return [law_whole(s) for n in known for s in ((n,), (n, "recalibration"))]
 
     def best(self, count: int) -> list[Candidate]:
         """Return the `count` best candidates within CLOSE of the best."""
@@ -347,14 +468,20 @@ def search(
 ) -> Found:
     """Return the settled sets of families, best first."""
     by_name = {f.name: f for f in families}
-    zero = Point(np.zeros((len(scene.radii), 4)))
+    zero = Point(np.zeros((len(scene.radii), 4)), lifted=lifted_from_force(scene))
     settled: dict[SetName, Settled] = {}
     compared = 0
 
-    def settle_all(candidates: Sequence[Candidate], start: Point) -> None:
-        for c in candidates:
-            if c.names not in settled and np.isfinite(c.log_evidence):
-                settled[c.names] = settle(scene, noises, by_name, c.names, zeta, start)
+    def settle_all(wanted: Sequence[SetName], start: Point) -> None:
+        waiting = list(wanted)
+        while waiting:
+            names = waiting.pop()
+            if names in settled:
+                continue
+            settled[names] = settle(scene, noises, by_name, names, zeta, start)
+            needed = material(settled[names].candidate)
+            if needed != names:
+                waiting.append(needed)
 
     point = zero
     for turn in range(5):
@@ -366,14 +493,15 @@ def search(
         top = before.names if before else screen.best(1)[0].names
         screen.neighbours(top)
         compared += len(screen.seen)
-        settle_all(screen.best(6), point)
+        settle_all([c.names for c in screen.best(6)], point)
+        if turn == 0 and min(s.candidate.explained.chi_square for s in settled.values()) > POOR:
+            settle_all(screen.seeds(), point)
         best = max(settled.values(), key=lambda s: s.log_evidence)
         if progress is not None:
             progress(f"{compared} sets compared; best so far: {', '.join(best.names) or 'nothing'}")
         if before is not None and best.names == before.names:
             break
         point = best.point
-    smaller = [screen.judged(tuple(n for n in best.names if n != gone)) for gone in best.names if not (gone == "recalibration" and "shape" in best.names)]
-    settle_all(smaller, point)
+    settle_all([law_whole(n for n in best.names if n != gone) for gone in best.names if gone != "shape"], point)
     order = sorted(settled.values(), key=lambda s: -s.log_evidence)
     return Found(tuple(order), compared)
