@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
-from . import hull1996, power_law
+from . import hull1996, power_law, tracking
 from .effect import PLACES, Effect, Instant, State
 from .hull1996 import Hull1996
 from .parameter import Parameter, ParameterError
+from .tracking import UNTRACKED, Track
 
 DEFLECTION_LOWEST = -1e3
 """Lowest deflection accepted [m]: a wheel this high above the ground is a mistake."""
 
 DEFLECTION_HIGHEST = 0.33
 """Highest deflection accepted [m]: the radius of a 26 in wheel; with more the axle would be below the ground."""
+
+TRACKING_TIME = Parameter(
+    "tracking_time",
+    "T",
+    "s",
+    0.0,
+    0.0,
+    1.0,
+    "memory with which rate and acceleration follow the deflection read",
+)
 
 TANGENT_STEP = 1e-7
 """Half the distance [m] over which the tangent of a tire with effects is taken."""
@@ -57,7 +69,12 @@ class TestedRange:
 
 
 class ModelState(NamedTuple):
-    """What a tire remembers of the last moment: its time [s], deflection [m], rate, acceleration, and its effects'."""
+    """What a tire remembers: plain numbers and tuples of them, so that JSON can carry it.
+
+    time: [s] of the last moment; deflection: [m] read there; rate [m/s] and acceleration [m/s^2] of the reading
+    started: whether there was a moment; effects: their states in the order of the tire's effects
+    start: [s] time of the first moment; reading, compression: tracks of the deflection read and of the tire's own
+    """
 
     time: float
     deflection: float
@@ -65,6 +82,25 @@ class ModelState(NamedTuple):
     acceleration: float
     started: bool
     effects: tuple[State, ...]
+    start: float = 0.0
+    reading: Track = UNTRACKED
+    compression: Track = UNTRACKED
+
+    @classmethod
+    def restored(cls, values: Sequence[Any]) -> ModelState:
+        """Return the state whose values went through JSON, which has lists in place of tuples."""
+        time, deflection, rate, acceleration, started, effects, start, reading, compression = values
+        return cls(
+            time,
+            deflection,
+            rate,
+            acceleration,
+            started,
+            tuple(tuple(state) for state in effects),
+            start,
+            tuple(reading),
+            tuple(compression),
+        )
 
 
 def check_inputs(deflection: float, surface_radius: float) -> None:
@@ -87,6 +123,8 @@ class TireModel:
 
     effects: pairs of an effect and its parameters' values, at most one of each name, ordered by place
     tested_range: where the tire was measured, or None where that is not known
+    tracking_time: [s] memory with which rate and acceleration follow the deflection (see `tracking`); 0 takes the
+    deflection as free of noise
     """
 
     law: Law = Hull1996()
@@ -94,8 +132,10 @@ class TireModel:
     tested_range: TestedRange | None = TestedRange()
     name: str = "Hull, Wang & Moore 1996"
     source: str = "Hull, Wang & Moore, Cycling Science, Spring 1996"
+    tracking_time: float = 0.0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "tracking_time", TRACKING_TIME.checked(self.tracking_time))
         names = [effect.name for effect, _ in self.effects]
         if len(set(names)) < len(names):
             raise ParameterError(f"an effect occurs twice in {', '.join(names)}; keep one of each")
@@ -108,11 +148,15 @@ class TireModel:
         object.__setattr__(self, "effects", checked)
 
     @cached_property
-    def _stages(self) -> tuple[tuple[tuple[int, Effect, State], ...], ...]:
-        return tuple(
-            tuple((i, e, values) for i, (e, values) in enumerate(self.effects) if e.place == place)
+    def _stages(self) -> dict[str, tuple[tuple[int, Effect, State], ...]]:
+        return {
+            place: tuple((i, e, values) for i, (e, values) in enumerate(self.effects) if e.place == place)
             for place in PLACES
-        )
+        }
+
+    @cached_property
+    def _differentiates(self) -> bool:
+        return any(effect.differentiates for effect, _ in self.effects)
 
     @property
     def rest(self) -> ModelState:
@@ -131,26 +175,46 @@ class TireModel:
         if not self.effects:
             return power_law.force(deflection, A, B), state
 
-        interval = time - state.time if state.started else 0.0
-        rate, acceleration = state.rate, state.acceleration
-        if interval > 0.0:
-            rate = (deflection - state.deflection) / interval
-            acceleration = (rate - state.rate) / interval
+        first = not state.started
+        start = time if first else state.start
+        interval = 0.0 if first else time - state.time
         states = list(state.effects)
 
-        def through(place: int, signal: float, x: float, elastic: float) -> float:
+        def through(place: str, signal: float, x: float, v: float, elastic: float) -> float:
             for i, effect, values in self._stages[place]:
-                instant = Instant(time, interval, x, rate, acceleration, A, B, elastic)
+                instant = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic)
                 signal, states[i] = effect.respond(signal, instant, states[i], values)
             return signal
 
-        x = through(0, deflection, deflection, 0.0)
-        x = through(1, x, x, 0.0)
-        force = through(2, 1.0, x, power_law.force(x, A, B)) * power_law.force(x, A, B)
-        elastic = force
-        for place in (3, 4, 5):
-            force = through(place, force, x, elastic)
-        return force, ModelState(time, deflection, rate, acceleration, True, tuple(states))
+        reading = self._tracked(state.reading, deflection, interval, first)
+        rate, acceleration = tracking.rate(reading), tracking.acceleration(reading)
+        x = through("deflection", deflection, deflection, rate, 0.0)
+        x = through("series", x, x, rate, 0.0)
+        compression = reading
+        if self._stages["deflection"] or self._stages["series"]:
+            compression = self._tracked(state.compression, x, interval, first)
+        v = tracking.rate(compression)
+
+        bare = power_law.force(x, A, B)
+        elastic = through("scale", 1.0, x, v, bare) * bare
+        force = through("parallel", elastic, x, v, elastic)
+        if force < 0.0:
+            force = 0.0
+        force = through("inertia", force, x, v, elastic)
+        force = through("reading", force, x, v, elastic)
+        after = ModelState(
+            time, deflection, rate, acceleration, True, tuple(states), start, reading, compression
+        )
+        return force, after
+
+    def _tracked(self, track: Track, deflection: float, interval: float, first: bool) -> Track:
+        if not self._differentiates:
+            return track
+        if first:
+            return tracking.begin(deflection)
+        if interval > 0.0:
+            return tracking.follow(track, interval, deflection, self.tracking_time)
+        return track
 
     def stiffness(self, deflection: float, surface_radius: float, state: ModelState) -> float:
         """Return the tangent dF/dx [N/m] at a moment whose state is `state`, everything but the deflection held."""

@@ -21,6 +21,8 @@ class Parameter:
     minimum, maximum: the closed interval of allowed values
     meaning: one line for a reader who does not know the equation
     off: the value at which the effect it belongs to vanishes exactly, or None
+    typical: an everyday value, where the start is not one
+    extra: whether the plain form of the equation does without it; a fit keeps it at its start unless there is need
     """
 
     name: str
@@ -31,6 +33,13 @@ class Parameter:
     maximum: float
     meaning: str
     off: float | None = None
+    typical: float | None = None
+    extra: bool = False
+
+    @property
+    def everyday(self) -> float:
+        """The typical value, or the start where that is one."""
+        return self.start if self.typical is None else self.typical
 
     def checked(self, value: float) -> float:
         """Return `value` as a float, or raise ParameterError if it is not a number within the bounds."""

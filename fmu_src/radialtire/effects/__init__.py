@@ -3,16 +3,42 @@
 from __future__ import annotations
 
 from ..effect import Effect
+from .bottoming import BOTTOMING
+from .deflection_lag import DEFLECTION_LAG
 from .deflection_offset import DEFLECTION_OFFSET
+from .force_drift import FORCE_DRIFT
+from .force_lag import FORCE_LAG
+from .force_offset import FORCE_OFFSET
+from .gas_compression import GAS_COMPRESSION
+from .inertia import INERTIA
+from .mullins_softening import MULLINS_SOFTENING
+from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
+from .saturation import SATURATION
+from .series_compliance import SERIES_COMPLIANCE
+from .viscoelastic_relaxation import VISCOELASTIC_RELAXATION
 from .viscous_damping import VISCOUS_DAMPING
+from .warm_up import WARM_UP
 
 CATALOGUE: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         DEFLECTION_OFFSET,
+        DEFLECTION_LAG,
+        SERIES_COMPLIANCE,
+        GAS_COMPRESSION,
+        MULLINS_SOFTENING,
+        PRESSURE_LEAK,
+        WARM_UP,
         RATE_INDEPENDENT_HYSTERESIS,
         VISCOUS_DAMPING,
+        VISCOELASTIC_RELAXATION,
+        BOTTOMING,
+        INERTIA,
+        FORCE_LAG,
+        FORCE_OFFSET,
+        FORCE_DRIFT,
+        SATURATION,
     )
 }
 """Every effect by its name, in the order in which effects of one place act."""

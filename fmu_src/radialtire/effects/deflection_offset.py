@@ -20,12 +20,14 @@ DEFLECTION_OFFSET = Effect(
     name="deflection_offset",
     place="deflection",
     parameters=(
-        Parameter("offset", "x0", "m", 0.0, -0.01, 0.01, "added to the deflection that was read", off=0.0),
+        Parameter(
+            "offset", "x0", "m", 0.0, -0.01, 0.01, "added to the deflection read", off=0.0, typical=1e-3
+        ),
     ),
     rest=(),
     respond=respond,
     statement="the deflection's zero is shifted",
     tell_tale="misfit at small deflections, where the tangent of the force against the deflection is steepest",
-    imitators=("recalibration",),
+    imitators=("recalibration", "series_compliance", "force_offset"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 1 mm, or 22 N of preload, between two rigs",
 )

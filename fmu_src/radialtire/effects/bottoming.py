@@ -1,0 +1,52 @@
+"""The rim meets the ground through the tire: a second spring from some deflection on.
+
+    F = F_elastic + K u1 (u / u1)^p,   u = s ln(1 + exp((x - xb) / s)),   u1 = 1 mm
+
+K [N/m] is the second spring's stiffness, xb where it begins, s over what deflection it sets in (u is x - xb well beyond
+xb), p = 1 for a straight spring, 3/2 for a rounded contact. s = 0 is a sharp knee. No curve of a rim strike through a
+bicycle tire was found in the open: the bounds are wide.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+UNIT = 1e-3
+"""u1 [m]: deflection beyond xb at which the exponent does not matter."""
+
+FAR = 40.0
+"""Softening lengths beyond which ln(1 + exp(u)) is u, or 0, to the last digit."""
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Add the second spring's force [N]."""
+    stiffness, onset, softness, power = values
+    beyond = instant.deflection - onset
+    if stiffness == 0.0 or instant.deflection <= 0.0 or beyond <= -FAR * softness:
+        return signal, state
+    if beyond < FAR * softness:
+        beyond = softness * math.log1p(math.exp(beyond / softness))
+    if power != 1.0:
+        beyond = UNIT * (beyond / UNIT) ** power
+    return signal + stiffness * beyond, state
+
+
+BOTTOMING = Effect(
+    name="bottoming",
+    place="parallel",
+    parameters=(
+        Parameter("stiffness", "K", "N/m", 0.0, 0.0, 1e8, "of the second spring", off=0.0, typical=2e5),
+        Parameter("onset", "xb", "m", 0.025, 0.0, 0.2, "deflection at which it begins"),
+        Parameter("softness", "s", "m", 2e-4, 0.0, 0.01, "deflection over which it sets in"),
+        Parameter("power", "p", "1", 1.0, 1.0, 3.0, "1: straight, 1.5: rounded contact", extra=True),
+    ),
+    rest=(),
+    respond=respond,
+    statement="the tire bottoms on the rim",
+    tell_tale="a local knee in the force at one deflection, on every surface; nothing below it",
+    imitators=("gas_compression", "recalibration", "mullins_softening"),
+    source="a second spring with a soft onset; no magnitude for bicycle tires was found, bounds wide",
+)

@@ -1,0 +1,31 @@
+"""An amplifier whose zero drifts: a force that adds in proportion to the time since the start.
+
+    F_read = F + d t
+
+It adds, where a leaking or warming tire multiplies: the tire in the air tells them apart.
+"""
+
+from __future__ import annotations
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Add d t [N]."""
+    return signal + values[0] * instant.time, state
+
+
+FORCE_DRIFT = Effect(
+    name="force_drift",
+    place="reading",
+    parameters=(
+        Parameter("drift", "d", "N/s", 0.0, -100.0, 100.0, "added for each second", off=0.0, typical=0.05),
+    ),
+    rest=(),
+    respond=respond,
+    statement="the force's zero drifts with time",
+    tell_tale="the residual grows with time by the same amount at every deflection, in the air too",
+    imitators=("pressure_leak", "warm_up", "force_offset"),
+    source="straight-line drift of an amplifier; magnitudes are in the gauge's data sheet, bounds wide",
+)

@@ -1,0 +1,29 @@
+"""A wrong zero of the force: the load cell was not tared, or carries a weight.
+
+    F_read = F + F0
+
+22 N of preload on the other rig would explain the difference to it that Hull, Wang & Moore (1996) found.
+"""
+
+from __future__ import annotations
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Shift the force [N] by F0."""
+    return signal + values[0], state
+
+
+FORCE_OFFSET = Effect(
+    name="force_offset",
+    place="reading",
+    parameters=(Parameter("offset", "F0", "N", 0.0, -1e3, 1e3, "added to the force", off=0.0, typical=20.0),),
+    rest=(),
+    respond=respond,
+    statement="the force's zero is shifted",
+    tell_tale="the residual is one constant at every deflection and time, in the air too",
+    imitators=("deflection_offset", "force_drift", "recalibration"),
+    source="Hull, Wang & Moore, Cycling Science, Spring 1996: 22 N of preload, or 1 mm, between two rigs",
+)

@@ -1,0 +1,33 @@
+"""Mass that is moved between the tire and the load cell: force in proportion to the acceleration.
+
+    F_read = F + m d2x/dt2
+
+x is the deflection read, as the actuator moves the fixture that the mass belongs to. A fixture of wood and steel has
+a few kg. It acts in the air too.
+"""
+
+from __future__ import annotations
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Add m d2x/dt2 [N]."""
+    return signal + values[0] * instant.acceleration, state
+
+
+INERTIA = Effect(
+    name="inertia",
+    place="inertia",
+    parameters=(
+        Parameter("mass", "m", "kg", 0.0, 0.0, 100.0, "moved with the deflection", off=0.0, typical=2.0),
+    ),
+    rest=(),
+    respond=respond,
+    statement="a mass is accelerated between the tire and the load cell",
+    tell_tale="the residual is in proportion to the acceleration, so it grows with the square of the frequency",
+    imitators=("force_lag", "deflection_lag", "viscous_damping"),
+    source="Newton's second law; masses of fixtures are not published, bounds wide",
+    differentiates=True,
+)

@@ -1,0 +1,48 @@
+"""A ceiling of the force channel: amplifier or load cell read no more than a limit.
+
+    F_read = F - k ln(1 + exp((F - L) / k)),   k = 0: min(F, L)
+
+L is the limit, k the rounding of the knee. The article's load cell was rated at 4480 N.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+NO_LIMIT = 1e9
+"""L [N] of a channel without a ceiling."""
+
+FAR = 40.0
+"""Roundings away from the limit at which ln(1 + exp(u)) is u, or 0, to the last digit."""
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Return the force as read [N]."""
+    limit, knee = values
+    beyond = signal - limit
+    if limit >= NO_LIMIT or beyond <= -FAR * knee:
+        return signal, state
+    if beyond >= FAR * knee:
+        return limit, state
+    return signal - knee * math.log1p(math.exp(beyond / knee)), state
+
+
+SATURATION = Effect(
+    name="saturation",
+    place="reading",
+    parameters=(
+        Parameter(
+            "limit", "L", "N", NO_LIMIT, 1.0, NO_LIMIT, "largest force read", off=NO_LIMIT, typical=1e3
+        ),
+        Parameter("knee", "k", "N", 0.0, 0.0, 1e3, "rounding of the knee", extra=True),
+    ),
+    rest=(),
+    respond=respond,
+    statement="the force channel has a ceiling",
+    tell_tale="a flat top: the residual is one-sided above one force, on every surface",
+    imitators=("series_compliance", "recalibration"),
+    source="Hull, Wang & Moore, Cycling Science, Spring 1996: load cell rated at 4480 N; limits are set by the rig",
+)

@@ -1,0 +1,81 @@
+"""Rubber that relaxes: a fast deflection is answered by more force, which then decays (standard linear solids).
+
+    F = F_elastic (1 - r (g1 + g2 + g3)) + g1 h1 + g2 h2 + g3 h3,    dh_i/dt = dF_elastic/dt - h_i / tau_i
+
+A Prony series on the elastic force (quasi-linear viscoelasticity). g_i is the share of the elastic force that term i
+adds in a sudden deflection, tau_i how long it takes to decay. r says which force the elastic law is: r = 0 the slow
+one (everything relaxed, as in a press of 30 s), r = 1 the sudden one. Integrated exactly for an elastic force that is
+straight between two moments. The tire is taken as relaxed at the first moment.
+
+The storage share of one term is g (w tau)^2 / (1 + (w tau)^2), the loss share g w tau / (1 + (w tau)^2), greatest at
+w tau = 1. Rubber has times over several decades; three terms follow six within a few tenths of a percent of the force.
+No shares of bicycle tires were found in the open: the bounds are wide.
+
+Reference: Y. C. Fung, "Biomechanics: Mechanical Properties of Living Tissues", Springer 1981, section 7.6.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+
+def overstress(h: float, change: float, interval: float, tau: float) -> float:
+    """Return h after `interval` [s] in which the elastic force changed by `change` [N] in a straight line."""
+    passed = interval / tau
+    if passed == 0.0:
+        return h + change
+    decay = -math.expm1(-passed)
+    return h * (1.0 - decay) + change * decay / passed
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Add the overstress [N]; the state holds the last elastic force and the three overstresses."""
+    g1, tau1, g2, tau2, g3, tau3, sudden = values
+    elastic = instant.elastic_force
+    last, h1, h2, h3 = state
+    if instant.first:
+        last = elastic
+    change = elastic - last
+    h1 = overstress(h1, change, instant.interval, tau1)
+    if g2 != 0.0:
+        h2 = overstress(h2, change, instant.interval, tau2)
+    if g3 != 0.0:
+        h3 = overstress(h3, change, instant.interval, tau3)
+    added = g1 * h1 + g2 * h2 + g3 * h3 - sudden * (g1 + g2 + g3) * elastic
+    return signal + added, (elastic, h1, h2, h3)
+
+
+VISCOELASTIC_RELAXATION = Effect(
+    name="viscoelastic_relaxation",
+    place="parallel",
+    parameters=(
+        Parameter(
+            "share_1",
+            "g1",
+            "1",
+            0.0,
+            0.0,
+            5.0,
+            "share that decays with the first time",
+            off=0.0,
+            typical=0.05,
+        ),
+        Parameter("relaxation_time_1", "tau1", "s", 1.0, 1e-4, 1e5, "first relaxation time"),
+        Parameter("share_2", "g2", "1", 0.0, 0.0, 5.0, "share of the second time", off=0.0, extra=True),
+        Parameter("relaxation_time_2", "tau2", "s", 10.0, 1e-4, 1e5, "second relaxation time", extra=True),
+        Parameter("share_3", "g3", "1", 0.0, 0.0, 5.0, "share of the third time", off=0.0, extra=True),
+        Parameter("relaxation_time_3", "tau3", "s", 0.1, 1e-4, 1e5, "third relaxation time", extra=True),
+        Parameter(
+            "sudden", "r", "1", 0.0, 0.0, 1.0, "0: the law is the slow force, 1: the sudden one", extra=True
+        ),
+    ),
+    rest=(0.0, 0.0, 0.0, 0.0),
+    respond=respond,
+    statement="the force relaxes: it is higher after a fast deflection and decays while it is held",
+    tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",
+    imitators=("viscous_damping", "rate_independent_hysteresis", "pressure_leak", "recalibration"),
+    source="Fung 1981, section 7.6; no magnitude for bicycle tires was found, bounds wide",
+)

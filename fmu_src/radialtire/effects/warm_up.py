@@ -1,0 +1,45 @@
+"""A tire that warms: the pressure, and with it the force, rises to a new level.
+
+    F = A x^B (1 + g (1 - exp(-t / tau)))
+
+t is the time since the start. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Multiply the factor by the rise of the pressure."""
+    gain, tau = values
+    return signal * (1.0 - gain * math.expm1(-instant.time / tau)), state
+
+
+WARM_UP = Effect(
+    name="warm_up",
+    place="scale",
+    parameters=(
+        Parameter(
+            "gain",
+            "g",
+            "1",
+            0.0,
+            0.0,
+            1.0,
+            "share by which the force rises in the end",
+            off=0.0,
+            typical=0.05,
+        ),
+        Parameter("time_constant", "tau", "s", 60.0, 0.1, 1e5, "time to 63 % of the rise"),
+    ),
+    rest=(),
+    respond=respond,
+    statement="the tire warms: the force rises with time to a new level at every deflection",
+    tell_tale="the first cycle repeated last is higher, in proportion to the force, and the rise dies away",
+    imitators=("pressure_leak", "mullins_softening", "force_drift"),
+    source="gas law at constant volume: about 1 psi for 10 degF near 40 psi; time constants not found, bounds wide",
+)

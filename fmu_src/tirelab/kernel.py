@@ -1,0 +1,95 @@
+"""The loops over a recording's samples, with the very functions that run in the FMU.
+
+`compiled` loads this file once for each effect, puts that effect's response in the place of `respond`, and has numba
+compile the result.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire.effect import Instant, State
+from radialtire.effects.deflection_offset import respond
+from radialtire.power_law import force as elastic_force
+from radialtire.tracking import acceleration, begin, follow, rate
+
+FloatArray = NDArray[np.float64]
+
+
+def respond_loop(
+    signal: FloatArray,
+    time: FloatArray,
+    deflection: FloatArray,
+    speed: FloatArray,
+    speeding: FloatArray,
+    coefficient: FloatArray,
+    exponent: FloatArray,
+    elastic: FloatArray,
+    state: State,
+    values: State,
+    answer: FloatArray,
+) -> None:
+    """Fill `answer` with the effect's signal at every moment; `state` is the one at rest."""
+    for i in range(signal.size):
+        answer[i], state = respond(
+            signal[i],
+            Instant(
+                time[i] - time[0],
+                time[i] - time[max(i - 1, 0)],
+                i == 0,
+                deflection[i],
+                speed[i],
+                speeding[i],
+                coefficient[i],
+                exponent[i],
+                elastic[i],
+            ),
+            state,
+            values,
+        )
+
+
+def track_loop(
+    time: FloatArray,
+    deflection: FloatArray,
+    tracking_time: float,
+    speed: FloatArray,
+    speeding: FloatArray,
+) -> None:
+    """Fill `speed` [m/s] and `speeding` [m/s^2] with rate and acceleration of the deflection [m]."""
+    track = begin(deflection[0])
+    for i in range(deflection.size):
+        if i > 0 and time[i] > time[i - 1]:
+            track = follow(track, time[i] - time[i - 1], deflection[i], tracking_time)
+        speed[i] = rate(track)
+        speeding[i] = acceleration(track)
+
+
+def surprise_loop(
+    time: FloatArray, deflection: FloatArray, tracking_time: float, settling: int
+) -> tuple[float, float]:
+    """Return the sums of e^2/V and log V over all readings after the first `settling` ones.
+
+    e [m] is what a reading differs from what was expected of it, V its variance over that of the reading's noise. Both
+    follow from the track after it, whose gain is 1 - 1/V and whose deflection is e/V off the reading.
+    """
+    squares = logs = 0.0
+    track = begin(deflection[0])
+    for i in range(1, deflection.size):
+        track = follow(track, time[i] - time[i - 1], deflection[i], tracking_time)
+        if i >= settling:
+            certainty = 1.0 - track[3]
+            off = deflection[i] - track[0]
+            squares += off * off / certainty
+            logs -= math.log(certainty)
+    return squares, logs
+
+
+def elastic_loop(
+    deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray, answer: FloatArray
+) -> None:
+    """Fill `answer` with A x^B [N]."""
+    for i in range(deflection.size):
+        answer[i] = elastic_force(deflection[i], coefficient[i], exponent[i])

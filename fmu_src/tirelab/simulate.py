@@ -1,0 +1,153 @@
+"""The force of a tire on a whole recording: the steps of `TireModel`, sample by sample, compiled.
+
+    deflection read -> deflection of the tire -> factor -> elastic law -> forces in parallel -> inertia -> force read
+
+`simulate` does it all. A search that tries many values calls the stages itself and keeps what is upstream of what it
+varies: `history_of` (what effects may know), `respond_series` (one effect). With `signal` zero an effect in parallel
+answers with its force alone, linear in slip force, damping, shares, stiffness or mass: the column of a linear fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import Effect, State, TireModel
+from radialtire.model import Law
+
+from . import compiled
+
+FloatArray = NDArray[np.float64]
+
+UPSTREAM = ("deflection", "series")
+"""Places that change the deflection."""
+
+
+class Sampled(Protocol):
+    """What is simulated: arrays of one length, time rising."""
+
+    @property
+    def time(self) -> FloatArray:
+        """[s]."""
+        ...
+
+    @property
+    def deflection(self) -> FloatArray:
+        """[m], compressed > 0."""
+        ...
+
+    @property
+    def surface_radius(self) -> FloatArray:
+        """[m], convex > 0, concave < 0, flat infinite."""
+        ...
+
+
+@dataclass(frozen=True)
+class History:
+    """What the effects may know of every moment (see `radialtire.effect.Instant`); arrays of one length.
+
+    time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
+    coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]
+    """
+
+    time: FloatArray
+    deflection: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+    coefficient: FloatArray
+    exponent: FloatArray
+    elastic_force: FloatArray
+
+
+def simulate(tire: TireModel, recording: Sampled) -> FloatArray:
+    """Return the radial force [N] of `tire` at every sample: that of `TireModel.step` from rest, to 1e-12."""
+    history, force = elastic_stage(tire, recording)
+    force = downstream(tire, history, force, ("parallel",))
+    return downstream(tire, history, np.maximum(force, 0.0), ("inertia", "reading"))
+
+
+def elastic_stage(tire: TireModel, recording: Sampled) -> tuple[History, FloatArray]:
+    """Return what the effects after the elastic law may know, and the elastic force [N] with its factor."""
+    x = recording.deflection
+    history = history_of(tire, recording.time, x, recording.surface_radius)
+    for place in UPSTREAM:
+        history = replace(history, deflection=x)
+        x = downstream(tire, history, x, (place,))
+    rate = history.rate
+    if any(effect.place in UPSTREAM for effect, _ in tire.effects) and differentiates(tire):
+        rate, _ = track(history.time, x, tire.tracking_time)
+    bare = elastic_force(x, history.coefficient, history.exponent)
+    history = replace(history, deflection=x, rate=rate, elastic_force=bare)
+    factor = downstream(tire, history, np.ones_like(bare), ("scale",))
+    elastic = factor * bare
+    return replace(history, elastic_force=elastic), elastic
+
+
+def downstream(tire: TireModel, history: History, signal: FloatArray, places: tuple[str, ...]) -> FloatArray:
+    """Return `signal` after the effects of `tire` at `places`."""
+    for effect, values in tire.effects:
+        if effect.place in places:
+            signal = respond_series(effect, values, signal, history)
+    return signal
+
+
+def history_of(
+    tire: TireModel, time: FloatArray, deflection: FloatArray, surface_radius: FloatArray
+) -> History:
+    """Return what the first effects may know: time [s], deflection [m], surface's radius [m] of every sample."""
+    rate = acceleration = np.zeros_like(deflection)
+    if differentiates(tire):
+        rate, acceleration = track(time, deflection, tire.tracking_time)
+    A, B = coefficients(tire.law, surface_radius)
+    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection))
+
+
+def differentiates(tire: TireModel) -> bool:
+    """Return whether an effect of `tire` looks at rate or acceleration."""
+    return any(effect.differentiates for effect, _ in tire.effects)
+
+
+def respond_series(effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
+    """Return the signal after `effect` with the parameters' `values`, from rest."""
+    answer = np.empty_like(signal)
+    loop = compiled.loop("respond_loop", effect.name, effect.respond)
+    loop(
+        signal,
+        history.time,
+        history.deflection,
+        history.rate,
+        history.acceleration,
+        history.coefficient,
+        history.exponent,
+        history.elastic_force,
+        effect.rest,
+        tuple(float(value) for value in values),
+        answer,
+    )
+    return answer
+
+
+def elastic_force(deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray) -> FloatArray:
+    """Return A x^B [N] of every sample: deflection [m], A [N/cm^B], B [1]."""
+    answer = np.empty_like(deflection)
+    compiled.loop("elastic_loop", "law")(deflection, coefficient, exponent, answer)
+    return answer
+
+
+def coefficients(law: Law, surface_radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return A [N/cm^B] and B [1] of every sample; the law is asked once for each radius [m] that occurs."""
+    starts = np.flatnonzero(np.append(True, surface_radius[1:] != surface_radius[:-1]))
+    radii, which = np.unique(surface_radius[starts], return_inverse=True)
+    pairs = np.array([law.coefficients(float(radius)) for radius in radii])
+    lengths = np.diff(starts, append=surface_radius.size)
+    A, B = np.repeat(pairs[which], lengths, axis=0).T
+    return np.ascontiguousarray(A), np.ascontiguousarray(B)
+
+
+def track(time: FloatArray, deflection: FloatArray, tracking_time: float) -> tuple[FloatArray, FloatArray]:
+    """Return rate [m/s] and acceleration [m/s^2] as the tire follows them, without look-ahead (see `tracking`)."""
+    rate, acceleration = np.empty_like(deflection), np.empty_like(deflection)
+    compiled.loop("track_loop", "track")(time, deflection, float(tracking_time), rate, acceleration)
+    return rate, acceleration
