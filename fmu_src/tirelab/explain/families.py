@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 from scipy.signal import lfilter
 
+from .lag import lagged
 from .motion import BoolArray, FloatArray
 from .scene import DEEP_IN_CM, Record, Scene
 
@@ -108,6 +109,10 @@ class Family:
     after_lag: bool = False
 
 
+def scale_of(p: Place, what: str) -> float:
+    return max(float(np.sqrt(np.mean(getattr(r.motion, what) ** 2))) for r in p.scene.records) + 1e-12
+
+
 def one_each(count: int) -> list[list[int]]:
     """Return variants of one column each."""
     return [[i] for i in range(count)]
@@ -152,20 +157,43 @@ REACHES = (1e-4, 3e-4, 8e-4, 2e-3, 5e-3)
 
 def _friction(p: Place) -> FloatArray:
     load = p.elastic / p.scene.strongest
-    states = [
-        dahl(p.record.motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES
-    ]
-    return np.stack([z * share for z in states for share in (1.0, load)], axis=1)
+    contact = _contact(p)
+    states = p.record.kept(
+        "friction",
+        lambda motion: np.stack(
+            [dahl(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES]
+        ),
+    )
+    return np.stack([z * share for z in states for share in (contact, load)], axis=1)
+
+
+CLOSING = 3e-4
+"""Deflection [m] over which the contact closes, before which dry and viscous forces cannot act in full."""
+
+
+def _contact(p: Place) -> FloatArray:
+    return np.asarray(-np.expm1(-np.maximum(p.deflection, 0.0) / CLOSING))
 
 
 def _both_memories(count: int) -> list[list[int]]:
     return [list(range(count // 2)), list(range(count // 2, count))]
 
 
+RATE_EXPONENTS = (1.0, 0.6, 1.5)
+
+
 def _viscous(p: Place) -> FloatArray:
-    rate = np.where(p.deflection > 0.0, p.record.motion.rate, 0.0)
+    contact = _contact(p)
     depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
-    return np.stack([rate, rate * depth, rate * depth**2], axis=1)
+    typical = scale_of(p, "rate")
+    powers = p.record.kept(
+        "rate powers",
+        lambda motion: np.stack(
+            [np.sign(motion.rate) * np.abs(motion.rate / typical) ** n for n in RATE_EXPONENTS]
+        ),
+    )
+    columns = [power * share for power in powers for share in (contact, contact * depth)]
+    return np.stack([*columns, powers[0] * depth**2], axis=1)
 
 
 def relaxation_times(scene: Scene) -> FloatArray:
@@ -190,10 +218,26 @@ def _relaxation(p: Place) -> FloatArray:
 
 
 def _mullins(p: Place) -> FloatArray:
+    """Softer below the largest deflection so far: at once, and as the way travelled below it goes on."""
     deepest = np.maximum.accumulate(p.deflection)
     below = np.clip(1.0 - p.deflection / np.maximum(deepest, 1e-9), 0.0, 1.0)
     shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
-    return np.stack([p.elastic * shape for shape in shapes], axis=1)
+    way = np.cumsum(np.abs(np.diff(p.deflection, prepend=p.deflection[0])) * (below > 0.0))
+    damage = -np.expm1(-way / p.scene.deepest)
+    return np.stack([p.elastic * shape * part for part in (1.0, damage) for shape in shapes], axis=1)
+
+
+GAS_POWERS = (1.5, 2.0, 2.5, 3.0)
+
+
+def _gas(p: Place) -> FloatArray:
+    """The air's volume falls with a power of the deflection; the pressure rises with that, and with its square."""
+    depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
+    return np.stack([p.elastic * depth ** (power * k) for power in GAS_POWERS for k in (1, 2)], axis=1)
+
+
+def pairs(count: int) -> list[list[int]]:
+    return [[i, i + 1] for i in range(0, count, 2)]
 
 
 KNEES = np.linspace(0.40, 0.985, 40)
@@ -225,11 +269,31 @@ def _soft_knees(count: int) -> list[list[int]]:
 
 
 CEILINGS = np.linspace(0.30, 0.99, 40)
+CEILING_SOFTNESSES = (0.0, 0.02, 0.06)
+"""Ceilings of the force's reading, and how softly they are met, as parts of the largest force."""
 
 
 def _saturation(p: Place) -> FloatArray:
     force = p.elastic / p.scene.strongest
-    return np.stack([np.maximum(force - c, 0.0) for c in CEILINGS], axis=1)
+    beyond = []
+    for softness in CEILING_SOFTNESSES:
+        for ceiling in CEILINGS:
+            if softness == 0.0:
+                beyond.append(np.maximum(force - ceiling, 0.0))
+            else:
+                beyond.append(softness * np.logaddexp(0.0, (force - ceiling) / softness))
+    return np.stack([*beyond, *(force**power for power in (3, 5, 8, 12))], axis=1)
+
+
+def _soft_ceilings(count: int) -> list[list[int]]:
+    """Return one variant for each ceiling and softness, with its neighbour; and the smooth powers."""
+    soft = CEILINGS.size * len(CEILING_SOFTNESSES)
+    variants = [
+        [first + i, first + i + 1] if i + 1 < CEILINGS.size else [first + i]
+        for first in range(0, soft, CEILINGS.size)
+        for i in range(CEILINGS.size)
+    ]
+    return [*variants, *([i, i + 1] for i in range(soft, count - 1))]
 
 
 LAGS = tuple((lag, stages) for stages in (0, 1, 2) for lag in (1e-3, 2e-3, 4e-3, 8e-3, 16e-3, 32e-3, 64e-3))
@@ -237,9 +301,9 @@ LAGS = tuple((lag, stages) for stages in (0, 1, 2) for lag in (1e-3, 2e-3, 4e-3,
 
 
 def _lag(p: Place) -> FloatArray:
-    """The slope in time, and from no lag what each of LAGS would change."""
+    """The slope in time, and what each of LAGS would take away: the coefficient of the right one is -1."""
     slope = np.gradient(p.elastic, p.record.time)
-    steps = [lagged(p.record.time, p.elastic[:, None], *lag)[:, 0] - p.elastic for lag in LAGS]
+    steps = [p.elastic - lagged(p.record.time, p.elastic[:, None], *lag)[:, 0] for lag in LAGS]
     return np.stack([slope, *steps, np.zeros_like(slope)], axis=1)
 
 
@@ -251,6 +315,10 @@ def _lag_variants(count: int) -> list[list[int]]:
 def _warm(p: Place) -> FloatArray:
     part = p.record.time / p.scene.longest
     return np.stack([-p.elastic * np.expm1(-part / share) for share in (0.03, 0.1, 0.3)], axis=1)
+
+
+def _drift(p: Place) -> FloatArray:
+    return (p.record.time / p.scene.longest)[:, None]
 
 
 def _leak(p: Place) -> FloatArray:
@@ -265,116 +333,18 @@ CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("viscous_damping", _viscous, sign=1.0),
     Family("viscoelastic_relaxation", _relaxation, sign=1.0),
     Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),
-    Family("gas_compression", lambda p: (p.elastic * np.maximum(p.deflection, 0.0))[:, None], sign=1.0),
+    Family("gas_compression", _gas, pairs, sign=1.0),
     Family("bottoming", _bottoming, _soft_knees, sign=1.0),
     Family("mullins_softening", _mullins, sign=-1.0),
     Family("pressure_leak", _leak, sign=-1.0),
     Family("warm_up", _warm, sign=1.0),
+    Family("force_drift", _drift, after_lag=True),
     Family("inertia", lambda p: p.record.motion.acceleration[:, None], sign=1.0),
     Family("force_lag", _lag, _lag_variants, sign=-1.0),
-    Family("saturation", _saturation, one_each, sign=-1.0),
+    Family("saturation", _saturation, _soft_ceilings, sign=-1.0),
 )
 
 STATIC = ("deflection_offset", "series_compliance", "gas_compression")
 """Effects that depend on deflection and radius alone and everywhere: they compete with the law's own shape."""
 
 LAW_FAMILIES: tuple[Family, ...] = (Family("recalibration", _law((0, 1))), Family("shape", _law((2, 3))))
-
-
-def _cosines(values: FloatArray, first: int, last: int) -> list[FloatArray]:
-    return [np.cos(np.pi * j * values) for j in range(first, last + 1)]
-
-
-def _fine_deflection(p: Place) -> FloatArray:
-    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
-    return np.stack(_cosines(depth, 3, 26), axis=1)
-
-
-def _branch(p: Place) -> FloatArray:
-    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
-    return np.stack([p.record.motion.direction * c for c in _cosines(depth, 0, 6)], axis=1)
-
-
-def _rate_scale(p: Place) -> float:
-    return float(np.sqrt(np.mean(p.record.motion.rate ** 2))) + 1e-12
-
-
-def _rate(p: Place) -> FloatArray:
-    w = np.tanh(p.record.motion.rate / (2.0 * _scale(p, "rate")))
-    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
-    return np.stack([w**k * c for k in (1, 2, 3, 4, 5) for c in (1.0, depth, depth**2)], axis=1)
-
-
-def _scale(p: Place, what: str) -> float:
-    return max(float(np.sqrt(np.mean(getattr(r.motion, what) ** 2))) for r in p.scene.records) + 1e-12
-
-
-def _rate_and_deflection(p: Place) -> FloatArray:
-    w = np.tanh(p.record.motion.rate / (2.0 * _scale(p, "rate")))
-    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
-    return np.stack([w**k * c for k in (1, 2) for c in _cosines(depth, 1, 12)], axis=1)
-
-
-def _acceleration(p: Place) -> FloatArray:
-    w = np.tanh(p.record.motion.acceleration / (2.0 * _scale(p, "acceleration")))
-    depth = np.clip(p.deflection / p.scene.deepest, 0.0, 1.0)
-    return np.stack([w**k * c for k in (1, 2, 3) for c in (1.0, depth)], axis=1)
-
-
-def _time_scale(p: Place) -> FloatArray:
-    part = p.record.time / p.record.time[-1]
-    return np.stack([p.elastic * c for c in _cosines(part, 1, 16)], axis=1)
-
-
-def _time_added(p: Place) -> FloatArray:
-    part = p.record.time / p.record.time[-1]
-    return np.stack(_cosines(part, 1, 10), axis=1)
-
-
-def _jump(p: Place) -> FloatArray:
-    part = p.record.time / p.record.time[-1]
-    return np.stack([p.elastic * (part > at) for at in np.linspace(0.04, 0.96, 24)], axis=1)
-
-
-def _history(p: Place) -> FloatArray:
-    reach = np.clip(np.maximum.accumulate(p.deflection) / p.scene.deepest, 0.0, 1.0)
-    turned = np.clip(p.record.motion.turned / p.scene.deepest, 0.0, 1.0)
-    return np.stack(
-        [p.elastic * c for c in _cosines(reach, 1, 4)]
-        + [p.record.motion.direction * c for c in _cosines(turned, 1, 5)],
-        axis=1,
-    )
-
-
-AGNOSTIC_FAMILIES: tuple[Family, ...] = (
-    Family("deflection", _fine_deflection, agnostic=True),
-    Family("direction", _branch, agnostic=True),
-    Family("rate", _rate, agnostic=True),
-    Family("rate and deflection", _rate_and_deflection, agnostic=True),
-    Family("acceleration", _acceleration, agnostic=True),
-    Family("time", _time_scale, agnostic=True),
-    Family("time, added", _time_added, agnostic=True, after_lag=True),
-    Family("jump", _jump, one_each, agnostic=True),
-    Family("history", _history, agnostic=True),
-)
-
-
-def lagged(time: FloatArray, values: FloatArray, lag: float, stages: int) -> FloatArray:
-    """Return `values` (n, k) read through a lag [s]: a pure delay, or `stages` equal first-order stages."""
-    if lag <= 0.0:
-        return values
-    if stages == 0:
-        step = float(np.median(np.diff(time)))
-        whole = int(lag / step)
-        part = lag / step - whole
-        padded = np.concatenate([np.repeat(values[:1], whole + 1, axis=0), values])
-        count = values.shape[0]
-        return np.asarray((1.0 - part) * padded[1 : count + 1] + part * padded[:count])
-    # Each stage answers exactly to a signal linear between samples.
-    step = float(np.median(np.diff(time)))
-    ratio = step * stages / lag
-    decay = np.exp(-ratio)
-    gain = -np.expm1(-ratio) / ratio
-    for _ in range(stages):
-        values, _ = lfilter([1.0 - gain, gain - decay], [1.0, -decay], values, axis=0, zi=gain * values[:1])
-    return np.asarray(values)

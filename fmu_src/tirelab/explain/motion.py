@@ -21,8 +21,8 @@ MISFIT_ALLOWED = 1.6
 samples of a usual window, one window in twenty of pure noise exceeds it."""
 
 CORNER = 9.0
-"""Where five samples miss a cubic by this multiple of the noise variance, the motion turns within a sample: one in 400
-of pure noise."""
+"""Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by a twentieth
+of a sample's travel, the motion turns within a sample."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,9 @@ def _local_cubics(
         cubic, misfit = _cubic_at_centres(deflection, window, step)
         good = misfit < MISFIT_ALLOWED * noise**2
         if window == WINDOWS[0]:
-            resolved = misfit < CORNER * noise**2
+            travel = step * float(np.sqrt(np.mean(rate**2)))
+            resolved = misfit < np.maximum(CORNER * noise**2, (0.05 * travel) ** 2)
+            good |= misfit < (0.01 * travel) ** 2
         resolved[half : count - half] |= good[half : count - half]
         votes = np.zeros(count)
         votes_centred = np.zeros(count)

@@ -15,25 +15,36 @@ from scipy.ndimage import median_filter
 
 from ..noise import Noise, first_guess
 from .evidence import Explained, Products, explain, products_of
-from .families import LAGS, STATIC, Family, Place, Point, lagged, place_at
+from .beyond import AGNOSTIC_FAMILIES
+from .families import LAGS, STATIC, Family, Place, Point, place_at
+from .lag import lagged
 from .motion import BoolArray, FloatArray
 from .scene import Scene
 
 EFFECT_PRIOR = -3.0
 """Log prior odds of one more effect: one in twenty, about one over the number of effects to choose from."""
 
+LAW_PRIOR = -1.0
+"""Log prior odds that the believed law is another tire's: the article's own is wrong by up to 13.5 %."""
+
 AGNOSTIC_PRIOR = -8.0
 """Log prior odds that something beyond the catalogue acts in one given coordinate: one in three thousand."""
 
-HIDDEN_PRIOR = -8.0
+HIDDEN_PRIOR = -5.0
 """Log prior odds of an effect of the deflection alone beside a law whose shape is free: it explains what that can."""
 
-MATERIAL = 0.15
-"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by one
+MATERIAL = 0.1
+"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by half a
 percent: it is not named, whatever its significance."""
 
 POOR = 1.15
 """Where no settled set comes nearer to the noise than this chi square per sample, every effect is settled alone too."""
+
+FORM_ERROR = 0.015
+"""What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
+
+MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time, added": 0.6}
+"""The same for what is beyond the catalogue: slow noise and hum of the amplifier, up to half the noise, are noise."""
 
 BEAM = 6
 FEW_VARIANTS = 3
@@ -55,6 +66,7 @@ class Built:
     place: Place
     columns: dict[str, FloatArray]
     residual: FloatArray
+    raw: dict[str, FloatArray]
 
 
 def build(scene: Scene, point: Point, families: Sequence[Family]) -> list[Built]:
@@ -62,7 +74,8 @@ def build(scene: Scene, point: Point, families: Sequence[Family]) -> list[Built]
     built = []
     for number, record in enumerate(scene.records):
         place = place_at(record, scene, point)
-        columns = {f.name: f.build(place) for f in families}
+        raw = {f.name: f.build(place) for f in families}
+        columns = dict(raw)
         force = place.elastic
         on_ground = None
         if point.lifted is not None:
@@ -82,7 +95,7 @@ def build(scene: Scene, point: Point, families: Sequence[Family]) -> list[Built]
                 columns[f.name] = moving
             else:
                 columns[f.name] = _through_reading(record.time, columns[f.name], point)
-        built.append(Built(place, columns, record.force - read))
+        built.append(Built(place, columns, record.force - read, raw))
     return built
 
 
@@ -104,18 +117,18 @@ def lifted_from_force(scene: Scene) -> tuple[BoolArray, ...]:
 
 
 def lifted_at(
-    scene: Scene, point: Point, families: Sequence[Family], coefficients: Sequence[FloatArray], groups: Sequence[FloatArray]
+    built: Sequence[Built], point: Point, families: Sequence[Family], coefficients: Sequence[FloatArray], groups: Sequence[FloatArray]
 ) -> tuple[BoolArray, ...]:
     """Return where the force of the point and its families would be a pull."""
     found = []
-    for number, record in enumerate(scene.records):
-        place = place_at(record, scene, point)
-        force = place.elastic.copy()
+    for b in built:
+        force = b.place.elastic.copy()
         for f, values, columns in zip(families, coefficients, groups, strict=True):
             if f.after_lag or f.name in ("force_lag", "inertia"):
                 continue
-            held = pointed(point, f.name, f.build(place).shape[1])
-            force += f.build(place)[:, columns] @ (values - held[columns])
+            raw = b.raw[f.name]
+            held = pointed(point, f.name, raw.shape[1])
+            force += raw[:, columns] @ (values - held[columns])
         found.append(force <= 0.0)
     return tuple(found)
 
@@ -152,9 +165,9 @@ def moved(point: Point, name: str, values: FloatArray, group: FloatArray) -> Poi
     if name == "force_lag":
         if group[0] == 0:
             return replace(point, lag=float(np.clip(-values[0], 0.0, 2.0 * point.lag + 0.02)))
-        # One of the finite lags: its coefficient is near 1 where it is the right one.
+        # One of the finite lags: its coefficient is near -1 where it is the right one.
         lag, _ = LAGS[int(group[0]) - 1]
-        return replace(point, lag=lag * float(np.clip(values[0], 0.3, 1.5)))
+        return replace(point, lag=lag * float(np.clip(-values[0], 0.3, 1.5)))
     return point
 
 
@@ -214,7 +227,8 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
     """Return the candidate of the families `names`: best variants, evidence with priors, signs checked."""
     choice = {n: layout.variants[n][0] for n in names}
     many = [n for n in names if len(layout.variants[n]) > 1]
-    prior = sum(_prior(layout.families[n], "recalibration" in names) for n in names)
+    static = [n for n in names if n in STATIC]
+    prior = sum(_prior(layout.families[n], "recalibration" in names or n in static[1:]) for n in names)
     for turn in range(2 if len(many) > 1 else 1):
         for n in many:
             others = [choice[m] for m in names if m != n and (turn or m not in many[many.index(n) :])]
@@ -227,9 +241,7 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
         groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
         explained = explain(p, groups, zeta)
     evidence = explained.log_evidence + prior
-    immaterial = any(
-        u < MATERIAL for n, u in zip(names, explained.unique, strict=True) if n not in ("recalibration", "shape")
-    )
+    immaterial = _negligible(names, explained)
     if immaterial or not np.isfinite(evidence) or not _signs_hold(p, layout, names, groups, explained):
         evidence = -np.inf
     return Candidate(names, evidence, groups, explained)
@@ -244,9 +256,25 @@ def _lag_is_one(names: SetName, groups: Sequence[FloatArray], explained: Explain
     return bool(abs(bend) <= 0.6 * slope**2)
 
 
+def _negligible(names: SetName, explained: Explained) -> list[str]:
+    """Return the families of a set whose own part is not material, or less than the form of another one may err."""
+    found = []
+    effects = [(n, s) for n, s in zip(names, explained.size, strict=True) if n not in ("recalibration", "shape")]
+    for name, unique in zip(names, explained.unique, strict=True):
+        if name in ("recalibration", "shape"):
+            continue
+        largest = max((s for n, s in effects if n != name), default=0.0)
+        least = MATERIAL_BEYOND.get(name, MATERIAL)
+        if unique < max(least, FORM_ERROR * largest):
+            found.append(name)
+    return found
+
+
 def _prior(family: Family, recalibrated: bool) -> float:
     if family.name == "shape":
         return 0.0
+    if family.name == "recalibration":
+        return LAW_PRIOR
     if family.agnostic:
         return AGNOSTIC_PRIOR
     return HIDDEN_PRIOR if recalibrated and family.name in STATIC else EFFECT_PRIOR
@@ -334,7 +362,7 @@ def _settle(
             best = settled
         starts = np.cumsum([0, *(layout.count[n] for n in names)])
         own = [g - start for g, start in zip(candidate.groups, starts, strict=False)]
-        lifted = lifted_at(scene, point, chosen, candidate.explained.coefficients, own)
+        lifted = lifted_at(built, point, chosen, candidate.explained.coefficients, own)
         following = replace(point, lifted=lifted)
         for name, values, group in zip(names, candidate.explained.coefficients, own, strict=True):
             following = moved(following, name, values, group)
@@ -392,11 +420,8 @@ def law_whole(names: Iterable[str]) -> SetName:
 
 def material(candidate: Candidate) -> SetName:
     """Return the set without the families that are not material in it."""
-    return law_whole(
-        n
-        for n, unique in zip(candidate.names, candidate.explained.unique, strict=True)
-        if n == "recalibration" or unique >= MATERIAL
-    )
+    negligible = _negligible(candidate.names, candidate.explained)
+    return law_whole(n for n in candidate.names if n not in negligible)
 
 
 @dataclass(frozen=True)
@@ -447,11 +472,23 @@ class Screen:
             for n in self.layout.families:
                 if self.allowed(left, n):
                     self.judged((*left, n))
+        self.judged((*(n for n in names if n not in STATIC), "recalibration"))
 
     def seeds(self) -> list[SetName]:
         """Return every family of the catalogue alone and beside a free law."""
         known = [n for n, f in self.layout.families.items() if not f.agnostic and n not in ("shape", "recalibration")]
         return [law_whole(s) for n in known for s in ((n,), (n, "recalibration"))]
+
+    def instead_of_unknown(self, names: SetName) -> list[SetName]:
+        """Return, for what is beyond the catalogue in a set, the three effects that do best in its place."""
+        found: list[SetName] = []
+        for gone in (n for n in names if self.layout.families[n].agnostic):
+            left = tuple(n for n in names if n != gone)
+            known = [n for n, f in self.layout.families.items() if not f.agnostic and self.allowed(left, n)]
+            found += sorted((law_whole((*left, n)) for n in known), key=lambda s: -self.judged(s).log_evidence)[:3]
+        if any(self.layout.families[n].agnostic for n in names) or any(n in STATIC for n in names):
+            found.append(law_whole((*(n for n in names if n not in STATIC), "recalibration")))
+        return found
 
     def best(self, count: int) -> list[Candidate]:
         """Return the `count` best candidates within CLOSE of the best."""
@@ -493,7 +530,8 @@ def search(
         top = before.names if before else screen.best(1)[0].names
         screen.neighbours(top)
         compared += len(screen.seen)
-        settle_all([c.names for c in screen.best(6)], point)
+        settle_all([c.names for c in screen.best(8)], point)
+        settle_all(screen.instead_of_unknown(top), point)
         if turn == 0 and min(s.candidate.explained.chi_square for s in settled.values()) > POOR:
             settle_all(screen.seeds(), point)
         best = max(settled.values(), key=lambda s: s.log_evidence)
