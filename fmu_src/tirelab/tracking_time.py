@@ -6,7 +6,7 @@ the surprise of reading i and V_i its variance in units of s^2,
 
     -2 log L = n log(s^2) + sum(log V_i),   s^2 = sum(e_i^2 / V_i) / n
 
-s is each recording's own. On rides to 20 Hz read at 400 Hz this T comes within 3 % of the least error of the rate.
+s is each recording's own. On rides to 8 Hz read at 400 Hz this T comes within 5 % of the least error of the rate.
 
 A slow recording says nothing of fast motions: its likeliest T is long, and would smear a ride. So T is never longer
 than the one of a ride's jerk and the noise found.
@@ -28,7 +28,7 @@ BOUNDS = (1e-5, 1.0)
 """Shortest and longest tracking time [s] considered."""
 
 RIDE_JERK = 1e3
-"""q [m^2/s^5] of the deflections of a ride with content to 20 Hz and 5 mm of standard deviation."""
+"""q [m^2/s^5] of the deflections of a ride with content to 8 Hz and 5 mm of standard deviation."""
 
 SETTLING = 10
 """Readings after which the track has forgotten that it knew nothing of rate and acceleration."""

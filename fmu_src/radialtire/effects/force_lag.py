@@ -38,7 +38,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         two = force + force
         four = two + two
         forces = four + four + four + four
-    elif instant.interval <= 0.0 or now - times[LAST - 1] < delta / (LAST - 1):
+    elif instant.interval <= 0.0 or times[LAST] - times[LAST - 1] < delta / (LAST - 1):
         times, forces = times[:LAST] + newest, forces[:LAST] + force
     else:
         times, forces = times[1:] + newest, forces[1:] + force

@@ -1,0 +1,161 @@
+"""Tires as files: what is written is read back exactly, and what is wrong is said with its place."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from driving import tire_with
+from radialtire import (
+    CATALOGUE,
+    Hull1996,
+    ParameterError,
+    PowerLaw,
+    TestedRange,
+    TireFileError,
+    TireModel,
+    parameters_of,
+    read_tire,
+    with_parameters,
+    write_tire,
+)
+
+TIRES = [
+    TireModel(),
+    TireModel(PowerLaw(1500.0, 1.0), tested_range=None, name="road", source="quoted"),
+    TireModel(Hull1996(flat_coefficient=600.1), tested_range=TestedRange(force_max=0.1 + 0.2)),
+    tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), tracking_time=2.3e-3),
+]
+
+
+def written(tmp_path: Path, content: Any) -> Path:
+    path = tmp_path / "tire.json"
+    path.write_text(content if isinstance(content, str) else json.dumps(content), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("tire", TIRES)
+def test_what_is_written_is_read_back_exactly(tire: TireModel, tmp_path: Path) -> None:
+    write_tire(tire, tmp_path / "tire.json")
+    assert read_tire(tmp_path / "tire.json") == tire
+
+
+def test_a_tire_of_law_and_schema_alone_has_the_starts(tmp_path: Path) -> None:
+    tire = read_tire(written(tmp_path, {"schema": 1, "law": {"name": "hull1996"}}))
+    assert tire == TireModel(tested_range=None, name="", source="")
+
+
+def test_effects_of_a_file_may_stand_in_any_order(tmp_path: Path) -> None:
+    effects = [
+        {"name": "inertia", "parameters": {"mass": 2}},
+        {"name": "viscous_damping", "parameters": {"damping": 300.0}},
+        {"name": "deflection_offset"},
+    ]
+    tire = read_tire(written(tmp_path, {"schema": 1, "law": {"name": "power_law"}, "effects": effects}))
+    assert [effect.name for effect, _ in tire.effects] == ["deflection_offset", "viscous_damping", "inertia"]
+    assert [values for _, values in tire.effects] == [(0.0,), (300.0, 1.0, 0.0), (2.0,)]
+
+
+LAW = {"name": "hull1996"}
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("{", "not JSON (Expecting property name enclosed in double quotes: line 1 column 2 (char 1))"),
+        ("[" * 100_000, "not JSON (maximum recursion depth exceeded"),
+        ([], "the tire must be an object with law, schema, not []"),
+        ({"law": LAW}, "the tire lacks its entry 'schema'; add it"),
+        ({"schema": 1}, "the tire lacks its entry 'law'; add it"),
+        ({"schema": 2, "law": LAW}, "schema 2 is not 1; use the version that wrote the file"),
+        (
+            {"schema": 1, "law": LAW, "colour": "red"},
+            "the tire has an unknown entry 'colour'; known are effects, law",
+        ),
+        ({"schema": 1, "law": LAW, "name": 5}, "name must be text, not 5"),
+        ({"schema": 1, "law": "hull1996"}, "the law must be an object with name, not 'hull1996'"),
+        ({"schema": 1, "law": {"name": "hook"}}, "unknown law 'hook'; known are hull1996, power_law"),
+        ({"schema": 1, "law": {"name": ["hull1996"]}}, "unknown law ['hull1996']"),
+        (
+            {"schema": 1, "law": {**LAW, "parameters": {"A": 1}}},
+            "the parameters of hull1996 has an unknown entry 'A'",
+        ),
+        (
+            {"schema": 1, "law": {**LAW, "parameters": {"flat_exponent": "1"}}},
+            "flat_exponent = '1' is not a number; it must lie between 0.1 and 10",
+        ),
+        ({"schema": 1, "law": LAW, "effects": {}}, "effects must be a list, not {}"),
+        (
+            {"schema": 1, "law": LAW, "effects": ["inertia"]},
+            "an effect must be an object with name, not 'inertia'",
+        ),
+        ({"schema": 1, "law": LAW, "effects": [{"name": "magic"}]}, "unknown effect 'magic'; known are"),
+        ({"schema": 1, "law": LAW, "effects": [{"name": None}]}, "unknown effect None; known are"),
+        (
+            {"schema": 1, "law": LAW, "effects": [{"name": "inertia"}, {"name": "inertia"}]},
+            "an effect occurs twice in inertia, inertia; keep one of each",
+        ),
+        (
+            {"schema": 1, "law": LAW, "effects": [{"name": "inertia", "parameters": {"mass": -1}}]},
+            "mass = -1 is not allowed; it must lie between 0 and 100 kg",
+        ),
+        ({"schema": 1, "law": LAW, "tracking_time": "fast"}, "tracking_time = 'fast' is not a number"),
+        ({"schema": 1, "law": LAW, "tested_range": {"force_max": 1.0}}, "tested_range lacks its entry"),
+        (
+            '{"schema": 1, "law": {"name": "hull1996"}, "tested_range": {"curvature_min": -1, "curvature_max": NaN, '
+            '"deflection_max": 1, "force_max": 1}}',
+            "tested_range curvature_max = nan is not a finite number",
+        ),
+        (
+            '{"schema": 1, "law": {"name": "hull1996"}, "tested_range": {"curvature_min": true, "curvature_max": 1, '
+            '"deflection_max": 1, "force_max": 1}}',
+            "tested_range curvature_min = True is not a finite number",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_place(content: Any, said: str, tmp_path: Path) -> None:
+    path = written(tmp_path, content)
+    with pytest.raises(TireFileError) as refusal:
+        read_tire(path)
+    assert str(refusal.value).startswith(f"{path}: ")
+    assert said in str(refusal.value)
+
+
+def test_a_file_that_is_not_there_is_said_so(tmp_path: Path) -> None:
+    with pytest.raises(TireFileError, match=r"No such file or directory; name a tire file that can be read$"):
+        read_tire(tmp_path / "none.json")
+
+
+def test_a_file_that_is_not_text_is_said_so(tmp_path: Path) -> None:
+    path = tmp_path / "tire.json"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(TireFileError, match="not UTF-8 text; a tire file is JSON in UTF-8"):
+        read_tire(path)
+
+
+def test_parameters_are_named_by_their_owner() -> None:
+    tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0)))
+    found = {name: value for name, (_, value) in parameters_of(tire).items()}
+    assert found["law.flat_exponent"] == 1.422
+    assert found["viscous_damping.damping"] == 300.0
+    assert len(found) == len(Hull1996.parameters) + 3
+
+
+def test_parameters_can_be_replaced_by_name() -> None:
+    tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0)), ("inertia", (2.0,)))
+    other = with_parameters(tire, {"viscous_damping.damping": 1.0, "law.flat_coefficient": 600.0})
+    assert other.effects == tire_with(("viscous_damping", (1.0, 1.0, 0.0)), ("inertia", (2.0,))).effects
+    assert other.law == Hull1996(flat_coefficient=600.0)
+    assert with_parameters(tire, {}) == tire
+
+
+def test_a_replacement_outside_its_bounds_is_refused() -> None:
+    with pytest.raises(ParameterError, match="mass = -2 is not allowed; it must lie between 0 and 100 kg"):
+        with_parameters(tire_with(("inertia", (2.0,))), {"inertia.mass": -2.0})
+
+
+def test_a_parameter_that_does_not_exist_is_not_made_up() -> None:
+    with pytest.raises(KeyError, match=r"inertia\.mass"):
+        with_parameters(TireModel(), {"inertia.mass": 2.0})
