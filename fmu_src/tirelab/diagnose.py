@@ -120,7 +120,7 @@ def diagnose(
     tell("fitting the parameters")
     believed = replace(tire, tracking_time=likeliest_tracking(recordings).tracking_time)
     cases = [
-        Case(recording, recording.force, noise, record.rows)
+        Case(recording, recording.force, noise, record.rows, np.zeros(record.rows.size))
         for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
     ]
     fitted = _refit(best, believed, cases, scene, families)
@@ -235,16 +235,12 @@ def _refit(
     beyond = [n for n in settled.names if n in BEYOND]
     # What is beyond the catalogue is taken out first: no effect is bent to follow it.
     cleared = [
-        replace(case, force=case.force - sum((parts[n][i] for n in beyond), np.zeros_like(case.force)))
-        for i, case in enumerate(cases)
+        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
     ]
     middle = np.log(50.0 * scene.deepest)
     shape = settled.point.shape
     law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
-    answer = refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
-    if not beyond:
-        return answer
-    return replace(answer, residuals=tuple(c.force - simulate(answer.tire, c.recording) for c in cases))
+    return refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
 
 
 def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:

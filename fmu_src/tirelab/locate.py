@@ -70,7 +70,8 @@ def locate(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise
     floor = np.concatenate([np.full(r.size, n.level**2) for r, n in zip(residuals, noises, strict=True)])
     beyond = residual**2 - floor
     whole = max(float(np.sum(beyond)), 1e-12)
-    blocks = _blocks(residuals, noises)
+    strides = [max(r.time.size // r.rows.size, 1) for r in scene.records]
+    blocks = _blocks(residuals, noises, strides)
     found = []
     for by, unit, values, edges, labels in _coordinates(scene):
         for i in range(len(edges) - 1):
@@ -88,12 +89,14 @@ def locate(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise
     return tuple(sorted(judged, key=lambda s: (-int(s.significant), -s.share)))
 
 
-def _blocks(residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> IndexArray:
+def _blocks(
+    residuals: Sequence[FloatArray], noises: Sequence[Noise], strides: Sequence[int]
+) -> IndexArray:
     """Return the number of the block of each sample: at least four correlation lengths of the noise long."""
     total = sum(r.size for r in residuals)
     numbers, at = [], 0
-    for r, n in zip(residuals, noises, strict=True):
-        length = max(int(np.ceil(4.0 * n.correlation_samples)), -(-total // BLOCKS), 2)
+    for r, n, stride in zip(residuals, noises, strides, strict=True):
+        length = max(int(np.ceil(4.0 * stride * n.correlation_samples)), -(-total // BLOCKS), 2)
         numbers.append(at + np.arange(r.size) // length)
         at = int(numbers[-1][-1]) + 1
     return np.concatenate(numbers)

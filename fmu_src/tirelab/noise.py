@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
-from .explain.motion import BoolArray, FloatArray, IndexArray
+from .explain.motion import BoolArray, FloatArray
 
 ORDERS = (0, 1, 2, 4, 8, 16)
 """Orders of autoregression tried; 16 holds a slow drift and a mains hum at once."""
@@ -58,17 +58,6 @@ class Noise:
         if self.filter.size > 1:
             scaled = lfilter(self.filter, [1.0], scaled, axis=0)
         return np.asarray(scaled * self.weight[across])
-
-
-    def whitened_at(self, values: FloatArray, rows: IndexArray) -> FloatArray:
-        """Return the rows `rows` of `whitened(values)`, without the others."""
-        across = (slice(None),) + (None,) * (values.ndim - 1)
-        inverse = 1.0 / (self.innovation * self.spread)
-        result = np.zeros((rows.size, *values.shape[1:]))
-        for back, coefficient in enumerate(self.filter):
-            source = np.maximum(rows - back, 0)
-            result += (coefficient * inverse[source])[across] * values[source]
-        return result * self.weight[rows][across]
 
 
 def first_guess(residual: FloatArray) -> Noise:

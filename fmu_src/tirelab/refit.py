@@ -15,7 +15,7 @@ from radialtire import CATALOGUE, Effect, Parameter, Recalibrated, State, TireMo
 from radialtire.effect import PLACES
 from scipy.optimize import least_squares
 
-from .explain.motion import FloatArray
+from .explain.motion import FloatArray, IndexArray
 from .noise import Noise
 from .simulate import Sampled, simulate
 
@@ -29,12 +29,13 @@ STEP = 1e-4
 
 @dataclass(frozen=True)
 class Case:
-    """One recording with its noise, and which of its samples are compared."""
+    """One recording with its noise, which of its samples are compared, and what of their force is not to be followed."""
 
     recording: Sampled
     force: FloatArray
     noise: Noise
-    rows: FloatArray
+    rows: IndexArray
+    beyond: FloatArray
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,7 @@ def _matched(
     """Return the effect's values whose response comes nearest to its part in the search [N]."""
     best: tuple[float, State] = (np.inf, effect.typical)
     amplitudes = [i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"]
-    wanted = np.concatenate([t[c.rows] for t, c in zip(target, cases, strict=True)])
+    wanted = np.concatenate(target)
     bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
     for values in starts_of(effect, deepest, strongest):
         trial = values
@@ -197,7 +198,7 @@ def refit(
 ) -> Refit:
     """Return the believed tire with the effects `names` fitted to the cases.
 
-    parts: what each effect adds in the search [N], sample by sample; law (surfaces, 2): first guess of the law's changes
+    parts: what each effect adds in the search [N], at the rows of each case; law (surfaces, 2): first guess of the law's changes
     on `radii` [m]; deepest [m], strongest [N]: largest deflection and force
     """
     law_knobs = [k for k in knobs_of(names, radii, False, deepest) if k.owner == "law"]
@@ -241,7 +242,9 @@ def _fit(
         nonlocal evaluations
         evaluations += 1
         tire = assemble(believed, knobs, scaled * scale, radii)
-        parts = [c.noise.whitened_at(c.force - simulate(tire, c.recording), c.rows) for c in cases]
+        parts = [
+            c.noise.whitened((c.force - simulate(tire, c.recording))[c.rows] - c.beyond) for c in cases
+        ]
         return np.concatenate(parts)
 
     centre = np.clip(start / scale, low, high)

@@ -11,7 +11,7 @@ from radialtire import CATALOGUE, TireModel
 from .explain.beyond import AGNOSTIC_FAMILIES
 from .explain.motion import FloatArray
 from .explain.scene import Scene
-from .explain.search import Settled
+from .explain.search import MATERIAL, Settled
 from .locate import Span
 from .separate import SeparatingTest
 
@@ -181,12 +181,24 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     found: dict[tuple[str, ...], float] = {}
     for s in settled[1:]:
         gap = best.log_evidence - s.log_evidence
+        if not np.isfinite(gap) or _adds_nothing(s, best):
+            continue
         if gap < DECIDABLE and named(s) != named(best) and named(s) not in found:
             found[named(s)] = gap
     for names in one_rate_rivals(named(best), scene):
         found.setdefault(names, DECIDABLE)
     order = sorted(found.items(), key=lambda item: item[1])[:MOST_RIVALS]
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
+
+
+def _adds_nothing(settled: Settled, best: Settled) -> bool:
+    """Return whether a set is the best one with something beside it that is not material."""
+    more = set(named(settled)) - set(named(best))
+    if not more or not set(named(best)) < set(named(settled)):
+        return False
+    own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
+    law = max(own.get("recalibration", 0.0), own.get("shape", 0.0))
+    return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
 
 
 LOOPS = ("rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "force_lag")

@@ -28,9 +28,8 @@ def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[
     noises = [first_guess(b.residual) for b in built]
     total = sum(b.residual.size for b in built)
     for _ in range(ROUNDS):
-        rows = [r.rows for r in scene.records]
-        data = [n.whitened_at(b.residual, r) for n, b, r in zip(noises, built, rows, strict=True)]
-        white = [n.whitened_at(c, r) for n, c, r in zip(noises, columns, rows, strict=True)]
+        data = [n.whitened(b.residual) for n, b in zip(noises, built, strict=True)]
+        white = [n.whitened(c) for n, c in zip(noises, columns, strict=True)]
         explained = explain(products_of(np.concatenate(white), np.concatenate(data)), groups, 1.0)
         following = []
         for b, own, record in zip(built, columns, scene.records, strict=True):
@@ -39,7 +38,7 @@ def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[
                 left -= own[:, group] @ values
             freedom = explained.freedom * left.size / total
             through = b.place.stiffness * record.motion.noise
-            following.append(noise_of(left, through, freedom, record.motion.resolved))
+            following.append(noise_of(left, through, freedom, record.thin.motion.resolved))
         noises = following
     return tuple(noises)
 

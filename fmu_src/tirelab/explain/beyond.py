@@ -60,7 +60,7 @@ MOST_SEPARATE = 4
 def _own(p: Place, columns: list[FloatArray]) -> FloatArray:
     """Return the columns of one recording beside nothing in the place of the others'."""
     count = min(len(p.scene.records), MOST_SEPARATE)
-    number = next(i for i, r in enumerate(p.scene.records) if r is p.record) % count
+    number = p.record.number % count
     wide = np.zeros((p.elastic.size, count * len(columns)))
     wide[:, number * len(columns) : (number + 1) * len(columns)] = np.stack(columns, axis=1)
     return wide
@@ -145,7 +145,7 @@ AGNOSTIC_FAMILIES: tuple[Family, ...] = (
     Family("time, added", _time_added, agnostic=True, after_lag=True),
     Family("jump", _jump, one_each, agnostic=True),
     Family("history", _history, agnostic=True),
-    Family("resonance", _resonance, pairs, agnostic=True),
+    Family("resonance", _resonance, pairs, agnostic=True, remembers=True),
     Family("period, added", _periodic, agnostic=True, after_lag=True),
     Family("period", _periodic_scale, agnostic=True),
     Family("way", _periodic_way, agnostic=True),

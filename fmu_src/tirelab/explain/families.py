@@ -98,6 +98,7 @@ class Family:
     variants: lists of column numbers, one of which is used; None means all columns together
     sign: +1 or -1 where the projection on the first variant's leading column must be so, 0 where both are allowed
     agnostic: True for a smooth function of coordinates that is no physics of the catalogue
+    remembers: True where the columns need every sample before
     after_lag: True where the columns are added behind the lag of the force's reading
     """
 
@@ -107,6 +108,7 @@ class Family:
     sign: float = 0.0
     agnostic: bool = False
     after_lag: bool = False
+    remembers: bool = False
 
 
 def scale_of(p: Place, what: str) -> float:
@@ -331,16 +333,16 @@ CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("force_offset", lambda p: np.ones((p.elastic.size, 1)), after_lag=True),
     Family("rate_independent_hysteresis", _friction, _both_memories, sign=1.0),
     Family("viscous_damping", _viscous, sign=1.0),
-    Family("viscoelastic_relaxation", _relaxation, sign=1.0),
+    Family("viscoelastic_relaxation", _relaxation, sign=1.0, remembers=True),
     Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),
     Family("gas_compression", _gas, pairs, sign=1.0),
     Family("bottoming", _bottoming, _soft_knees, sign=1.0),
-    Family("mullins_softening", _mullins, sign=-1.0),
+    Family("mullins_softening", _mullins, sign=-1.0, remembers=True),
     Family("pressure_leak", _leak, sign=-1.0),
     Family("warm_up", _warm, sign=1.0),
     Family("force_drift", _drift, after_lag=True),
     Family("inertia", lambda p: p.record.motion.acceleration[:, None], sign=1.0),
-    Family("force_lag", _lag, _lag_variants, sign=-1.0),
+    Family("force_lag", _lag, _lag_variants, sign=-1.0, remembers=True),
     Family("saturation", _saturation, _soft_ceilings, sign=-1.0),
 )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -26,7 +27,8 @@ class Record:
     """One recording as the candidates see it.
 
     time [s], force [N] as read; motion; surface: weights (n, surfaces) of the law's support points, rows sum to 1;
-    coefficient A [N/cm^B], exponent B [1] of the believed law; rows: indices of the samples that are compared
+    coefficient A [N/cm^B], exponent B [1] of the believed law; rows: indices of the samples that are compared;
+    number: of the recording; whole: the recording of which this one is a part
     """
 
     time: FloatArray
@@ -36,12 +38,28 @@ class Record:
     coefficient: FloatArray
     exponent: FloatArray
     rows: IndexArray
+    number: int
+    whole: Record | None = field(default=None, repr=False)
     memory: dict[str, FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
+    @cached_property
+    def thin(self) -> Record:
+        """The recording at its `rows` alone; what remembers is still computed on the whole of it."""
+        rows = self.rows
+        if rows.size == self.time.size:
+            return self
+        motion = Motion(**{k: v if k == "noise" else v[rows] for k, v in self.motion.__dict__.items()})
+        arrays = (self.time, self.force, motion, self.surface, self.coefficient, self.exponent)
+        sliced = [a if isinstance(a, Motion) else a[rows] for a in arrays]
+        return Record(*sliced, np.arange(rows.size), self.number, self)  # type: ignore[arg-type]
+
     def kept(self, name: str, compute: Callable[[Motion], FloatArray]) -> FloatArray:
-        """Return what `compute` makes of the motion, computed once."""
+        """Return what `compute` makes of the whole motion, computed once; its last axis is that of the samples."""
         if name not in self.memory:
-            self.memory[name] = compute(self.motion)
+            if self.whole is None:
+                self.memory[name] = compute(self.motion)
+            else:
+                self.memory[name] = np.ascontiguousarray(self.whole.kept(name, compute)[..., self.whole.rows])
         return self.memory[name]
 
     def kept_lines(self, course: FloatArray, weight: FloatArray, count: int) -> FloatArray:
@@ -130,7 +148,7 @@ def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArr
     radii = _support(np.concatenate([np.unique(r) for _, _, r, _ in recordings]))
     records = []
     share = ROWS // len(recordings)
-    for time, deflection, radius, force in recordings:
+    for number, (time, deflection, radius, force) in enumerate(recordings):
         distinct, inverse = np.unique(radius, return_inverse=True)
         pairs = np.array([tire.law.coefficients(float(r)) for r in distinct])
         weights = np.stack([_hats(float(r), radii) for r in distinct])
@@ -143,6 +161,7 @@ def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArr
                 pairs[inverse, 0],
                 pairs[inverse, 1],
                 np.arange(0, time.size, -(-time.size // share)),
+                number,
             )
         )
     return Scene(

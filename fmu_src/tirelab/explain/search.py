@@ -19,7 +19,7 @@ from .beyond import AGNOSTIC_FAMILIES
 from .families import LAGS, STATIC, Family, Place, Point, place_at
 from .lag import lagged
 from .motion import BoolArray, FloatArray
-from .scene import Scene
+from .scene import Record, Scene
 
 EFFECT_PRIOR = -3.0
 """Log prior odds of one more effect: one in twenty, about one over the number of effects to choose from."""
@@ -46,6 +46,9 @@ FORM_ERROR = 0.015
 MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time, added": 0.6}
 """The same for what is beyond the catalogue: slow noise and hum of the amplifier, up to half the noise, are noise."""
 
+UNKNOWN_FORM = 0.08
+"""The same for what is beyond the catalogue, whose form is anybody's."""
+
 BEAM = 6
 FEW_VARIANTS = 3
 """Up to so many variants of a family are compared as wholes, more by what their leading columns explain."""
@@ -71,32 +74,47 @@ class Built:
 
 def build(scene: Scene, point: Point, families: Sequence[Family]) -> list[Built]:
     """Return the columns of `families` for each recording, around `point`, and the residual there."""
-    built = []
-    for number, record in enumerate(scene.records):
-        place = place_at(record, scene, point)
-        raw = {f.name: f.build(place) for f in families}
-        columns = dict(raw)
-        force = place.elastic
-        on_ground = None
-        if point.lifted is not None:
-            on_ground = ~point.lifted[number]
-            force = force * on_ground
-        read = _through_reading(record.time, force, point)
-        for f in families:
-            if f.after_lag:
-                continue
-            if on_ground is not None:
-                columns[f.name] = columns[f.name] * on_ground[:, None]
-            if f.name == "force_lag" and point.lag > 0.0:
-                # Away from no lag its slope alone is a column: the other lags are reached by moving the point.
-                moving = np.zeros_like(columns[f.name])
-                moving[:, 0] = np.gradient(read, record.time)
-                moving[:, -1] = np.gradient(moving[:, 0], record.time)
-                columns[f.name] = moving
-            else:
-                columns[f.name] = _through_reading(record.time, columns[f.name], point)
-        built.append(Built(place, columns, record.force - read, raw))
-    return built
+    return [_build_late(scene, r, point, families) if point.lag > 0.0 else _build(scene, r, point, families) for r in scene.records]
+
+
+def _build(scene: Scene, record: Record, point: Point, families: Sequence[Family]) -> Built:
+    place = place_at(record.thin, scene, point)
+    whole = place
+    if record.thin is not record and any(f.remembers for f in families):
+        whole = place_at(record, scene, point)
+    raw = {f.name: f.build(whole)[record.rows] if f.remembers else f.build(place) for f in families}
+    columns, force = raw, place.elastic
+    if point.lifted is not None:
+        on_ground = ~point.lifted[record.number]
+        force = force * on_ground
+        if not on_ground.all():
+            columns = {f.name: raw[f.name] if f.after_lag else raw[f.name] * on_ground[:, None] for f in families}
+    return Built(place, columns, record.thin.force - force, raw)
+
+
+def _build_late(scene: Scene, record: Record, point: Point, families: Sequence[Family]) -> Built:
+    """Build with a lag, for which every sample is needed."""
+    place = place_at(record, scene, point)
+    rows = record.rows
+    force = place.elastic
+    on_ground = np.ones(force.size, dtype=bool)
+    if point.lifted is not None:
+        near = np.minimum(np.arange(force.size) // max(int(rows[1] - rows[0]), 1), rows.size - 1)
+        on_ground = ~point.lifted[record.number][near]
+    read = _through_reading(record.time, force * on_ground, point)
+    raw, columns = {}, {}
+    for f in families:
+        own = f.build(place)
+        raw[f.name] = own[rows]
+        if f.name == "force_lag":
+            # Away from no lag its slope alone is a column: the other lags are reached by moving the point.
+            own = np.zeros_like(own)
+            own[:, 0] = np.gradient(read, record.time)
+            own[:, -1] = np.gradient(own[:, 0], record.time)
+        elif not f.after_lag:
+            own = _through_reading(record.time, own * on_ground[:, None], point)
+        columns[f.name] = own[rows]
+    return Built(place_at(record.thin, scene, point), columns, record.thin.force - read[rows], raw)
 
 
 def _through_reading(time: FloatArray, values: FloatArray, point: Point) -> FloatArray:
@@ -109,7 +127,8 @@ def _through_reading(time: FloatArray, values: FloatArray, point: Point) -> Floa
 def lifted_from_force(scene: Scene) -> tuple[BoolArray, ...]:
     """Return where each recording reads no force although the bare law has some: a first guess of lift-off."""
     found = []
-    for record in scene.records:
+    for whole in scene.records:
+        record = whole.thin
         elastic = record.elastic(record.motion.deflection)
         sigma = first_guess(record.force - elastic).innovation
         found.append((median_filter(record.force, 3) < 2.0 * sigma) & (elastic > 4.0 * sigma))
@@ -207,9 +226,8 @@ def measure(
             values = pointed(point, f.name, b.columns[f.name].shape[1])
             if np.any(values):
                 held += b.columns[f.name] @ values
-        rows = b.place.record.rows
-        columns.append(noise.whitened_at(np.concatenate([b.columns[f.name] for f in families], axis=1), rows))
-        data.append(noise.whitened_at(held, rows))
+        columns.append(noise.whitened(np.concatenate([b.columns[f.name] for f in families], axis=1)))
+        data.append(noise.whitened(held))
     return products_of(np.concatenate(columns), np.concatenate(data))
 
 
@@ -259,13 +277,22 @@ def _lag_is_one(names: SetName, groups: Sequence[FloatArray], explained: Explain
 def _negligible(names: SetName, explained: Explained) -> list[str]:
     """Return the families of a set whose own part is not material, or less than the form of another one may err."""
     found = []
-    effects = [(n, s) for n, s in zip(names, explained.size, strict=True) if n not in ("recalibration", "shape")]
-    for name, unique in zip(names, explained.unique, strict=True):
-        if name in ("recalibration", "shape"):
+    sizes = dict(zip(names, explained.size, strict=True))
+    own = dict(zip(names, explained.unique, strict=True))
+    law = float(np.hypot(own.get("recalibration", 0.0), own.get("shape", 0.0)))
+    for name in names:
+        if name == "shape":
             continue
-        largest = max((s for n, s in effects if n != name), default=0.0)
-        least = MATERIAL_BEYOND.get(name, MATERIAL)
-        if unique < max(least, FORM_ERROR * largest):
+        doubt = max(
+            (
+                (UNKNOWN_FORM if n in MATERIAL_BEYOND else FORM_ERROR) * size
+                for n, size in sizes.items()
+                if n not in (name, "shape", "recalibration")
+            ),
+            default=0.0,
+        )
+        unique = law if name == "recalibration" else own[name]
+        if unique < max(MATERIAL_BEYOND.get(name, MATERIAL), doubt):
             found.append(name)
     return found
 
@@ -406,9 +433,7 @@ def _same_ground(a: Point, b: Point) -> bool:
 
 
 def _nothing(built: Sequence[Built], noises: Sequence[Noise]) -> Products:
-    data = np.concatenate(
-        [n.whitened_at(b.residual, b.place.record.rows) for b, n in zip(built, noises, strict=True)]
-    )
+    data = np.concatenate([n.whitened(b.residual) for b, n in zip(built, noises, strict=True)])
     return Products(np.zeros((0, 0)), np.zeros(0), float(data @ data), data.size, np.zeros(0))
 
 
