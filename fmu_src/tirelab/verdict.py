@@ -24,7 +24,10 @@ the form of the effects."""
 
 MOST_RIVALS = 4
 
-SUREST = 0.97
+FORM_DOUBT = 0.5
+"""Power to which odds between sets are taken: the forms of two sets err independently, each as much as is allowed for."""
+
+SUREST = 0.95
 """No verdict is surer than this: the chance that the recording's own trouble is none that was thought of."""
 
 
@@ -161,16 +164,35 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
+CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
+    (
+        frozenset({"deflection", "direction"}),
+        frozenset({"deflection_offset", "series_compliance", "gas_compression", "bottoming", "saturation"}),
+    ),
+    (
+        frozenset({"time", "time, added", "jump", "period", "period, added"}),
+        frozenset({"pressure_leak", "warm_up", "force_drift", "mullins_softening"}),
+    ),
+    (
+        frozenset({"rate", "rate and deflection", "acceleration", "resonance"}),
+        frozenset({"viscous_damping", "viscoelastic_relaxation", "force_lag", "inertia"}),
+    ),
+)
+"""Coordinates, and the effects that are told by them: where one stays unexplained, its effects cannot be named."""
+
+
 def named(settled: Settled) -> tuple[str, ...]:
-    """Return the names of a settled set as a verdict gives them."""
-    known = [n for n in settled.names if n not in BEYOND and n != "shape"]
-    return (*known, *((UNKNOWN,) if len(known) < len([n for n in settled.names if n != "shape"]) else ()))
+    """Return the names of a settled set as a verdict gives them: none that is told by what stays unexplained."""
+    beyond = BEYOND & set(settled.names)
+    doubtful = {n for coordinates, effects in CONCERNS if coordinates & beyond for n in effects}
+    known = [n for n in settled.names if n not in BEYOND and n != "shape" and n not in doubtful]
+    return (*known, *((UNKNOWN,) if beyond else ()))
 
 
 def confidence_of(settled: Sequence[Settled]) -> float:
     """Return the probability of the first set's names among all sets that were settled."""
     logs = np.array([s.log_evidence for s in settled])
-    weights = np.exp(np.where(np.isfinite(logs), logs, -np.inf) - logs[0])
+    weights = np.exp(FORM_DOUBT * (np.where(np.isfinite(logs), logs, -np.inf) - logs[0]))
     same = np.array([named(s) == named(settled[0]) for s in settled])
     return SUREST * float(np.sum(weights[same]) / np.sum(weights))
 

@@ -129,18 +129,21 @@ def _law(powers: tuple[int, ...]) -> Builder:
     return build
 
 
-def dahl(deflection: FloatArray, reach: float, forgets: bool) -> FloatArray:
-    """Return z with dz/dx = (sign(dx) - z)/reach, exact between reversals.
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def jenkins(deflection: FloatArray, reach: float, forgets: bool) -> FloatArray:
+    """Return the pull of a spring with a slider, -1 to 1, that slides after `reach` [m] of travel (Iwan 1966).
 
     forgets: True where a tire that has left the ground starts anew, False where it comes back as it left
     """
-    travel = np.diff(deflection, prepend=deflection[0])
-    decay = np.exp(-np.abs(travel) / reach)
-    drive = np.sign(travel) * (1.0 - decay)
-    if forgets:
-        decay[deflection <= 0.0] = 0.0
-        drive[deflection <= 0.0] = 0.0
-    return np.asarray(linear_recursion(decay, drive))
+    state = np.empty_like(deflection)
+    z = 0.0
+    for i in range(deflection.size):
+        z += (deflection[i] - deflection[max(i - 1, 0)]) / reach
+        z = min(max(z, -1.0), 1.0)
+        if forgets and deflection[i] <= 0.0:
+            z = 0.0
+        state[i] = z
+    return state
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -154,7 +157,8 @@ def linear_recursion(decay: FloatArray, drive: FloatArray) -> FloatArray:
     return state
 
 
-REACHES = (1e-4, 3e-4, 8e-4, 2e-3, 5e-3)
+REACHES = (1e-4, 2.5e-4, 5e-4, 1e-3, 1.7e-3, 3e-3, 6e-3, 1.2e-2)
+"""Travels [m] after which the sliders of an Iwan model slide: sums of them follow Dahl, Bouc-Wen and Iwan loops."""
 
 
 def _friction(p: Place) -> FloatArray:
@@ -163,10 +167,10 @@ def _friction(p: Place) -> FloatArray:
     states = p.record.kept(
         "friction",
         lambda motion: np.stack(
-            [dahl(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES]
+            [jenkins(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES]
         ),
     )
-    return np.stack([z * share for z in states for share in (contact, load)], axis=1)
+    return np.stack([z * share for z in states for share in (contact, load, 1.0)], axis=1)
 
 
 CLOSING = 3e-4
@@ -177,11 +181,17 @@ def _contact(p: Place) -> FloatArray:
     return np.asarray(-np.expm1(-np.maximum(p.deflection, 0.0) / CLOSING))
 
 
-def _both_memories(count: int) -> list[list[int]]:
-    return [list(range(count // 2)), list(range(count // 2, count))]
+def _memories(count: int) -> list[list[int]]:
+    """Return one variant for each memory of the air, with the dry force growing as the contact closes or at once."""
+    half = count // 2
+    return [
+        [first + 3 * i + k for i in range(half // 3) for k in (constant, 1)]
+        for first in (0, half)
+        for constant in (0, 2)
+    ]
 
 
-RATE_EXPONENTS = (1.0, 0.6, 1.5)
+RATE_EXPONENTS = (1.0, 0.75, 0.5, 1.35, 1.8)
 
 
 def _viscous(p: Place) -> FloatArray:
@@ -229,7 +239,7 @@ def _mullins(p: Place) -> FloatArray:
     return np.stack([p.elastic * shape * part for part in (1.0, damage) for shape in shapes], axis=1)
 
 
-GAS_POWERS = (1.5, 2.0, 2.5, 3.0)
+GAS_POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25)
 
 
 def _gas(p: Place) -> FloatArray:
@@ -315,8 +325,11 @@ def _lag_variants(count: int) -> list[list[int]]:
 
 
 def _warm(p: Place) -> FloatArray:
+    """Stiffer by what the air or the rubber has warmed; less where the casing carries more of the force."""
     part = p.record.time / p.scene.longest
-    return np.stack([-p.elastic * np.expm1(-part / share) for share in (0.03, 0.1, 0.3)], axis=1)
+    depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
+    courses = [-np.expm1(-part / share) for share in (0.03, 0.1, 0.3)]
+    return np.stack([*(p.elastic * c for c in courses), p.elastic * depth * courses[1]], axis=1)
 
 
 def _drift(p: Place) -> FloatArray:
@@ -324,14 +337,18 @@ def _drift(p: Place) -> FloatArray:
 
 
 def _leak(p: Place) -> FloatArray:
+    """Softer as the air goes; less where the casing carries more of the force."""
     part = p.record.time / p.scene.longest
-    return np.stack([p.elastic * part, p.elastic * part**2], axis=1)
+    depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
+    return np.stack(
+        [*(p.elastic * part**k for k in (1, 2, 3)), *(p.elastic * depth * part**k for k in (1, 2))], axis=1
+    )
 
 
 CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("deflection_offset", lambda p: p.stiffness[:, None]),
     Family("force_offset", lambda p: np.ones((p.elastic.size, 1)), after_lag=True),
-    Family("rate_independent_hysteresis", _friction, _both_memories, sign=1.0),
+    Family("rate_independent_hysteresis", _friction, _memories, sign=1.0),
     Family("viscous_damping", _viscous, sign=1.0),
     Family("viscoelastic_relaxation", _relaxation, sign=1.0, remembers=True),
     Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),

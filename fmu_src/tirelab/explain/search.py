@@ -21,8 +21,8 @@ from .lag import lagged
 from .motion import BoolArray, FloatArray
 from .scene import Record, Scene
 
-EFFECT_PRIOR = -3.0
-"""Log prior odds of one more effect: one in twenty, about one over the number of effects to choose from."""
+EFFECT_PRIOR = -4.0
+"""Log prior odds of one more effect: one in fifty, the choice among fifteen and one in three that there is one more."""
 
 LAW_PRIOR = -1.0
 """Log prior odds that the believed law is another tire's: the article's own is wrong by up to 13.5 %."""
@@ -30,7 +30,7 @@ LAW_PRIOR = -1.0
 AGNOSTIC_PRIOR = -8.0
 """Log prior odds that something beyond the catalogue acts in one given coordinate: one in three thousand."""
 
-HIDDEN_PRIOR = -5.0
+HIDDEN_PRIOR = -7.0
 """Log prior odds of an effect of the deflection alone beside a law whose shape is free: it explains what that can."""
 
 MATERIAL = 0.1
@@ -40,17 +40,20 @@ percent: it is not named, whatever its significance."""
 POOR = 1.15
 """Where no settled set comes nearer to the noise than this chi square per sample, every effect is settled alone too."""
 
-FORM_ERROR = 0.015
+FORM_ERROR = 0.03
 """What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
 
 MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time, added": 0.6}
 """The same for what is beyond the catalogue: slow noise and hum of the amplifier, up to half the noise, are noise."""
 
+MATERIAL_SLOW = {"pressure_leak": 0.25, "warm_up": 0.25, "force_drift": 0.25, "force_offset": 0.15, "recalibration": 0.15}
+"""The same for what changes slowly or not at all with the motion, as slow noise does."""
+
 UNKNOWN_FORM = 0.08
 """The same for what is beyond the catalogue, whose form is anybody's."""
 
 BEAM = 6
-FEW_VARIANTS = 3
+FEW_VARIANTS = 4
 """Up to so many variants of a family are compared as wholes, more by what their leading columns explain."""
 
 DEEPEST_SET = 6
@@ -72,9 +75,15 @@ class Built:
     raw: dict[str, FloatArray]
 
 
-def build(scene: Scene, point: Point, families: Sequence[Family]) -> list[Built]:
-    """Return the columns of `families` for each recording, around `point`, and the residual there."""
-    return [_build_late(scene, r, point, families) if point.lag > 0.0 else _build(scene, r, point, families) for r in scene.records]
+def build(scene: Scene, point: Point, families: Sequence[Family], quick: bool = False) -> list[Built]:
+    """Return the columns of `families` for each recording, around `point`, and the residual there.
+
+    quick: whether columns read late may be interpolated between the thin samples
+    """
+    if point.lag <= 0.0:
+        return [_build(scene, r, point, families) for r in scene.records]
+    late = _build_late_quickly if quick else _build_late
+    return [late(scene, r, point, families) for r in scene.records]
 
 
 def _build(scene: Scene, record: Record, point: Point, families: Sequence[Family]) -> Built:
@@ -115,6 +124,18 @@ def _build_late(scene: Scene, record: Record, point: Point, families: Sequence[F
             own = _through_reading(record.time, own * on_ground[:, None], point)
         columns[f.name] = own[rows]
     return Built(place_at(record.thin, scene, point), columns, record.thin.force - read[rows], raw)
+
+
+def _build_late_quickly(scene: Scene, record: Record, point: Point, families: Sequence[Family]) -> Built:
+    """Build with a lag for a screening: the columns, not the residual, are read late from the thin samples alone."""
+    exact = _build_late(scene, record, point, [f for f in families if f.name == "force_lag"])
+    plain = _build(scene, record, point, [f for f in families if f.name != "force_lag"])
+    late = {f.name for f in families if not f.after_lag}
+    columns = {
+        name: _through_reading(record.thin.time, values, point) if name in late else values
+        for name, values in plain.columns.items()
+    }
+    return Built(plain.place, columns | exact.columns, exact.residual, plain.raw | exact.raw)
 
 
 def _through_reading(time: FloatArray, values: FloatArray, point: Point) -> FloatArray:
@@ -292,7 +313,7 @@ def _negligible(names: SetName, explained: Explained) -> list[str]:
             default=0.0,
         )
         unique = law if name == "recalibration" else own[name]
-        if unique < max(MATERIAL_BEYOND.get(name, MATERIAL), doubt):
+        if unique < max(MATERIAL_BEYOND.get(name, MATERIAL_SLOW.get(name, MATERIAL)), doubt):
             found.append(name)
     return found
 
@@ -547,7 +568,7 @@ def search(
 
     point = zero
     for turn in range(5):
-        built = build(scene, point, families)
+        built = build(scene, point, families, quick=True)
         screen = Screen(measure(built, noises, families, point), layout_of(built, families), zeta)
         if turn == 0:
             screen.beam()
