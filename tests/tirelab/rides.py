@@ -43,8 +43,12 @@ def triangle(samples: int = 1200, step: float = 0.02, period: float = 4.0) -> tu
     return time, 0.023 * (1.0 - np.abs(1.0 - 2.0 * (time / period % 1.0)))
 
 
-def read(name: str, time: FloatArray, deflection: FloatArray, force: FloatArray, seed: int, noise: float = 5.0) -> Drive:
+def read(
+    name: str, time: FloatArray, deflection: FloatArray, force: FloatArray, seed: int, noise: float = 5.0
+) -> Drive:
     """Return a recording on flat ground with white noise of `noise` [N] on the force and 5 um on the deflection."""
     rng = np.random.default_rng(seed)
     shown = deflection + 5e-6 * rng.standard_normal(time.size)
-    return Drive(name, time, shown, np.full(time.size, np.inf), force + noise * rng.standard_normal(time.size))
+    return Drive(
+        name, time, shown, np.full(time.size, np.inf), force + noise * rng.standard_normal(time.size)
+    )

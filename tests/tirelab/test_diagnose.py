@@ -60,7 +60,7 @@ def test_another_tire_is_a_recalibration():
     verdict = diagnose([read("ride", time, deflection, force, 8)])
     assert verdict.names == ("recalibration",)
     A, B = verdict.tire.law.coefficients(float("inf"))
-    assert 1.2**B * A == pytest.approx(1.08 * 550.9 * 1.2**1.40, rel=3e-3)
+    assert pytest.approx(1.08 * 550.9 * 1.2**1.40, rel=3e-3) == 1.2**B * A
 
 
 def test_at_one_rate_the_loops_are_rivals_with_the_test_that_tells():
@@ -124,7 +124,9 @@ def test_the_shared_recordings_come_out_right(shared: Path):
     for key in sorted((concealed / "keys").glob("*.json")):
         right = [set(s) - {"none"} for s in json.loads(key.read_text())["right"]]
         folder = concealed / key.stem
-        train, held = ([read_csv(p) for p in sorted(folder.glob(f"{kind}_*.csv"))] for kind in ("train", "heldout"))
+        train, held = (
+            [read_csv(p) for p in sorted(folder.glob(f"{kind}_*.csv"))] for kind in ("train", "heldout")
+        )
         verdict = diagnose(train, TireModel(), held_out=held)
         if set(verdict.names) not in right:
             wrong.append((key.stem, verdict.names))

@@ -12,7 +12,9 @@ from tirelab.noise import noise_of
 def scene_and_residual(added, colour=0.0):
     time, deflection, rate = ride(3)
     drive = read("ride", time, deflection, flat_force(deflection), 4, noise=0.0)
-    noise = lfilter([np.sqrt(1.0 - colour**2)], [1.0, -colour], np.random.default_rng(5).standard_normal(time.size))
+    noise = lfilter(
+        [np.sqrt(1.0 - colour**2)], [1.0, -colour], np.random.default_rng(5).standard_normal(time.size)
+    )
     scene = scene_of([(drive.time, drive.deflection, drive.surface_radius, drive.force)], TireModel())
     own = noise_of(5.0 * noise, np.zeros(time.size), 0.0, np.ones(time.size, dtype=bool))
     return scene, [5.0 * noise + added(deflection, rate)], [own]

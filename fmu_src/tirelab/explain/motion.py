@@ -65,7 +65,7 @@ def deflection_noise(deflection: FloatArray) -> float:
     differences = np.diff(deflection, 5)
     scaled = 1.4826 * float(np.median(np.abs(differences))) / np.sqrt(252.0)
     # A quantised reading at rest has differences of nothing: then the quarter of largest ones speaks.
-    return max(scaled, 1e-9)
+    return float(max(scaled, 1e-9))
 
 
 def _local_cubics(
@@ -122,7 +122,9 @@ def _cubic_at_centres(values: FloatArray, window: int, step: float) -> tuple[Flo
     basis = np.linalg.qr(np.vander(steps / (window // 2), 4, increasing=True).astype(float))[0]
     level = float(np.mean(values))
     centred = values - level
-    cubic = np.stack([savgol_filter(centred, window, 3, deriv=d, delta=step, mode="nearest") for d in range(4)])
+    cubic = np.stack(
+        [savgol_filter(centred, window, 3, deriv=d, delta=step, mode="nearest") for d in range(4)]
+    )
     square = uniform_filter1d(centred**2, window, mode="nearest") * window
     for column in basis.T:
         square -= correlate1d(centred, column, mode="nearest") ** 2
