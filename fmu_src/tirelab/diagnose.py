@@ -12,11 +12,13 @@ from radialtire import TireModel
 from .errors import TirelabError
 from .explain.background import background
 from .explain.beyond import AGNOSTIC_FAMILIES
+from .explain.columns import build, layout_of, lifted_from_force, measure
 from .explain.evidence import explain
-from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family, Point
+from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family
 from .explain.motion import FloatArray
+from .explain.place import Point
 from .explain.scene import Scene, scene_of
-from .explain.search import Settled, build, layout_of, lifted_from_force, measure, pointed, search
+from .explain.search import Settled, search
 from .learn import learned
 from .locate import locate
 from .noise import Noise
@@ -105,7 +107,9 @@ def diagnose(
     """
     unknown = set(catalogue) - set(CATALOGUE_NAMES)
     if unknown:
-        raise ValueError(f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}")
+        raise ValueError(
+            f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}"
+        )
     _check(recordings)
     tell = progress or (lambda sentence: None)
     scene = scene_of([(r.time, r.deflection, r.surface_radius, r.force) for r in recordings], tire)
@@ -134,7 +138,9 @@ def diagnose(
     test = None
     if rivals:
         tell("looking for the test that would tell")
-        test = _separating(best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits)
+        test = _separating(
+            best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits
+        )
     return Verdict(
         effects,
         confidence,
@@ -192,7 +198,7 @@ def _check(recordings: Sequence[Recorded]) -> None:
         distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
         if distinct < FEWEST_STEPS:
             raise PoorRecording(
-                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points or more"
+                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points"
             )
 
 
@@ -201,10 +207,12 @@ def _check_signal(scene: Scene, noises: Sequence[Noise]) -> None:
         motion = record.motion
         travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
         if motion.noise > 0.3 * float(np.std(motion.deflection)):
-            raise PoorRecording(f"the deflection of recording {number} is noise: no motion of the tire can be seen in it")
+            raise PoorRecording(
+                f"the deflection of recording {number} is noise: no motion of the tire can be seen in it"
+            )
         if travel > 0.7 * float(np.std(motion.deflection)):
             raise PoorRecording(
-                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points or more"
+                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points"
             )
         related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
         if not np.isfinite(related) or abs(related) < 0.2 or noise.level > 0.9 * float(np.std(record.force)):
@@ -336,4 +344,4 @@ def _table(settled: Sequence[Settled]) -> tuple[Evidence, ...]:
     return tuple(rows)
 
 
-__all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose", "pointed"]
+__all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose"]

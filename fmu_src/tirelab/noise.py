@@ -1,4 +1,4 @@
-"""The noise of a recording, from the data alone: its size, its colour, its spikes, and what the deflection's noise adds.
+"""The noise of a recording, from the data alone: its size, colour and spikes, and what the deflection's noise adds.
 
 The residual that is left by a model with every freedom at once (all effects and smooth functions of all coordinates) is
 taken for noise: an autoregression (order by BIC) whose innovations may have outliers. The reading of the deflection
@@ -68,7 +68,9 @@ def first_guess(residual: FloatArray) -> Noise:
     return Noise(sigma, sigma, np.ones(1), ones, ones)
 
 
-def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: float, resolved: BoolArray) -> Noise:
+def noise_of(
+    residual: FloatArray, through_deflection: FloatArray, freedom: float, resolved: BoolArray
+) -> Noise:
     """Return the noise whose sample is `residual` [N], left by a model of `freedom` effective coefficients.
 
     through_deflection [N]: stiffness times the deflection's noise, sample by sample; resolved: False where the motion
@@ -87,7 +89,12 @@ def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: floa
     sigma = MEDIAN_TO_SIGMA * float(np.median(np.abs(innovations)))
     # Two samples in a row at most: what lasts longer is no spike but something left out.
     out = np.abs(innovations) > SPIKE * sigma
-    lone = out & ~(np.roll(out, 1) & np.roll(out, -1)) & ~(np.roll(out, 1) & np.roll(out, 2)) & ~(np.roll(out, -1) & np.roll(out, -2))
+    lone = (
+        out
+        & ~(np.roll(out, 1) & np.roll(out, -1))
+        & ~(np.roll(out, 1) & np.roll(out, 2))
+        & ~(np.roll(out, -1) & np.roll(out, -2))
+    )
     weight = np.where(lone | ~resolved, 0.0, 1.0)
     weight[: filter_.size - 1] = 0.0
     corrected = count / max(count - freedom, 0.2 * count)

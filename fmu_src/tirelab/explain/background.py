@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..noise import Noise, first_guess, noise_of
+from .columns import Built, Layout, build, layout_of
 from .evidence import explain, products_of
-from .families import Family, Point
-from .motion import FloatArray
+from .families import Family
+from .motion import FloatArray, IndexArray
+from .place import Point
 from .scene import Scene
-from .search import Built, Layout, build, layout_of
 
 SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""
@@ -45,7 +46,7 @@ def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[
 
 def _thinned(
     built: Sequence[Built], families: Sequence[Family], layout: Layout
-) -> tuple[list[FloatArray], list[FloatArray]]:
+) -> tuple[list[FloatArray], list[IndexArray]]:
     groups, chosen, at = [], [], 0
     for f in families:
         own = layout.whole(f.name)

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter
 
-from .families import Family, Place, one_each, pairs, scale_of
+from .families import Family, one_each, pairs, scale_of
 from .motion import FloatArray
+from .place import Place
 
 
 def _cosines(values: FloatArray, first: int, last: int) -> list[FloatArray]:
@@ -94,7 +95,7 @@ RESONANCES = 16
 
 
 def _resonance(p: Place) -> FloatArray:
-    """The elastic force through a lightly damped mode, at frequencies from once a recording to a sixth of the sampling."""
+    """The elastic force through a lightly damped mode, at frequencies from four in a recording up."""
     columns = []
     for frequency in np.geomspace(4.0 / p.scene.longest, 1.0 / (6.0 * p.scene.finest), RESONANCES):
         angle = 2.0 * np.pi * frequency * p.record.step

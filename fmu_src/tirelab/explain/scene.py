@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-
 from radialtire import FLAT_RADIUS, TireModel
 
 from .motion import FloatArray, IndexArray, Motion, motion_of
@@ -51,7 +50,7 @@ class Record:
         motion = Motion(**{k: v if k == "noise" else v[rows] for k, v in self.motion.__dict__.items()})
         arrays = (self.time, self.force, motion, self.surface, self.coefficient, self.exponent)
         sliced = [a if isinstance(a, Motion) else a[rows] for a in arrays]
-        return Record(*sliced, np.arange(rows.size), self.number, self)  # type: ignore[arg-type]
+        return Record(*sliced, np.arange(rows.size), self.number, self)  # type: ignore[arg-type, call-arg]
 
     def kept(self, name: str, compute: Callable[[Motion], FloatArray]) -> FloatArray:
         """Return what `compute` makes of the whole motion, computed once; its last axis is that of the samples."""
@@ -78,7 +77,9 @@ class Record:
         if "leftover" not in self.memory:
             elastic = self.elastic(self.motion.deflection)
             depth = np.clip(self.motion.deflection / self.motion.deflection.max(), 0.0, 1.0)
-            basis = [np.cos(np.pi * j * depth) * side for j in range(6) for side in (1.0, self.motion.direction)]
+            basis = [
+                np.cos(np.pi * j * depth) * side for j in range(6) for side in (1.0, self.motion.direction)
+            ]
             columns = np.stack([*basis, elastic, self.motion.rate, self.motion.acceleration], axis=1)
             columns /= np.sqrt(np.mean(columns**2, axis=0)) + 1e-12
             residual = self.force - elastic
@@ -120,7 +121,9 @@ def strongest_lines(course: FloatArray, weight: FloatArray, values: FloatArray, 
     lines = []
     for _ in range(count):
         at = int(np.argmax(spectrum))
-        waves = np.stack([weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1)
+        waves = np.stack(
+            [weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1
+        )
         fitted = waves @ np.linalg.lstsq(waves, values, rcond=None)[0]
         lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / sigma))
         spectrum[max(at - 12, 0) : at + 13] = 0.0
@@ -143,7 +146,9 @@ class Scene:
     finest: float
 
 
-def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]], tire: TireModel) -> Scene:
+def scene_of(
+    recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]], tire: TireModel
+) -> Scene:
     """Return the scene of recordings given as time [s], deflection [m], surface radius [m] and force [N]."""
     radii = _support(np.concatenate([np.unique(r) for _, _, r, _ in recordings]))
     records = []
