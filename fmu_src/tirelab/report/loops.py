@@ -35,6 +35,11 @@ class Case:
         """Sum of the squared errors before the correction [N^2]."""
         return float(np.sum((self.recording.force - self.before) ** 2))
 
+    @property
+    def alike(self) -> bool:
+        """Whether the correction changes nothing here."""
+        return bool(np.max(np.abs(self.before - self.after)) <= 1e-9 * np.max(np.abs(self.before)) + 1e-9)
+
 
 def limits_of(*series: FloatArray, margin: float = 0.04) -> Limits:
     """Return limits around all the values, a little apart from them."""
@@ -47,14 +52,14 @@ def draw_loops(case: Case, which: str, mark: str, alt: str) -> Markup:
     """Return the recorded loop with the simulated one: `which` is "before", "after" or "both"."""
     mm, force = 1e3 * case.recording.deflection, case.recording.force
     across, up = limits_of(mm), limits_of(force, case.before, case.after)
-    with drawing() as (figure, (axes,)):
+    with drawing() as (figure, axes):
         _dots(axes, mm, force, across, up, GREY, 2)
         if which != "after":
             _line(axes, mm, case.before, across, up, BEFORE, ORANGE)
-        if which != "before":
+        if which != "before" and not case.alike:
             _line(axes, mm, case.after, across, up, AFTER, BLUE)
         axes.set(xlim=across, ylim=up, xlabel="deflection [mm]", ylabel="radial force [N]")
-        if which != "both":
+        if which != "both" and not case.alike:
             axes.set_title(f"{which.capitalize()} the correction")
         return inline_svg(figure, alt, mark)
 

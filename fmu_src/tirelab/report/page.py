@@ -20,7 +20,14 @@ from ..errors import TirelabError
 from ..recording import Recording
 from . import words
 from .loops import Case, draw_loops
-from .residuals import draw_maps, draw_over_deflection, draw_over_rate, draw_over_time, draw_slow_changes, misfit_of
+from .residuals import (
+    draw_maps,
+    draw_over_deflection,
+    draw_over_rate,
+    draw_over_time,
+    draw_slow_changes,
+    misfit_of,
+)
 from .sketches import draw_correction, draw_waveform
 
 FloatArray = NDArray[np.float64]
@@ -57,7 +64,8 @@ def write_report(
     diagnosis: the content of diagnosis.json; it may have besides
         tire_before, tire_after   names of the tires
         evidence      [{"effects": [name], "log_evidence": 0 for the best, "rmse" [N], "held_out_rmse" [N] or None,
-                      "remark"}]; columns that no row has are left out
+                      "misfit" in noises, "remark"}]; columns that no row has are left out
+        where         as in the contract; an entry's "label" is told in place of its span
         reasons       one sentence for each of the verdict's alternatives
         correction    what was learned of the unknown, one or a list of {"by", "unit", "x", "force" [N], "std" [N] or
                       None, "repeats": sentence}
@@ -167,10 +175,9 @@ def _loops(fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
     """The pictures of the loops: of the recording with the largest misfit a pair, of the others one each."""
     order = sorted(fitted, key=lambda c: -c.excess)
     worst = order[0]
-    alike = bool(np.max(np.abs(worst.before - worst.after)) <= 1e-9 * np.max(np.abs(worst.before)) + 1e-9)
     pair = [
         draw_loops(worst, which, f"p{which[0]}", f"Force over deflection, recorded and simulated, {which}.")
-        for which in (("before",) if alike else ("before", "after"))
+        for which in (("before",) if worst.alike else ("before", "after"))
     ]
     chosen = [("fitted", c) for c in order[1:]] + [("not seen by the fit", c) for c in held_out]
     alt = "Force over deflection, recorded and simulated before and after the correction."
@@ -181,7 +188,7 @@ def _loops(fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
     return {
         "name": worst.recording.name,
         "pair": pair,
-        "alike": alike,
+        "alike": worst.alike,
         "others": others,
         "missing": len(chosen) - len(others),
         "several": len(chosen) > 0,
@@ -206,6 +213,7 @@ def _maps(cases: Sequence[Case], noise: float) -> dict[str, Any]:
 
 _EVIDENCE_COLUMNS = (
     ("log_evidence", "Log evidence below the best"),
+    ("misfit", "Misfit / noise"),
     ("rmse", "Error [N]"),
     ("held_out_rmse", "Error held out [N]"),
     ("remark", "Remark"),
@@ -213,14 +221,13 @@ _EVIDENCE_COLUMNS = (
 
 
 def _evidence(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    columns = [(key, title) for key, title in _EVIDENCE_COLUMNS if any(row.get(key) is not None for row in rows)]
+    columns = [
+        (key, title) for key, title in _EVIDENCE_COLUMNS if any(row.get(key) is not None for row in rows)
+    ]
     shown = [
         (
             words.set_title(row["effects"]),
-            [
-                row.get(key) or "" if key == "remark" else words.number(row.get(key), 3)
-                for key, _ in columns
-            ],
+            [row.get(key) or "" if key == "remark" else words.number(row.get(key), 3) for key, _ in columns],
         )
         for row in rows[:MOST_SETS]
     ]

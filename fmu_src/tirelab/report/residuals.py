@@ -85,7 +85,7 @@ def misfit_of(cases: Sequence[Case]) -> Misfit:
 
 def draw_over_time(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the residual over time, every sample in it, before and after."""
-    with drawing() as (figure, (axes,)):
+    with drawing() as (figure, axes):
         _noise_band(axes, noise)
         for residual, colour in _courses(m):
             start = 0
@@ -100,7 +100,7 @@ def draw_over_time(m: Misfit, noise: float, mark: str) -> Markup:
 def draw_over_deflection(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the mean residual over the deflection, loading and unloading apart."""
     edges = np.linspace(m.deflection.min(), m.deflection.max(), BINS + 1)
-    with drawing() as (figure, (axes,)):
+    with drawing() as (figure, axes):
         _noise_band(axes, noise)
         for residual, colour in _courses(m):
             for branch, style, marker in ((m.loading, "-", "^"), (~m.loading, (0, (3, 2)), "v")):
@@ -111,25 +111,32 @@ def draw_over_deflection(m: Misfit, noise: float, mark: str) -> Markup:
             ylabel="mean residual [N]",
             title="Over the deflection (▲ loading, ▼ unloading)",
         )
-        alt = "Mean residual over the deflection, loading and unloading apart, before and after the correction."
+        alt = (
+            "Mean residual over the deflection, loading and unloading apart, before and after the correction."
+        )
         return inline_svg(figure, alt, mark)
 
 
 def draw_over_rate(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the mean residual over the rate of deflection."""
     edges = _rate_edges(m.rate, BINS)
-    with drawing() as (figure, (axes,)):
+    with drawing() as (figure, axes):
         _noise_band(axes, noise)
         for residual, colour in _courses(m):
             at, mean = _means(m.rate, residual, edges)
             axes.plot(1e3 * at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
-        axes.set(xlabel="rate [mm/s], unloading < 0 < loading", ylabel="mean residual [N]", title="Over the rate")
+        axes.set(
+            xlabel="rate [mm/s], unloading < 0 < loading", ylabel="mean residual [N]", title="Over the rate"
+        )
         slow, fast = 1e3 * float(np.quantile(np.abs(m.rate), 0.25)), 1e3 * float(np.max(np.abs(m.rate)))
         if fast > 20.0 * slow > 0.0:
             decade = 10.0 ** np.floor(np.log10(max(slow, 1e-3 * fast)))
             ticks = decade * 10.0 ** np.arange(np.ceil(np.log10(fast / decade)) + 1)
             axes.set_xscale("asinh", linear_width=decade)
-            axes.set_xticks([*-ticks[::-1], 0.0, *ticks], labels=[*(f"−{t:g}" for t in ticks[::-1]), "0", *(f"{t:g}" for t in ticks)])
+            axes.set_xticks(
+                [*-ticks[::-1], 0.0, *ticks],
+                labels=[*(f"−{t:g}" for t in ticks[::-1]), "0", *(f"{t:g}" for t in ticks)],
+            )
             axes.set_xticks([], minor=True)
             axes.set_xlim(-1.3 * fast, 1.3 * fast)
         alt = "Mean residual over the rate of deflection, before and after the correction."
@@ -137,20 +144,24 @@ def draw_over_rate(m: Misfit, noise: float, mark: str) -> Markup:
 
 
 def draw_slow_changes(m: Misfit, noise: float, mark: str) -> Markup:
-    """Return the mean residual of the blocks of time of each recording: what drifts, leaks or warms up."""
+    """Return the mean residual of whole cycles over time: what drifts, leaks or warms up."""
     blocks = max(BINS // len(m.ends), 4)
-    with drawing() as (figure, (axes,)):
+    with drawing() as (figure, axes):
         _noise_band(axes, noise)
         for residual, colour in _courses(m):
             start = 0
             for end in m.ends:
                 time = m.time[start:end]
-                at, mean = _means(time, residual[start:end], np.linspace(time[0], time[-1], blocks + 1))
+                edges = _cycles(time, m.loading[start:end], blocks)
+                whole = (time >= edges[0]) & (time < edges[-1])
+                at, mean = _means(time[whole], residual[start:end][whole], edges)
                 axes.plot(at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
                 start = end
         _time_axis(axes, m)
-        axes.set(ylabel="mean residual [N]", title="Slow changes: means over time")
-        return inline_svg(figure, "Mean residual of blocks of time, before and after the correction.", mark)
+        axes.set(ylabel="mean residual [N]", title="Slow changes: means of whole cycles")
+        return inline_svg(
+            figure, "Mean residual of whole cycles over time, before and after the correction.", mark
+        )
 
 
 def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
@@ -177,17 +188,19 @@ def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
             break
         mean, _ = _cells(m.deflection, values, residual, x_edges, edges)
         rows = edges if name == "time" else np.arange(edges.size)
-        with drawing(3.4) as (figure, (axes,)):
+        with drawing(3.4) as (figure, axes):
             drawn = axes.pcolormesh(
                 1e3 * x_edges, rows, mean.T, cmap=DIVERGING, vmin=-reach, vmax=reach, rasterized=True
             )
             axes.grid(False)
-            axes.set(xlabel="deflection [mm]", title=f"{which.capitalize()} the correction")
+            title = "Over deflection and " + name if m.alike else f"{which.capitalize()} the correction"
+            axes.set(xlabel="deflection [mm]", title=title)
             if name == "time":
                 axes.set_ylabel("time [s]")
             else:
-                ticks = np.unique(np.linspace(0, edges.size - 1, 8).round().astype(int))
-                axes.set_yticks(ticks, labels=[f"{1e3 * edges[t]:.3g}".replace("-", "−") for t in ticks])
+                at, _ = _means(m.rate, m.before, edges)
+                ticks = np.unique(np.linspace(0, at.size - 1, 8).round().astype(int))
+                axes.set_yticks(ticks + 0.5, labels=[f"{1e3 * at[t]:.2g}".replace("-", "−") for t in ticks])
                 axes.set_ylabel("rate [mm/s]")
             bar = figure.colorbar(drawn, ax=axes, label="mean residual [N]", aspect=30)
             bar.outline.set_visible(False)
@@ -199,6 +212,16 @@ def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
 def _courses(m: Misfit) -> list[tuple[FloatArray, str]]:
     before = (m.before, BEFORE)
     return [before] if m.alike else [before, (m.after, AFTER)]
+
+
+def _cycles(time: FloatArray, loading: NDArray[np.bool_], most: int) -> FloatArray:
+    """Return times [s] between which whole cycles lie, at most so many; even spans where there are hardly cycles."""
+    starts = np.flatnonzero(~loading[:-1] & loading[1:]) + 1
+    if loading[0]:
+        starts = np.append(0, starts)
+    if starts.size < 4:
+        return np.linspace(time[0], time[-1], most + 1)
+    return np.asarray(time[starts[np.unique(np.linspace(0, starts.size - 1, most + 1).astype(int))]])
 
 
 def _time_axis(axes: Axes, m: Misfit) -> None:
@@ -241,6 +264,8 @@ def _rate_edges(rate: FloatArray, count: int) -> FloatArray:
     edges = np.unique(np.quantile(rate, np.linspace(0.0, 1.0, count + 1)))
     kept = [float(edges[0])]
     for edge in edges[1:-1]:
-        if edge - kept[-1] > NARROWEST * max(abs(edge), abs(kept[-1]), NARROWEST * float(edges[-1] - edges[0])):
+        if edge - kept[-1] > NARROWEST * max(
+            abs(edge), abs(kept[-1]), NARROWEST * float(edges[-1] - edges[0])
+        ):
             kept.append(float(edge))
     return np.array([*kept, np.nextafter(edges[-1], np.inf)])

@@ -14,8 +14,10 @@ from .words import scaled
 
 def draw_waveform(time: Sequence[float], deflection: Sequence[float], mark: str) -> Markup:
     """Return the deflection [m] to be driven over time [s]."""
-    with drawing(2.4) as (figure, (axes,)):
-        axes.plot(*envelope(np.asarray(time, float), 1e3 * np.asarray(deflection, float)), color=AFTER, lw=1.1)
+    with drawing(2.4) as (figure, axes):
+        axes.plot(
+            *envelope(np.asarray(time, float), 1e3 * np.asarray(deflection, float)), color=AFTER, lw=1.1
+        )
         axes.set(xlabel="time [s]", ylabel="deflection [mm]", title="The motion to drive")
         axes.margins(x=0.01)
         return inline_svg(figure, "Deflection over time of the test that would tell.", mark)
@@ -27,7 +29,7 @@ def draw_correction(
     """Return the force [N] learned over the coordinate `by` in `unit`, with twice its standard deviation."""
     factor, name = scaled(unit)
     at, learned = factor * np.asarray(x, float), np.asarray(force, float)
-    with drawing(2.8) as (figure, (axes,)):
+    with drawing(2.8) as (figure, axes):
         axes.axhline(0.0, color=GRID, lw=1.0)
         if std is not None:
             wide = 2.0 * np.asarray(std, float)

@@ -26,18 +26,15 @@ Limits = tuple[float, float]
 def envelope(x: FloatArray, y: FloatArray, columns: int = COLUMNS) -> tuple[FloatArray, FloatArray]:
     """Return a line of at most 2 `columns` points that covers the same pixels as y over rising x.
 
-    Every column of pixels keeps the smallest and the largest of its samples, in the order in which they came.
+    Every column of pixels keeps the smallest and the largest of its samples.
     """
     if x.size <= 2 * columns:
         return x, y
     column = ((x - x[0]) * (columns / (x[-1] - x[0]))).astype(np.intp)
     starts = np.flatnonzero(np.diff(column, prepend=-1))
-    counts = np.diff(starts, append=x.size)
-    number = np.repeat(np.arange(starts.size), counts)
-    order = np.lexsort((y, number))
-    ends = starts + counts - 1
-    kept = np.sort(np.stack([order[starts], order[ends]], axis=1), axis=1).ravel()
-    return x[kept], y[kept]
+    ends = np.append(starts[1:], x.size) - 1
+    extremes = np.stack([np.minimum.reduceat(y, starts), np.maximum.reduceat(y, starts)], axis=1)
+    return np.stack([x[starts], x[ends]], axis=1).ravel(), extremes.ravel()
 
 
 def trail(x: FloatArray, y: FloatArray, across: Limits, up: Limits) -> tuple[FloatArray, FloatArray]:

@@ -32,7 +32,13 @@ _COORDINATES = {
 
 def effect_title(name: str) -> str:
     """Return the name of an effect as a reader says it."""
-    return "something unknown" if name == UNKNOWN else name.replace("_", " ").replace("rate independent", "rate-independent")
+    return (
+        "something unknown"
+        if name == UNKNOWN
+        else name.replace("_", " ")
+        .replace("rate independent", "rate-independent")
+        .replace("mullins", "Mullins")
+    )
 
 
 def set_title(names: Sequence[str]) -> str:
@@ -75,11 +81,17 @@ def number(value: Any, digits: int = 3) -> str:
     """Return `value` with so many significant digits; a dash where there is none."""
     if value is None or isinstance(value, str) or not math.isfinite(value):
         return str(value) if isinstance(value, str) else "–"
-    text = f"{value:#.{digits}g}".rstrip(".") if 0.0 < abs(value) < 10**digits else f"{value:.0f}"
+    text = f"{value:#.{digits}g}".rstrip(".") if 0.0 < abs(value) < 10**digits else f"{value + 0.0:.0f}"
     if "e" in text:
         mantissa, exponent = text.split("e")
         text = f"{mantissa}·10^{int(exponent)}"
     return text.replace("-", "−")
+
+
+def residual(value: float, noise: float) -> str:
+    """Return a mean residual [N] to the tenth of the noise [N]."""
+    decimals = min(max(1 - math.floor(math.log10(noise)), 0), 6) if noise > 0.0 else 3
+    return f"{value + 0.0:.{decimals}f}".replace("-", "−")
 
 
 def estimate(value: float, std: float | None, unit: str) -> str:

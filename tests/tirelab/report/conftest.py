@@ -30,7 +30,9 @@ class Diagnosed:
     held_out: Simulated | None
 
 
-def ridden(name: str, tire: TireModel, seed: int, *, samples: int = 8000, surface: float = np.inf) -> Recording:
+def ridden(
+    name: str, tire: TireModel, seed: int, *, samples: int = 8000, surface: float = np.inf
+) -> Recording:
     """A recording of `tire`: triangles at three rates, with noise of the force."""
     rng = np.random.default_rng(seed)
     time = np.arange(samples) * 5e-3
@@ -68,7 +70,10 @@ def diagnosed(
     **verdict: Any,
 ) -> Diagnosed:
     """Recordings of `truth`, the last one held out, with the diagnosis `corrected`."""
-    made = [ridden(f"ride_{i}", truth, i, samples=samples, surface=s) for i, s in enumerate((*surfaces, surfaces[0]))]
+    made = [
+        ridden(f"ride_{i}", truth, i, samples=samples, surface=s)
+        for i, s in enumerate((*surfaces, surfaces[0]))
+    ]
     if extra is not None:
         made = [replace(r, force=r.force + extra(r)) for r in made]
     before = [simulate(TireModel(), r) for r in made]
@@ -124,7 +129,9 @@ def effect(name: str, share: float, **parameters: tuple[float, float | None, str
 
 
 def nothing_missing() -> Diagnosed:
-    return diagnosed(TireModel(), TireModel(), [], evidence=_evidence([], ["force_offset"], ["viscous_damping"]))
+    return diagnosed(
+        TireModel(), TireModel(), [], evidence=_evidence([], ["force_offset"], ["viscous_damping"])
+    )
 
 
 def one_effect() -> Diagnosed:
@@ -150,7 +157,9 @@ def two_and_another_tire() -> Diagnosed:
         tire,
         [
             effect(
-                "recalibration", 0.61, **{"log factor on A, flat": (0.085, 0.003, "1"), "bend": (0.011, 0.004, "1")}
+                "recalibration",
+                0.61,
+                **{"log factor on A, flat": (0.085, 0.003, "1"), "bend": (0.011, 0.004, "1")},
             ),
             effect(
                 "rate_independent_hysteresis",
@@ -188,7 +197,10 @@ def rivals() -> Diagnosed:
             "sentence": "Drive triangles at three rates to 22 mm on flat ground.",
             "file": "separating_test.csv",
         },
-        waveform={"time": time.tolist(), "deflection": (0.011 - 0.011 * np.cos(time * (0.1 + time / 12))).tolist()},
+        waveform={
+            "time": time.tolist(),
+            "deflection": (0.011 - 0.011 * np.cos(time * (0.1 + time / 12))).tolist(),
+        },
         evidence=_evidence(["rate_independent_hysteresis"], ["viscous_damping"]),
     )
 
