@@ -155,6 +155,7 @@ def diagnose(
         _table(found.settled),
         test,
         found.compared,
+        fitted.evaluations,
     )
 
 

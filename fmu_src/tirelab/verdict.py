@@ -108,6 +108,7 @@ class Verdict:
     unexplained: whether something acts that no effect explains, by `unexplained_by` (coordinates)
     summary: sentences for a reader; where: spans of the misfit before the correction; tire: the corrected one
     evidence: all sets that were compared to the end; separating_test: what would tell the first rival apart
+    compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
     """
 
     effects: tuple[NamedEffect, ...]
@@ -123,6 +124,7 @@ class Verdict:
     evidence: tuple[Evidence, ...]
     separating_test: SeparatingTest | None
     compared: int
+    evaluations: int
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -171,7 +173,16 @@ def _number(value: float) -> float | None:
 CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (
         frozenset({"deflection", "direction"}),
-        frozenset({"deflection_offset", "series_compliance", "gas_compression", "bottoming", "saturation"}),
+        frozenset(
+            {
+                "recalibration",
+                "deflection_offset",
+                "series_compliance",
+                "gas_compression",
+                "bottoming",
+                "saturation",
+            }
+        ),
     ),
     (
         frozenset({"time", "time, added", "jump", "period", "period, added"}),

@@ -15,8 +15,8 @@ def test_a_measured_surface_has_its_own_change(radius):
     A0, B0 = BASE.coefficients(radius)
     A, B = LAW.coefficients(radius)
     change, exponent = {0.2: (0.10, -0.02), math.inf: (0.02, 0.01), -0.5: (-0.04, 0.0)}[radius]
-    assert A == pytest.approx(A0 * math.exp(change), rel=1e-12)
-    assert B == pytest.approx(B0 + exponent, rel=1e-12)
+    assert pytest.approx(A0 * math.exp(change), rel=1e-12) == A
+    assert pytest.approx(B0 + exponent, rel=1e-12) == B
 
 
 def test_between_surfaces_the_change_is_straight_over_the_curvature():
