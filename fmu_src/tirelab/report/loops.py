@@ -64,6 +64,25 @@ def draw_loops(case: Case, which: str, mark: str, alt: str) -> Markup:
         return inline_svg(figure, alt, mark)
 
 
+def draw_difference(case: Case, mark: str) -> Markup:
+    """Return what the believed tire leaves of the recorded force, and what the correction adds to it."""
+    mm, left, added = (
+        1e3 * case.recording.deflection,
+        case.recording.force - case.before,
+        case.after - case.before,
+    )
+    across, up = limits_of(mm), limits_of(left, added)
+    with drawing() as (figure, axes):
+        _dots(axes, mm, left, across, up, GREY, 2)
+        if not case.alike:
+            _line(axes, mm, added, across, up, AFTER, BLUE)
+        axes.set(
+            xlim=across, ylim=up, xlabel="deflection [mm]", ylabel="force [N]", title="The difference alone"
+        )
+        alt = "Recorded less simulated force over deflection, and what the correction adds."
+        return inline_svg(figure, alt, mark)
+
+
 def _dots(
     axes: Axes,
     x: FloatArray,
@@ -76,7 +95,7 @@ def _dots(
     picture = np.zeros((*DOTS, 4), dtype=np.uint8)
     picture[..., :3] = colour
     picture[..., 3] = occupancy(x, y, across, up, DOTS, wide)
-    axes.imshow(picture, extent=(*across, *up), origin="lower", aspect="auto", interpolation="none")
+    axes.imshow(picture, extent=(*across, *up), origin="lower", aspect="auto", interpolation="none", zorder=1)
 
 
 def _line(

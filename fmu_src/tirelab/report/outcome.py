@@ -46,7 +46,7 @@ def contract_of(verdict: Verdict, fitted: Replayed, held_out: Replayed) -> dict[
 
     A number that is not known, as the held-out errors where nothing was held out, is null.
     """
-    content = dict(verdict.to_contract())
+    content: dict[str, Any] = dict(verdict.to_contract())
     noise = verdict.fit.noise
     content["fit"] = {
         "noise": noise,

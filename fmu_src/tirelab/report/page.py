@@ -19,7 +19,7 @@ from radialtire import CATALOGUE
 from ..errors import TirelabError
 from ..recording import Recording
 from . import words
-from .loops import Case, draw_loops
+from .loops import Case, draw_difference, draw_loops
 from .residuals import (
     draw_maps,
     draw_over_deflection,
@@ -35,7 +35,7 @@ FloatArray = NDArray[np.float64]
 Simulated = tuple[Sequence[Recording], Sequence[FloatArray], Sequence[FloatArray]]
 """Recordings, and their simulated forces [N] before and after the correction."""
 
-MOST_LOOPS = 5
+MOST_LOOPS = 4
 """Recordings whose loops are drawn, those with the largest misfit first."""
 
 MOST_PLACES = 12
@@ -106,8 +106,8 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         fit=_fit(diagnosis["fit"], fitted, held_out),
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
-        places=diagnosis["where"][:MOST_PLACES],
-        more_places=max(len(diagnosis["where"]) - MOST_PLACES, 0),
+        places=(places := words.foremost(diagnosis["where"], MOST_PLACES)),
+        more_places=len(diagnosis["where"]) - len(places),
         evidence=_evidence(diagnosis["evidence"] or []),
         test=_test(verdict["separating_test"], diagnosis["waveform"]),
         corrections=_corrections(diagnosis["correction"]),
@@ -161,13 +161,13 @@ def _rmse(cases: Sequence[Case], which: str) -> float:
 
 def _fit(fit: Mapping[str, Any], fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
     """The rows of the table of errors [N], and the scale of its bars."""
-    rows = [("Fitted", None, fit["before"], fit["after"])]
+    rows: list[tuple[str, str | None, float, float]] = [("Fitted", None, fit["before"], fit["after"])]
     if fit["held_out_before"] is not None:
         rows.append(("Not seen by the fit", None, fit["held_out_before"], fit["held_out_after"]))
     for kind, cases in (("fitted", fitted), ("not seen", held_out)):
         if len(cases) > 1:
             rows += [(kind, c.recording.name, _rmse([c], "before"), _rmse([c], "after")) for c in cases]
-    finite = [v for row in rows for v in row[2:] if v is not None and math.isfinite(v)]
+    finite = [v for *_, before, after in rows for v in (before, after) if math.isfinite(v)]
     return {"rows": rows, "noise": fit["noise"], "full": 1.08 * max([*finite, fit["noise"], 1e-9])}
 
 
@@ -188,6 +188,7 @@ def _loops(fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
     return {
         "name": worst.recording.name,
         "pair": pair,
+        "difference": draw_difference(worst, "df"),
         "alike": worst.alike,
         "others": others,
         "missing": len(chosen) - len(others),

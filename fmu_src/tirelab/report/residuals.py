@@ -15,6 +15,7 @@ from .course import loading, rate_of
 from .loops import Case
 from .svg import AFTER, BAND, BEFORE, GRID, INK, drawing, inline_svg
 from .thinning import envelope
+from .words import number
 
 FloatArray = NDArray[np.float64]
 
@@ -200,8 +201,9 @@ def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
             else:
                 at, _ = _means(m.rate, m.before, edges)
                 ticks = np.unique(np.linspace(0, at.size - 1, 8).round().astype(int))
-                axes.set_yticks(ticks + 0.5, labels=[f"{1e3 * at[t]:.2g}".replace("-", "−") for t in ticks])
+                axes.set_yticks(ticks + 0.5, labels=[number(1e3 * at[t], 2) for t in ticks])
                 axes.set_ylabel("rate [mm/s]")
+            figure.subplots_adjust(right=0.94)
             bar = figure.colorbar(drawn, ax=axes, label="mean residual [N]", aspect=30)
             bar.outline.set_visible(False)
             alt = f"Map of the mean residual over deflection and {name}, {which} the correction."
@@ -238,11 +240,11 @@ def _noise_band(axes: Axes, noise: float) -> None:
 
 def _means(values: FloatArray, residual: FloatArray, edges: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the mean coordinate and the mean residual of every bin with samples enough."""
-    number = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
-    count = np.bincount(number, minlength=edges.size - 1)
+    bin_of = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    count = np.bincount(bin_of, minlength=edges.size - 1)
     full = count >= FEWEST
-    at = np.bincount(number, values, minlength=edges.size - 1)[full] / count[full]
-    return at, np.bincount(number, residual, minlength=edges.size - 1)[full] / count[full]
+    at = np.bincount(bin_of, values, minlength=edges.size - 1)[full] / count[full]
+    return at, np.bincount(bin_of, residual, minlength=edges.size - 1)[full] / count[full]
 
 
 def _cells(
@@ -252,9 +254,9 @@ def _cells(
     rows, columns = x_edges.size - 1, y_edges.size - 1
     i = np.clip(np.searchsorted(x_edges, x, side="right") - 1, 0, rows - 1)
     j = np.clip(np.searchsorted(y_edges, y, side="right") - 1, 0, columns - 1)
-    number = i * columns + j
-    count = np.bincount(number, minlength=rows * columns).astype(float)
-    total = np.bincount(number, residual, minlength=rows * columns)
+    cell = i * columns + j
+    count = np.bincount(cell, minlength=rows * columns).astype(float)
+    total = np.bincount(cell, residual, minlength=rows * columns)
     mean = np.where(count >= FEWEST, total / np.maximum(count, 1.0), np.nan)
     return mean.reshape(rows, columns), count.reshape(rows, columns)
 

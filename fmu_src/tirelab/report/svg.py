@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
+from typing import Any
 
 import matplotlib as mpl
 from markupsafe import Markup
@@ -32,7 +33,7 @@ WIDTH = 4.6
 MARGINS = (0.145, 0.975)
 """Left and right edge of the axes: margins found by matplotlib for each picture would double the time."""
 
-_SETTINGS = {
+_SETTINGS: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "tirelab",
     "text.parse_math": False,

@@ -42,7 +42,7 @@ def print_diagnosis(
 
     if where:
         places = _table("where they part", "", "part of the error", "mean residual [N]")
-        for place in where[:MOST_PLACES]:
+        for place in words.foremost(where, MOST_PLACES, of_one=1):
             mean = words.residual(place["mean_residual"], fit["noise"])
             places.add_row(
                 words.coordinate(place["by"]),

@@ -126,6 +126,17 @@ def coordinate(by: str) -> str:
     return _COORDINATES.get(by, by)
 
 
+def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
+    """Return the first entries of `where`, at most so many, and at most `of_one` over one coordinate."""
+    counts: dict[str, int] = {}
+    found = []
+    for place in where:
+        counts[place["by"]] = counts.get(place["by"], 0) + 1
+        if counts[place["by"]] <= of_one:
+            found.append(place)
+    return found[:most]
+
+
 def span(place: Mapping[str, Any]) -> str:
     """Return the span of an entry of `where` in words."""
     by, start, stop, unit = (place[key] for key in ("by", "from", "to", "unit"))
@@ -138,13 +149,14 @@ def span(place: Mapping[str, Any]) -> str:
     factor, name = scaled(str(unit))
     if start == stop:
         return with_unit(_edge(start, factor), name)
-    return with_unit(f"{_edge(start, factor)} to {_edge(stop, factor)}", name)
+    digits = 3 if _edge(start, factor) != _edge(stop, factor) else 5
+    return with_unit(f"{_edge(start, factor, digits)} to {_edge(stop, factor, digits)}", name)
 
 
-def _edge(value: float | str, factor: float) -> str:
+def _edge(value: float | str, factor: float, digits: int = 3) -> str:
     if isinstance(value, str):
         return {"inf": "∞", "-inf": "−∞"}.get(value, value)
-    return number(factor * value)
+    return number(factor * value, digits)
 
 
 def surface(radius: float | str) -> str:
