@@ -170,6 +170,10 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
+STATIC = frozenset(
+    {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
+)
+
 CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (
         frozenset({"deflection", "direction"}),
@@ -286,9 +290,6 @@ def _longest_rest(time: FloatArray, still: np.ndarray) -> float:
     )
 
 
-STATIC = frozenset(
-    {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
-)
 SLOW = frozenset({"pressure_leak", "warm_up", "mullins_softening", "force_drift"})
 
 

@@ -103,7 +103,7 @@ def _resonance(p: Place) -> FloatArray:
         poles = [1.0, -2.0 * radius * np.cos(angle), radius**2]
         change = np.diff(p.elastic, prepend=p.elastic[0])
         ringing = lfilter([1.0], poles, change)
-        columns += [ringing, np.diff(ringing, prepend=0.0)]
+        columns += [p.taken(ringing), p.taken(np.diff(ringing, prepend=0.0))]
     return np.stack(columns, axis=1)
 
 
