@@ -238,7 +238,13 @@ def _adds_nothing(settled: Settled, best: Settled) -> bool:
     if not more or not set(named(best)) < set(named(settled)):
         return False
     own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
-    law = max(own.get("recalibration", 0.0), own.get("shape", 0.0))
+    law = (
+        settled.candidate.explained.together(
+            [i for i, n in enumerate(settled.names) if n in ("recalibration", "shape")]
+        )
+        if "recalibration" in settled.names
+        else 0.0
+    )
     return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
 
 
