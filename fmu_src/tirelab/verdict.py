@@ -170,6 +170,10 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
+STATIC = frozenset(
+    {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
+)
+
 CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (
         frozenset({"deflection", "direction"}),
@@ -234,7 +238,13 @@ def _adds_nothing(settled: Settled, best: Settled) -> bool:
     if not more or not set(named(best)) < set(named(settled)):
         return False
     own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
-    law = max(own.get("recalibration", 0.0), own.get("shape", 0.0))
+    law = (
+        settled.candidate.explained.together(
+            [i for i, n in enumerate(settled.names) if n in ("recalibration", "shape")]
+        )
+        if "recalibration" in settled.names
+        else 0.0
+    )
     return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
 
 
@@ -286,9 +296,6 @@ def _longest_rest(time: FloatArray, still: np.ndarray) -> float:
     )
 
 
-STATIC = frozenset(
-    {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
-)
 SLOW = frozenset({"pressure_leak", "warm_up", "mullins_softening", "force_drift"})
 
 
