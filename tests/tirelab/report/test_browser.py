@@ -108,8 +108,9 @@ def test_a_phone_is_wide_enough(kinds: dict[str, Any], tmp_path: Path) -> None:
     write_report(page, made.diagnosis, made.recordings, made.before, made.after, held_out=made.held_out)
     around = tmp_path / "around.html"
     around.write_text(
-        "<iframe id=f src=report.html style='width:360px;height:800px;border:0'></iframe><script>f.onload = () => "
-        "{ const e = f.contentDocument.documentElement; document.title = 'over by ' + (e.scrollWidth - e.clientWidth) }</script>"
+        "<iframe id=f src=report.html style='width:360px;height:800px;border:0'></iframe><script>f.onload = () => { "
+        "const e = f.contentDocument.documentElement; "
+        "document.title = 'over by ' + (e.scrollWidth - e.clientWidth) }</script>"
     )
     shown, _, _ = opened(
         around, tmp_path / "b", "--allow-file-access-from-files", "--virtual-time-budget=5000", "--dump-dom"
