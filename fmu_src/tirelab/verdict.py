@@ -28,8 +28,9 @@ MOST_RIVALS = 4
 FORM_DOUBT = 0.5
 """Power to which odds between sets are taken: the forms of two sets err independently, each as allowed for."""
 
-SUREST = 0.95
-"""No verdict is surer than this: the chance that the recording's own trouble is none that was thought of."""
+SUREST = 0.85
+"""No verdict is surer than this: of 46 verdicts that nothing rivalled, on 60 trials of the independent rig, 39 were
+right (seeds 5100 to 5159)."""
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ def test_its_parameters_are_described(effect: Effect) -> None:
             assert parameter.checked(value) == value
         if parameter.off is not None:
             assert parameter.start == parameter.checked(parameter.off)
-            assert parameter.extra or parameter.everyday != parameter.off
+    assert effect.typical != effect.off
 
 
 @EFFECTS

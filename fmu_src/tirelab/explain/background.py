@@ -18,7 +18,7 @@ SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""
 
 MANY = 24
-SAMPLES_PER_COLUMN = 5
+SAMPLES_PER_COLUMN = 20
 """Short recordings leave room for the smooth functions that fit in with this many samples to a column."""
 
 ROUNDS = 2
@@ -51,13 +51,15 @@ def _thinned(
     built: Sequence[Built], families: Sequence[Family], layout: Layout
 ) -> tuple[list[FloatArray], list[IndexArray]]:
     groups, chosen, at = [], [], 0
-    most = sum(b.residual.size for b in built) // SAMPLES_PER_COLUMN
+    most, smooth = sum(b.residual.size for b in built) // SAMPLES_PER_COLUMN, 0
     for f in families:
         own = layout.whole(f.name)
         if len(layout.variants[f.name]) >= MANY or f.name in ("jump", "resonance"):
             own = own[::SPARSE]
-        if f.agnostic and at + own.size > most:
-            own = own[:0]
+        if f.agnostic:
+            smooth += own.size
+            if smooth > most:
+                own = own[:0]
         chosen.append(own)
         if own.size:
             groups.append(np.arange(at, at + own.size))
