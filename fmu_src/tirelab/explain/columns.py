@@ -42,8 +42,8 @@ def _build(scene: Scene, record: Record, point: Point, families: Sequence[Family
     place = place_at(record.thin, scene, point)
     whole = place
     if record.thin is not record and any(f.remembers for f in families):
-        whole = place_at(record, scene, point)
-    raw = {f.name: f.build(whole)[record.rows] if f.remembers else f.build(place) for f in families}
+        whole = replace(place_at(record, scene, point), rows=record.rows)
+    raw = {f.name: f.build(whole) if f.remembers else f.build(place) for f in families}
     columns, force = raw, place.elastic
     if point.lifted is not None:
         on_ground = ~point.lifted[record.number]

@@ -95,8 +95,8 @@ def _friction(p: Place) -> FloatArray:
     contact = _contact(p)
     states = p.record.kept(
         "friction",
-        lambda motion: np.stack(
-            [jenkins(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES]
+        lambda motion: (
+            jenkins(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES
         ),
     )
     return np.stack([z * share for z in states for share in (contact, load, 1.0)], axis=1)
@@ -129,9 +129,7 @@ def _viscous(p: Place) -> FloatArray:
     typical = scale_of(p, "rate")
     powers = p.record.kept(
         "rate powers",
-        lambda motion: np.stack(
-            [np.sign(motion.rate) * np.abs(motion.rate / typical) ** n for n in RATE_EXPONENTS]
-        ),
+        lambda motion: (np.sign(motion.rate) * np.abs(motion.rate / typical) ** n for n in RATE_EXPONENTS),
     )
     columns = [power * share for power in powers for share in (contact, contact * depth)]
     return np.stack([*columns, powers[0] * depth**2], axis=1)
@@ -155,7 +153,8 @@ def high_pass(time: FloatArray, signal: FloatArray, time_constant: float) -> Flo
 
 
 def _relaxation(p: Place) -> FloatArray:
-    return np.stack([high_pass(p.record.time, p.elastic, tau) for tau in relaxation_times(p.scene)], axis=1)
+    times = relaxation_times(p.scene)
+    return np.stack([p.taken(high_pass(p.record.time, p.elastic, tau)) for tau in times], axis=1)
 
 
 def _mullins(p: Place) -> FloatArray:
@@ -165,7 +164,7 @@ def _mullins(p: Place) -> FloatArray:
     shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
     way = np.cumsum(np.abs(np.diff(p.deflection, prepend=p.deflection[0])) * (below > 0.0))
     damage = -np.expm1(-way / p.scene.deepest)
-    return np.stack([p.elastic * shape * part for part in (1.0, damage) for shape in shapes], axis=1)
+    return np.stack([p.taken(p.elastic * shape * part) for part in (1.0, damage) for shape in shapes], axis=1)
 
 
 GAS_POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25)
@@ -244,8 +243,8 @@ LAGS = tuple((lag, stages) for stages in (0, 1, 2) for lag in (1e-3, 2e-3, 4e-3,
 def _lag(p: Place) -> FloatArray:
     """The slope in time, and what each of LAGS would take away: the coefficient of the right one is -1."""
     slope = np.gradient(p.elastic, p.record.time)
-    steps = [p.elastic - lagged(p.record.time, p.elastic[:, None], *lag)[:, 0] for lag in LAGS]
-    return np.stack([slope, *steps, np.zeros_like(slope)], axis=1)
+    steps = [p.taken(p.elastic - lagged(p.record.time, p.elastic[:, None], *lag)[:, 0]) for lag in LAGS]
+    return np.stack([p.taken(slope), *steps, p.taken(np.zeros_like(slope))], axis=1)
 
 
 def _lag_variants(count: int) -> list[list[int]]:

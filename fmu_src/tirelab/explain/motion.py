@@ -137,16 +137,19 @@ def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, Flo
 
     It is known late, but counts from the turning point on.
     """
-    direction = np.ones(deflection.size)
-    cycle = np.zeros(deflection.size)
-    start = np.full(deflection.size, deflection[0])
-    way, number, best = 1.0, 0.0, 0
-    for i in range(deflection.size):
-        if way * (deflection[i] - deflection[best]) >= 0.0:
-            best = i
-        elif way * (deflection[best] - deflection[i]) > threshold:
-            way = -way
-            number += 1.0 if way > 0.0 else 0.0
-            direction[best + 1 :], cycle[best + 1 :], start[best + 1 :] = way, number, deflection[best]
-            best = i
+    turns, way, best = [0], 1.0, 0
+    highest = deflection[0]
+    values = deflection.tolist()
+    for i, x in enumerate(values):
+        ahead = way * (x - highest)
+        if ahead >= 0.0:
+            best, highest = i, x
+        elif -ahead > threshold:
+            turns.append(best + 1)
+            way, best, highest = -way, i, x
+    spans = np.diff([*turns, deflection.size])
+    number = np.arange(spans.size)
+    direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), spans)
+    cycle = np.repeat(np.floor(number / 2.0), spans)
+    start = np.repeat(deflection[np.maximum(np.array(turns) - 1, 0)], spans)
     return direction, cycle, np.abs(deflection - start)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .motion import BoolArray, FloatArray
+from .motion import BoolArray, FloatArray, IndexArray
 from .scene import DEEP_IN_CM, Record, Scene
 
 
@@ -37,6 +37,11 @@ class Place:
     elastic: FloatArray
     stiffness: FloatArray
     logarithm: FloatArray
+    rows: IndexArray | None = None
+
+    def taken(self, column: FloatArray) -> FloatArray:
+        """Return what of a column is wanted: its `rows`, or all of it."""
+        return column if self.rows is None else column[self.rows]
 
 
 POWERS = 4

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -52,13 +52,13 @@ class Record:
         sliced = [a if isinstance(a, Motion) else a[rows] for a in arrays]
         return Record(*sliced, np.arange(rows.size), self.number, self)  # type: ignore[arg-type, call-arg]
 
-    def kept(self, name: str, compute: Callable[[Motion], FloatArray]) -> FloatArray:
-        """Return what `compute` makes of the whole motion, computed once; its last axis is that of the samples."""
+    def kept(self, name: str, compute: Callable[[Motion], Iterable[FloatArray]]) -> FloatArray:
+        """Return what `compute` makes of the whole motion, one row each at this record's samples, computed once."""
         if name not in self.memory:
             if self.whole is None:
-                self.memory[name] = compute(self.motion)
+                self.memory[name] = np.stack(list(compute(self.motion)))
             else:
-                self.memory[name] = np.ascontiguousarray(self.whole.kept(name, compute)[..., self.whole.rows])
+                self.memory[name] = np.stack([row[self.whole.rows] for row in compute(self.whole.motion)])
         return self.memory[name]
 
     def kept_lines(self, course: FloatArray, weight: FloatArray, count: int) -> FloatArray:
@@ -125,7 +125,9 @@ def strongest_lines(course: FloatArray, weight: FloatArray, values: FloatArray, 
             [weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1
         )
         fitted = waves @ np.linalg.lstsq(waves, values, rcond=None)[0]
-        lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / sigma))
+        # A fast line stands in the differences too: what it leaves then measures the noise better.
+        rest = min(sigma, float(np.std(values - fitted)) + 1e-12)
+        lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / rest))
         spectrum[max(at - 12, 0) : at + 13] = 0.0
     return np.array(lines)
 
