@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concealed.effects.effect import Contact, Effect
-from concealed.motion import FloatArray, Motion
+from concealed.motion import BoolArray, FloatArray, Motion
 from concealed.tires import Tire
 
 #: Wheel and tire in series are balanced to within this length [m]: 0.1 N at 1e5 N/m would be 1e-6.
@@ -40,17 +40,26 @@ class Bench:
     def force(self, motion: Motion) -> FloatArray:
         """Force [N] at the output of the force channel on the fine grid, free of noise."""
         contact = self.contact(motion)
-        force = contact.elastic
-        for effect in self.effects:
-            force = force * effect.softening(contact)
-        for effect in self.effects:
-            force = force + effect.parallel(contact)
-        force = np.where(contact.deflection > 0.0, np.maximum(force, 0.0), 0.0)
+        force = np.where(contact.deflection > 0.0, np.maximum(self._pressing(contact), 0.0), 0.0)
         for effect in self.effects:
             force = force + effect.machine(contact)
         # the zero and the ceiling come after the filter: the amplifier's last stage
         for effect in sorted(self.effects, key=lambda e: CHANNEL_ORDER.get(e.name, 1)):
             force = effect.channel(motion, force)
+        return force
+
+    def lifted(self, motion: Motion) -> BoolArray:
+        """Where the tire lets go although it is deflected: a force in parallel would have to pull."""
+        contact = self.contact(motion)
+        return (contact.deflection > 0.0) & (self._pressing(contact) < 0.0)
+
+    def _pressing(self, contact: Contact) -> FloatArray:
+        """Force [N] in the contact if it could pull."""
+        force = contact.elastic
+        for effect in self.effects:
+            force = force * effect.softening(contact)
+        for effect in self.effects:
+            force = force + effect.parallel(contact)
         return force
 
     def _elastic(self, deflection: FloatArray, radius: FloatArray, pressure: FloatArray) -> FloatArray:

@@ -187,7 +187,7 @@ def _explained(
     if plan.another_tire:
         known["recalibration"] = misfit
     shape = plan.another_tire and isinstance(belief.tire, ContactPatchTire)
-    return explanations(Bench(belief.tire), scene.motions, residuals, known, instrument, shape)
+    return explanations(bench, scene.motions, residuals, known, instrument, shape)
 
 
 def _is_fair(plan: Plan, bench: Bench, explained: Explanations) -> bool:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import dct
+from scipy.fft import dct, idct
 from scipy.signal import lfilter
 
 from concealed.motion import FloatArray
@@ -45,11 +45,7 @@ class Instrument:
             steps[0] = self.drifting * rng.standard_normal()
             error += lfilter([1.0], [1.0, -keep], steps)
         if self.pink > 0.0:
-            bins = np.arange(samples // 2 + 1)
-            sizes = np.concatenate([[0.0], 1.0 / np.sqrt(bins[1:])])
-            phases = rng.standard_normal(bins.size) + 1j * rng.standard_normal(bins.size)
-            wave = np.fft.irfft(sizes * phases, samples)
-            error += self.pink * wave / np.std(wave)
+            error += idct(np.sqrt(self._pink_spectrum(samples)) * rng.standard_normal(samples), norm="ortho")
         if self.hum > 0.0:
             time = np.arange(samples) * step
             phase = rng.uniform(0.0, 2.0 * np.pi)
@@ -75,14 +71,18 @@ class Instrument:
             keep = float(np.exp(-step / self.correlation_time))
             total += self.drifting**2 * (1.0 - keep**2) / (1.0 - 2.0 * keep * np.cos(angle) + keep**2)
         if self.pink > 0.0:
-            fall = 1.0 / np.maximum(np.arange(samples), 1.0)
-            total += self.pink**2 * samples * fall / np.sum(fall)
+            total += self._pink_spectrum(samples)
         if self.hum > 0.0:
             time = np.arange(samples) * step
             for wave in (np.sin, np.cos):
                 line = self.hum * np.sqrt(2.0) * wave(2.0 * np.pi * self.mains * time)
                 total += 0.5 * dct(line, norm="ortho") ** 2
         return total
+
+    def _pink_spectrum(self, samples: int) -> FloatArray:
+        """Variance [N^2] of each cosine coefficient of the 1/f part, without a mean."""
+        fall = np.concatenate([[0.0], 1.0 / np.arange(1, samples)])
+        return self.pink**2 * samples * fall / float(np.sum(fall))
 
 
 def drawn_instrument(rng: np.random.Generator) -> Instrument:

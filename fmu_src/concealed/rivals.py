@@ -75,8 +75,10 @@ def explanations(
 ) -> Explanations:
     """Prepare the losses of all sets.
 
-    residuals [N]: what the believed tire leaves unexplained, noise-free, on the recorded samples; known [N]:
-    what each true effect adds, so that a set that holds it can add exactly that.
+    bench: the tire with its effects, of which the spans take the tire alone; samples at which the tire lifts
+    off count for nothing, because no span knows of lifting. residuals [N]: what the believed tire leaves
+    unexplained, noise-free, on the recorded samples; known [N]: what each true effect adds, so that a set
+    that holds it can add exactly that.
     """
     common = Range.of(bench, tuple(motions))
     blocks, targets = [], []
@@ -92,7 +94,8 @@ def explanations(
             place += own.shape[1]
             parts.append(own)
         stiffness = _stiffness(bench, motion)
-        stacked = np.concatenate([*parts, residuals[k][:, None]], axis=1)
+        pressed = ~motion.recorded(bench.lifted(motion))
+        stacked = np.concatenate([*parts, residuals[k][:, None]], axis=1) * pressed[:, None]
         white = whitened(stacked, instrument, motion.sample_step, stiffness)
         blocks.append(white[:, :-1])
         targets.append(white[:, -1])

@@ -7,7 +7,7 @@ import numpy as np
 
 from concealed.bench import Bench
 from concealed.measurement import Instrument
-from concealed.motion import FINEST_STEP, FloatArray, Motion, even_grid
+from concealed.motion import FINEST_STEP, FloatArray, Motion, even_grid, rounded
 from concealed.sizing import Size
 from concealed.tires import PowerTire
 
@@ -117,7 +117,7 @@ def rerun(
     """Run another test on the rig of a trial, for instance one that is to tell rivals apart.
 
     time [s] on an even grid, deflection [m], radius [m] (convex > 0, concave < 0, flat = inf); one shape
-    (n,), n >= 8. The motion between the samples is a straight line, so corners are as sharp as the grid.
+    (n,), n >= 8. Between the samples the actuator goes straight on; it rounds corners over one step.
     Errors: ValueError for a grid that is not even, or too few samples.
     """
     if time.size < 8:
@@ -133,6 +133,7 @@ def rerun(
     stride = max(1, int(np.ceil(step / FINEST_STEP - 1e-9)))
     fine = time[0] + even_grid((time.size - 1) * stride + 1, step / stride)
     mounted = radius[np.minimum((np.arange(fine.size) + stride - 1) // stride, time.size - 1)]
-    motion = Motion("test", fine, np.interp(fine, time, deflection), mounted, stride)
+    path = rounded(np.interp(fine, time, deflection), step / stride, step)
+    motion = Motion("test", fine, path, mounted, stride)
     rng = np.random.default_rng(np.random.SeedSequence([trial.seed, seed]))
     return recorded(trial.bench, trial.instrument, motion, name, rng)[0]

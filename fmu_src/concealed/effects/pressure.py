@@ -1,6 +1,5 @@
 """What changes the pressure: compression of the gas, a leak, warming."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -112,12 +111,3 @@ class WarmingAir(Effect):
         rise = -self.quick_share * np.expm1(-motion.time / self.quick)
         rise = rise - (1.0 - self.quick_share) * np.expm1(-motion.time / self.late)
         return 1.0 + ABSOLUTE * self.strength * rise / ROOM
-
-
-def healthy_volume_fraction(force: float, exponent: float) -> float:
-    """Volume that a power-law tire loses at 25 mm over its whole, from the work against the pressure [1].
-
-    integral F dx = F x/(B + 1); volume of a torus of 62 cm diameter and 4.9 cm section: 3.7 litres.
-    """
-    volume = math.pi * 0.62 * math.pi * 0.0245**2
-    return force * QUOTED_DEFLECTION / (exponent + 1.0) / INFLATION / volume
