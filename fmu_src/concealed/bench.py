@@ -8,8 +8,8 @@ from concealed.effects.effect import Contact, Effect
 from concealed.motion import BoolArray, FloatArray, Motion
 from concealed.tires import Tire
 
-#: Wheel and tire in series are balanced to within this length [m]: 0.1 N at 1e5 N/m would be 1e-6.
-BALANCE = 1e-9
+#: Wheel and tire in series are balanced to within this length [m]: a millinewton at 1e5 N/m.
+BALANCE = 1e-8
 
 
 @dataclass(frozen=True)

@@ -216,7 +216,7 @@ def _right(
         sets = ((*plan.names, "unknown"), ("unknown",)) if plan.names else (("unknown",),)
         return (
             sets,
-            {"any pair of names": explained.best(plan.names, 2)},
+            {"any pair of names": round(explained.best(plan.names, 2), 3)},
             "part of the misfit may be called unknown too" if plan.names else "",
         )
     truth = frozenset(plan.names)
@@ -231,7 +231,7 @@ def _right(
             if swapped != truth and swapped not in sets_found:
                 sets_found.append(swapped)
     right = (tuple(sorted(truth)), *(tuple(sorted(s)) or ("none",) for s in sets_found))
-    return right, {" + ".join(sorted(s)) or "none": loss for s, loss in margins.items()}, rule
+    return right, {" + ".join(sorted(s)) or "none": round(loss, 3) for s, loss in margins.items()}, rule
 
 
 def _effects(bench: Bench, plan: Plan, belief: Belief) -> dict[str, Parameters]:

@@ -49,9 +49,8 @@ def single_rate_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
     cycles = int(rng.integers(3, 9))
     knots = [_cycles(deep, 2.0 * deep / rate, cycles) for deep in reach.deepest]
     period = 2.0 * reach.shallowest / rate
-    return _polyline(
-        "single_rate_triangle", knots, reach.surfaces, _sample_step(rng, knots, period), 0.01 * period
-    )
+    step = _sample_step(rng, knots, period / 6.0)
+    return _polyline("single_rate_triangle", knots, reach.surfaces, step, 0.03 * period)
 
 
 def many_rates_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
@@ -86,9 +85,8 @@ def growing_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
         values[1::2] = peaks
         knots.append((np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)) / rate)]), values))
     period = reach.shallowest / rate
-    return _polyline(
-        "growing_triangle", knots, reach.surfaces, _sample_step(rng, knots, period), 0.01 * period
-    )
+    step = _sample_step(rng, knots, period / 6.0)
+    return _polyline("growing_triangle", knots, reach.surfaces, step, 0.03 * period)
 
 
 def ramp_and_hold(rng: np.random.Generator, reach: Reach) -> Motion:
@@ -251,7 +249,7 @@ def _staircase(
         values.append(0.0)
         knots.append((np.array(times), np.array(values)))
     quickest = reach.shallowest / (up * rate)
-    return _polyline(name, knots, reach.surfaces, _sample_step(rng, knots, quickest), 0.05 * quickest)
+    return _polyline(name, knots, reach.surfaces, _sample_step(rng, knots, quickest), 0.2 * quickest)
 
 
 def _sample_step(

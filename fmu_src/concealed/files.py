@@ -96,6 +96,9 @@ def _plain(value: object) -> object:
         return [_plain(item) for item in value]
     if isinstance(value, np.generic):
         return _plain(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return "inf" if value > 0.0 else "-inf"
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            return "inf" if value > 0.0 else "-inf"
+        # nine digits: the last ones of a sum depend on how many threads a linear algebra library uses
+        return float(f"{value:.9g}")
     return value

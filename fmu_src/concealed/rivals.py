@@ -124,17 +124,17 @@ def loss_of(
 def indistinguishable(explained: Explanations, truth: Names) -> dict[Names, float]:
     """Sets no larger than the truth that lose less than `DECIDED` against it; none holds another.
 
-    Returns their loss beyond the truth's. Sets that share nothing with a truth of three are left out above
-    pairs.
+    Returns their loss beyond the truth's. A name is in every such set if even all others together lose more
+    than that without it, because more names never lose more: so few sets are left to look at.
     """
     own = explained.loss(truth)
+    needed = {name for name in NAMES if explained.loss(set(NAMES) - {name}) - own >= DECIDED}
+    optional = [name for name in NAMES if name not in needed]
     found: dict[Names, float] = {}
-    for size in range(len(truth) + 1):
-        for chosen in combinations(NAMES, size):
-            names = frozenset(chosen)
+    for more in range(len(truth) - len(needed) + 1):
+        for chosen in combinations(optional, more):
+            names = frozenset(needed.union(chosen))
             if names == truth or any(smaller < names for smaller in found):
-                continue
-            if size == 3 and len(names & truth) < 2:
                 continue
             loss = explained.loss(names) - own
             if loss < DECIDED:
@@ -145,13 +145,13 @@ def indistinguishable(explained: Explanations, truth: Names) -> dict[Names, floa
 def one_constant_rate(motions: Sequence[Motion]) -> bool:
     """Whether all recordings run at one and the same rate, up and down, on one surface.
 
-    Off the corners the rate stays within 5 % of its median, and at most a tenth of the samples is at corners.
+    Off the corners the rate stays within 5 % of its median, and at most a fifth of the samples is at corners.
     """
     if len({r for m in motions for r in m.surfaces}) != 1:
         return False
     rates = np.concatenate([np.abs(m.recorded(m.rate)) for m in motions])
     middle = float(np.median(rates))
-    return middle > 0.0 and float(np.mean(np.abs(rates / middle - 1.0) > 0.05)) < 0.1
+    return middle > 0.0 and float(np.mean(np.abs(rates / middle - 1.0) > 0.05)) < 0.2
 
 
 def _stiffness(bench: Bench, motion: Motion) -> float:

@@ -54,9 +54,9 @@ class PowerTire:
     def force(self, deflection: FloatArray, radius: FloatArray, pressure_ratio: FloatArray) -> FloatArray:
         """Elastic radial force [N]."""
         result = np.zeros_like(deflection)
-        for r in np.unique(radius):
+        for r in distinct(radius):
             here = radius == r
-            result[here] = self.at(float(r)).force(deflection[here])
+            result[here] = self.at(r).force(deflection[here])
         return result * pressure_ratio
 
 
@@ -105,15 +105,21 @@ class ContactPatchTire:
         """Elastic radial force [N]; the pressure acts on the pneumatic part alone."""
         result = np.zeros_like(deflection)
         root = np.sqrt(np.clip(deflection, 0.0, DEEPEST))
-        for r in np.unique(radius):
+        for r in distinct(radius):
             here = radius == r
-            pneumatic, casing = _tables(self, float(r))
+            pneumatic, casing = _tables(self, r)
             result[here] = pressure_ratio[here] * pneumatic(root[here]) + casing(root[here])
         return result
 
 
 #: Elastic tire: force(deflection [m], radius [m], pressure over inflation pressure [1]) -> radial force [N].
 Tire = PowerTire | ContactPatchTire
+
+
+def distinct(radius: FloatArray) -> set[float]:
+    """The surfaces [m] in a column of radii, found at the places where it changes."""
+    changed = radius[1:] != radius[:-1]
+    return {float(r) for r in (*radius[:1], *radius[1:][changed])}
 
 
 @lru_cache(maxsize=256)

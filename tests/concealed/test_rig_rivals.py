@@ -57,7 +57,7 @@ def test_slow_noise_hides_slow_effects() -> None:
 
 def test_one_rate_cannot_tell_viscosity_from_friction_but_three_can() -> None:
     """The table of look-alikes: N = 3e5 samples on one constant-rate triangle, 17 with three rates."""
-    effect = LinearDashpot(200.0)
+    effect = LinearDashpot(150.0)
     single = explained(effect, motions("single_rate_triangle"))
     assert single.loss({"rate_independent_hysteresis"}) < DECIDED
     several = explained(effect, motions("many_rates_triangle"))
