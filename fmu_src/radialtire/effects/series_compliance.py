@@ -6,8 +6,8 @@ F is the elastic law alone: what acts beside it (friction, damping) is a few per
 deflection a few percent of a few percent. Hull, Wang & Moore (1996) had a wheel of 2e6 N/m in their readings (5e-7 m/N;
 Hopkins & Principe 1990) and state up to 8.8 % of stiffness lost to it.
 
-Solved by Newton's method on a convex rising function from above its root, so every step goes down to the root and
-none passes it: in x for B >= 1, in F for B < 1.
+Solved by Newton's method on a convex rising function, in x for B >= 1 and in F for B < 1, from above its root: every
+step goes down to the root and none passes it.
 """
 
 from __future__ import annotations
@@ -15,11 +15,8 @@ from __future__ import annotations
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
 
-STEPS_MAX = 60
-"""More than are needed: far from the root a step leaves at most 1 - 1/B of the distance, near it the square."""
-
 NEAR = 1e-9
-"""Relative length of a step after which the next one, its square, is below the rounding."""
+"""Relative length of a step whose successor, its square, is below the rounding."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -35,20 +32,18 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         root = 0.01 * (force / A) ** (1.0 / B)
     # now root is above the solution, and force is F(root)
     if B >= 1.0:
-        for _ in range(STEPS_MAX):
+        step = root
+        while step > NEAR * root:
+            force = A * (100.0 * root) ** B
             step = (root + k * force - signal) / (1.0 + k * B * force / root)
             root -= step
-            if step <= NEAR * root:
-                break
-            force = A * (100.0 * root) ** B
         return root, state
-    for _ in range(STEPS_MAX):
+    step = force
+    while step > NEAR * force:
+        root = 0.01 * (force / A) ** (1.0 / B)
         step = (root + k * force - signal) / (k + root / (B * force))
         force -= step
-        root = 0.01 * (force / A) ** (1.0 / B)
-        if step <= NEAR * force:
-            break
-    return root, state
+    return 0.01 * (force / A) ** (1.0 / B), state
 
 
 SERIES_COMPLIANCE = Effect(

@@ -1,0 +1,60 @@
+"""The noise of recordings, from what a model with every freedom at once leaves over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..noise import Noise, first_guess, noise_of
+from .evidence import explain, products_of
+from .families import Family, Point
+from .motion import FloatArray
+from .scene import Scene
+from .search import Built, Layout, build, layout_of
+
+SPARSE = 6
+"""Of families with many alternative columns, every so many are enough to take up what they could."""
+
+MANY = 24
+ROUNDS = 2
+
+
+def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[Noise, ...]:
+    """Return the noise of each recording: size, colour and spikes of what all `families` together leave."""
+    built = build(scene, point, families)
+    layout = layout_of(built, families)
+    columns, groups = _thinned(built, families, layout)
+    noises = [first_guess(b.residual) for b in built]
+    total = sum(b.residual.size for b in built)
+    for _ in range(ROUNDS):
+        rows = [r.rows for r in scene.records]
+        data = [n.whitened_at(b.residual, r) for n, b, r in zip(noises, built, rows, strict=True)]
+        white = [n.whitened_at(c, r) for n, c, r in zip(noises, columns, rows, strict=True)]
+        explained = explain(products_of(np.concatenate(white), np.concatenate(data)), groups, 1.0)
+        following = []
+        for b, own, record in zip(built, columns, scene.records, strict=True):
+            left = b.residual.copy()
+            for group, values in zip(groups, explained.coefficients, strict=True):
+                left -= own[:, group] @ values
+            freedom = explained.freedom * left.size / total
+            through = b.place.stiffness * record.motion.noise
+            following.append(noise_of(left, through, freedom, record.motion.resolved))
+        noises = following
+    return tuple(noises)
+
+
+def _thinned(
+    built: Sequence[Built], families: Sequence[Family], layout: Layout
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    groups, chosen, at = [], [], 0
+    for f in families:
+        own = layout.whole(f.name)
+        if len(layout.variants[f.name]) >= MANY or f.name in ("jump", "resonance"):
+            own = own[::SPARSE]
+        chosen.append(own)
+        groups.append(np.arange(at, at + own.size))
+        at += own.size
+    index = np.concatenate(chosen)
+    whole = [np.concatenate([b.columns[f.name] for f in families], axis=1)[:, index] for b in built]
+    return whole, groups

@@ -1,0 +1,63 @@
+"""Softening by the largest deflection so far."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from driving import drive, only
+from radialtire import TireModel
+
+UP = np.linspace(0.0, 0.02, 101)
+DOWN_UP = np.concatenate([UP, UP[::-1], UP])
+BARE = drive(TireModel(), np.arange(303.0), DOWN_UP)
+
+
+def driven(**changed: float) -> np.ndarray:
+    return drive(only("mullins_softening", **changed), np.arange(303.0), DOWN_UP)
+
+
+def test_the_first_loading_is_that_of_a_new_tire() -> None:
+    assert np.array_equal(driven(share=0.3)[:101], BARE[:101])
+
+
+def test_unloading_and_the_second_loading_are_one_curve() -> None:
+    force = driven(share=0.3)
+    assert np.array_equal(force[101:202], force[202:][::-1])
+    assert np.all(force[202:-1] <= BARE[202:-1])
+
+
+def test_far_below_the_share_is_lost() -> None:
+    # 1 - D (1 - exp(-u)) with u = (20 - 2) mm / 1 mm
+    force = driven(share=0.3, width=1e-3)
+    i = 202 + 10
+    assert UP[10] == pytest.approx(2e-3)
+    assert force[i] / BARE[i] == pytest.approx(0.7, abs=0.3 * math.exp(-18.0) + 1e-12)
+
+
+def test_width_ratio_and_sharpness_shape_it_as_stated() -> None:
+    force = driven(share=0.2, width=2e-3, ratio=0.1, sharpness=2.0)
+    i = 202 + 90  # 2 mm below 20 mm: u = 2 / (2 + 0.1 * 20) = 1/2
+    assert force[i] / BARE[i] == pytest.approx(1.0 - 0.2 * (1.0 - math.exp(-0.25)), rel=1e-12)
+
+
+def test_beyond_the_largest_deflection_it_is_new_again() -> None:
+    x = np.array([0.01, 0.005, 0.012])
+    force = drive(only("mullins_softening", share=0.3), np.arange(3.0), x)
+    bare = drive(TireModel(), np.arange(3.0), x)
+    assert force[1] < bare[1]
+    assert force[2] == bare[2]
+
+
+def test_rest_does_not_heal_it() -> None:
+    tire = only("mullins_softening", share=0.3)
+    soon = drive(tire, [0.0, 1.0, 2.0], [0.02, 0.0, 0.01])
+    late = drive(tire, [0.0, 1.0, 1e6], [0.02, 0.0, 0.01])
+    assert soon[-1] == late[-1]
+
+
+def test_a_tire_with_a_history_starts_soft() -> None:
+    used = drive(only("mullins_softening", share=0.3, history=0.02), [0.0], [0.01])
+    new_then_used = drive(only("mullins_softening", share=0.3), [0.0, 1.0], [0.02, 0.01])
+    assert used[0] == new_then_used[-1]

@@ -1,0 +1,64 @@
+"""A spring in series: against its own equation, closed forms, and the article's wheel."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from driving import LINEAR, STIFFNESS, drive, only
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from published import hull1996 as article
+from radialtire import Instant, PowerLaw, power_law
+from radialtire.effects.series_compliance import SERIES_COMPLIANCE
+
+
+@given(
+    st.floats(-12.0, 0.0).map(lambda u: 0.33 * math.exp(u)),
+    st.floats(-30.0, 0.0).map(lambda u: 1e-4 * math.exp(u)),
+    st.floats(-6.0, 13.0).map(math.exp),
+    st.floats(0.1, 10.0),
+)
+@settings(max_examples=300, deadline=None)
+def test_the_parts_add_up_to_the_reading(x: float, k: float, A: float, B: float) -> None:
+    # its own equation; a change of x of one rounding changes k F by up to B of them
+    instant = Instant(0.0, 0.0, True, x, 0.0, 0.0, A, B, 0.0)
+    tire, _ = SERIES_COMPLIANCE.respond(x, instant, (), (k,))
+    assert 0.0 < tire <= x * (1.0 + 1e-15)
+    assert tire + k * power_law.force(tire, A, B) == pytest.approx(x, rel=2e-14)
+
+
+def test_two_straight_springs_share_the_deflection() -> None:
+    # closed form: 1 / (k + 1/K)
+    k = 5e-6
+    force = drive(only("series_compliance", law=LINEAR, compliance=k), [0.0], [0.02])
+    assert force[0] == pytest.approx(0.02 / (k + 1.0 / STIFFNESS), rel=1e-14)
+
+
+def test_a_spring_against_its_square_root_has_the_roots_of_a_quadratic() -> None:
+    # B = 2: k A (100 x)^2 + x = X; B = 1/2: x + k A (100 x)^0.5 = X, quadratic in the root of x
+    k, A, X = 2e-5, 800.0, 0.03
+    a = k * A * 1e4
+    square = (-1.0 + math.sqrt(1.0 + 4.0 * a * X)) / (2.0 * a)
+    force = drive(only("series_compliance", law=PowerLaw(A, 2.0), compliance=k), [0.0], [X])
+    assert force[0] == pytest.approx(A * (100.0 * square) ** 2, rel=1e-13)
+    b = k * A * 10.0
+    root = ((-b + math.sqrt(b * b + 4.0 * X)) / 2.0) ** 2
+    force = drive(only("series_compliance", law=PowerLaw(A, 0.5), compliance=k), [0.0], [X])
+    assert force[0] == pytest.approx(A * (100.0 * root) ** 0.5, rel=1e-13)
+
+
+def test_the_articles_wheel_hides_the_printed_share_of_the_stiffness() -> None:
+    # tangents in series: 1/K_both = 1/K_tire + 1/K_wheel; 1.7e5 N/m with the wheel lose 8.5 %, printed "up to 8.8 %"
+    both = article.GREATEST_STIFFNESS
+    alone = 1.0 / (1.0 / both - 1.0 / article.WHEEL_STIFFNESS)
+    assert 1.0 - both / alone == pytest.approx(article.GREATEST_UNDERESTIMATE, abs=0.004)
+    law = PowerLaw(alone / 100.0, 1.0)
+    force = drive(only("series_compliance", law=law, compliance=1.0 / article.WHEEL_STIFFNESS), [0.0], [0.01])
+    assert force[0] / 0.01 == pytest.approx(both, rel=1e-12)
+
+
+def test_in_the_air_nothing_gives_way() -> None:
+    x = np.array([-0.5, -1e-9, 0.0])
+    assert list(drive(only("series_compliance", compliance=1e-5), [0.0, 1.0, 2.0], x)) == [0.0, 0.0, 0.0]

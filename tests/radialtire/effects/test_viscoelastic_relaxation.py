@@ -1,0 +1,102 @@
+"""Relaxation: holds, loss peak and storage of standard linear solids."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from driving import LINEAR, STIFFNESS, drive, harmonic, only, sine
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from radialtire.effects.viscoelastic_relaxation import overstress
+
+NAME = "viscoelastic_relaxation"
+
+
+def test_a_held_force_decays_with_the_relaxation_times() -> None:
+    # loaded in 1e-6 s: F_e (1 + g1 exp(-t/tau1) + g2 exp(-t/tau2)); 1e-6 s of 0.3 s is lost on the way up
+    tire = only(NAME, law=LINEAR, share_1=0.05, relaxation_time_1=0.3, share_2=0.08, relaxation_time_2=4.0)
+    time = np.concatenate([[0.0, 1e-6], np.linspace(0.01, 20.0, 50)])
+    force = drive(tire, time, np.concatenate([[0.0], np.full(51, 0.02)]))
+    expected = STIFFNESS * 0.02 * (1.0 + 0.05 * np.exp(-time / 0.3) + 0.08 * np.exp(-time / 4.0))
+    assert force[1:] == pytest.approx(expected[1:], rel=1e-5)
+
+
+@pytest.mark.parametrize("times_tau", [0.1, 1.0, 10.0])
+def test_storage_and_loss_are_those_of_a_standard_linear_solid(times_tau: float) -> None:
+    # K (1 + g i w tau / (1 + i w tau)); straight lines between 500 moments of a cycle lose (2 pi / 500)^2 / 12
+    g, tau, frequency, a = 0.2, 0.5, times_tau / (2.0 * math.pi * 0.5), 0.008
+    cycles = max(3.0, math.ceil(8.0 * tau * frequency))
+    time, x = sine(frequency, a, 0.012, cycles, 500)
+    force = harmonic(
+        time, drive(only(NAME, law=LINEAR, share_1=g, relaxation_time_1=tau), time, x), frequency
+    )
+    w_tau = 1j * times_tau
+    expected = STIFFNESS * a * (1.0 + g * w_tau / (1.0 + w_tau))
+    assert abs(force - expected) < 1e-3 * g * abs(expected)
+
+
+def test_the_loss_peaks_where_omega_tau_is_one() -> None:
+    tau = 0.5
+
+    def loss(times_tau: float) -> float:
+        frequency = times_tau / (2.0 * math.pi * tau)
+        time, x = sine(frequency, 0.008, 0.012, 5.0, 300)
+        force = drive(only(NAME, law=LINEAR, share_1=0.2, relaxation_time_1=tau), time, x)
+        return harmonic(time, force, frequency).imag
+
+    at_peak = loss(1.0)
+    assert at_peak == pytest.approx(0.2 * STIFFNESS * 0.008 / 2.0, rel=2e-3)
+    assert loss(0.7) < at_peak
+    assert loss(1.4) < at_peak
+
+
+@given(
+    st.floats(-100.0, 100.0),
+    st.floats(-500.0, 500.0),
+    st.floats(1e-4, 2.0),
+    st.floats(1e-4, 1e3),
+    st.integers(2, 9),
+)
+@settings(max_examples=100, deadline=None)
+def test_a_straight_way_may_be_cut_anywhere(
+    h: float, change: float, interval: float, tau: float, parts: int
+) -> None:
+    # exact integration: n parts of a straight line give what the whole gives
+    whole = overstress(h, change, interval, tau)
+    for _ in range(parts):
+        h = overstress(h, change / parts, interval / parts, tau)
+    assert h == pytest.approx(whole, rel=1e-10, abs=1e-9)
+
+
+def test_no_time_passing_is_a_sudden_change() -> None:
+    assert overstress(3.0, 5.0, 0.0, 1.0) == 8.0
+
+
+def test_a_law_of_the_sudden_force_relaxes_from_it() -> None:
+    # r = 1: a step reads the law at once, and 1 - g of it in the end
+    tire = only(NAME, law=LINEAR, share_1=0.1, relaxation_time_1=1.0, sudden=1.0)
+    force = drive(tire, [0.0, 1e-9, 100.0], [0.0, 0.02, 0.02])
+    assert force[1] == pytest.approx(STIFFNESS * 0.02, rel=1e-8)
+    assert force[2] == pytest.approx(0.9 * STIFFNESS * 0.02, rel=1e-8)
+
+
+def test_three_terms_follow_six() -> None:
+    # documented: rubber of six times over three decades, fitted with three, within a few tenths of a percent
+    time = np.geomspace(1e-3, 100.0, 200)
+    six = sum(0.02 * np.exp(-time / tau) for tau in np.geomspace(0.01, 10.0, 6))
+    columns = np.stack([np.exp(-time / tau) for tau in (0.016, 0.3, 6.5)], axis=1)
+    shares, *_ = np.linalg.lstsq(columns, six, rcond=None)
+    assert np.all(shares > 0.0)
+    assert np.max(np.abs(columns @ shares - six)) < 0.005
+
+
+def test_a_relaxing_tire_leaves_the_ground_before_its_shape_does() -> None:
+    # unloaded fast from a long hold the overstress is negative: near x = 0 it would pull
+    tire = only(NAME, law=LINEAR, share_1=0.5, relaxation_time_1=10.0)
+    time = np.concatenate([[0.0], np.linspace(1000.0, 1000.1, 101)])
+    x = np.concatenate([[0.02], np.linspace(0.02, 0.0, 101)])
+    force = drive(tire, time, x)
+    assert force[-10] == 0.0
+    assert x[-10] > 0.0

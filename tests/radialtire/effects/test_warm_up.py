@@ -1,0 +1,23 @@
+"""Warming: the force rises to a new level."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from driving import drive, only
+
+
+def test_it_has_risen_by_63_percent_of_the_gain_after_the_time_constant() -> None:
+    force = drive(only("warm_up", gain=0.1, time_constant=60.0), [0.0, 60.0, 6000.0], [0.02] * 3)
+    assert force[1] / force[0] == pytest.approx(1.0 + 0.1 * (1.0 - math.exp(-1.0)), rel=1e-14)
+    assert force[2] / force[0] == pytest.approx(1.1, rel=1e-14)
+
+
+def test_ten_kelvin_at_40_psi_are_three_percent_and_more() -> None:
+    # gas law at constant volume: absolute pressure in proportion to the temperature; 1 psi for 10 degF, within 10 %
+    absolute = 40.0 + 14.7
+    gain_for_10_degF = absolute * (10.0 / 1.8) / 293.0 / 40.0
+    assert gain_for_10_degF * 40.0 == pytest.approx(1.0, rel=0.1)
+    force = drive(only("warm_up", gain=gain_for_10_degF, time_constant=1.0), [0.0, 100.0], [0.02] * 2)
+    assert force[1] / force[0] == pytest.approx(1.0 + 1.0 / 40.0, abs=0.003)
