@@ -67,7 +67,7 @@ def work(
         left = dict(tasks)
         while left:
             try:
-                for done in parallel(function, left):
+                for done in parallel(function, dict(left)):
                     del left[done.key]
                     bar.advance(row)
                     yield done
@@ -133,7 +133,7 @@ def _backend(cores: Cores) -> Iterator[_Parallel]:
 def _in_this_process(
     function: Callable[..., Any], tasks: Mapping[str, tuple[Any, ...]]
 ) -> Iterator[Done[Any]]:
-    for key, arguments in list(tasks.items()):
+    for key, arguments in tasks.items():
         yield _guarded(function, key, arguments)
 
 
