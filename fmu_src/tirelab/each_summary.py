@@ -15,6 +15,20 @@ import jinja2
 from .stated import NOTHING, Names, Stated
 
 
+HEADINGS = (
+    "name",
+    "missing",
+    "unexplained",
+    "confidence",
+    "rivals",
+    "noise [N]",
+    "before [N]",
+    "after [N]",
+    "most of it in",
+)
+"""What the summary tells of every verdict."""
+
+
 @dataclass(frozen=True)
 class Item:
     """What gets one verdict: its name, and the recordings that are diagnosed together."""
@@ -80,13 +94,10 @@ def summary_csv(result: EachResult, out: Path) -> str:
     """Return the summary as CSV, one line for each item; forces in N."""
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\r\n")
-    lines.writerow(
-        "name,missing,unexplained,confidence,rivals,noise [N],before [N],after [N],most of it in,recordings,report,"
-        "error".split(",")
-    )
+    lines.writerow([*HEADINGS, "recordings", "report", "error"])
     for row in result.rows:
         s = row.stated
-        known: list[object] = [""] * 8
+        known: list[object] = [""] * (len(HEADINGS) - 1)
         if s is not None:
             known = [_words(s.names), "yes" if s.unexplained else "no", f"{s.confidence:.3f}"]
             known += ["; ".join(_words(names) for names in s.alternatives)]

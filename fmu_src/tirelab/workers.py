@@ -5,6 +5,7 @@ Reference: joblib, `Parallel` with `return_as="generator_unordered"`; its Dask b
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -114,6 +115,8 @@ def _backend(cores: Cores) -> Iterator[_Parallel]:
     if cores.dask is None and cores.processes == 1:
         yield _in_this_process
         return
+    # a process that grew large is replaced by a fresh one, and joblib warns of it; nothing is lost
+    warnings.filterwarnings("ignore", message="A worker stopped while some jobs", category=UserWarning)
     with _client(cores.dask) if cores.dask else joblib.parallel_config("loky", inner_max_num_threads=1):
 
         def parallel(

@@ -36,11 +36,13 @@ def confusion_matrix(table: Mapping[str, Mapping[str, float]]) -> Figure:
     order = sorted({*table, *(name for row in table.values() for name in row)}, key=_last)
     rows = [name for name in order if name in table]
     counts = np.array([[table[row].get(column, 0.0) for column in order] for row in rows])
+    counts = counts.reshape(len(rows), len(order))
     size = 0.36 * len(order) + 2.4
     figure = Figure(figsize=(size + 1.0, 0.36 * len(rows) + 2.4), layout="constrained")
     axes = figure.subplots()
     parts = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1e-9)
-    axes.imshow(parts, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    if counts.size:
+        axes.imshow(parts, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
     for i, j in np.argwhere(counts > 0.0):
         right = rows[i] == order[j]
         colour = "white" if parts[i, j] > 0.6 else ("black" if right else ORANGE)
