@@ -4,7 +4,7 @@
 
 A0 and B0 are the law's that was believed; a and b are given on the measured surfaces and interpolated in a straight
 line over the curvature 1/R between them, held beyond them. A law that is off on one surface is off in much the same
-way on the next one: Hull, Wang & Moore (1996) state errors of up to 13.5 % on convex surfaces and 4.2 % on concave ones.
+way on the next one: Hull, Wang & Moore (1996) state errors of up to 13.5 % on convex surfaces, 4.2 % on concave.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class BaseLaw(Protocol):
 class Recalibrated:
     """The law `base` with its coefficients changed on measured surfaces.
 
-    surfaces: of each one its radius [m] (convex > 0, concave < 0, flat = inf), a [1] and b [1]; radii distinct, at least
-    one. Raises ParameterError otherwise.
+    surfaces: of each one its radius [m] (convex > 0, concave < 0, flat = inf), a [1] and b [1]; radii distinct, at
+    least one. Raises ParameterError otherwise.
     """
 
     base: BaseLaw = Hull1996()

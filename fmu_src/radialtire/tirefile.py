@@ -165,7 +165,11 @@ def _text(entry: dict[str, Any], key: str) -> str:
 def _law_entry(law: Law) -> dict[str, Any]:
     if isinstance(law, Recalibrated):
         surfaces = [
-            {"radius": radius if math.isfinite(radius) else "inf", "change": change, "exponent_change": exponent}
+            {
+                "radius": radius if math.isfinite(radius) else "inf",
+                "change": change,
+                "exponent_change": exponent,
+            }
             for radius, change, exponent in law.surfaces
         ]
         return {"name": law.name, "base": _law_entry(law.base), "surfaces": surfaces}

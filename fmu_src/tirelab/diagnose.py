@@ -12,11 +12,13 @@ from radialtire import TireModel
 from .errors import TirelabError
 from .explain.background import background
 from .explain.beyond import AGNOSTIC_FAMILIES
+from .explain.columns import build, layout_of, lifted_from_force, measure
 from .explain.evidence import explain
-from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family, Point
+from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family
 from .explain.motion import FloatArray
+from .explain.place import Point
 from .explain.scene import Scene, scene_of
-from .explain.search import Settled, build, layout_of, lifted_from_force, measure, pointed, search
+from .explain.search import Settled, search
 from .learn import learned
 from .locate import locate
 from .noise import Noise
@@ -105,7 +107,9 @@ def diagnose(
     """
     unknown = set(catalogue) - set(CATALOGUE_NAMES)
     if unknown:
-        raise ValueError(f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}")
+        raise ValueError(
+            f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}"
+        )
     _check(recordings)
     tell = progress or (lambda sentence: None)
     scene = scene_of([(r.time, r.deflection, r.surface_radius, r.force) for r in recordings], tire)
@@ -120,7 +124,7 @@ def diagnose(
     tell("fitting the parameters")
     believed = replace(tire, tracking_time=likeliest_tracking(recordings).tracking_time)
     cases = [
-        Case(recording, recording.force, noise, record.rows)
+        Case(recording, recording.force, noise, record.rows, np.zeros(record.rows.size))
         for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
     ]
     fitted = _refit(best, believed, cases, scene, families)
@@ -134,7 +138,9 @@ def diagnose(
     test = None
     if rivals:
         tell("looking for the test that would tell")
-        test = _separating(best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits)
+        test = _separating(
+            best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits
+        )
     return Verdict(
         effects,
         confidence,
@@ -149,6 +155,7 @@ def diagnose(
         _table(found.settled),
         test,
         found.compared,
+        fitted.evaluations,
     )
 
 
@@ -192,7 +199,7 @@ def _check(recordings: Sequence[Recorded]) -> None:
         distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
         if distinct < FEWEST_STEPS:
             raise PoorRecording(
-                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points or more"
+                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points"
             )
 
 
@@ -201,10 +208,12 @@ def _check_signal(scene: Scene, noises: Sequence[Noise]) -> None:
         motion = record.motion
         travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
         if motion.noise > 0.3 * float(np.std(motion.deflection)):
-            raise PoorRecording(f"the deflection of recording {number} is noise: no motion of the tire can be seen in it")
+            raise PoorRecording(
+                f"the deflection of recording {number} is noise: no motion of the tire can be seen in it"
+            )
         if travel > 0.7 * float(np.std(motion.deflection)):
             raise PoorRecording(
-                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points or more"
+                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points"
             )
         related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
         if not np.isfinite(related) or abs(related) < 0.2 or noise.level > 0.9 * float(np.std(record.force)):
@@ -235,16 +244,12 @@ def _refit(
     beyond = [n for n in settled.names if n in BEYOND]
     # What is beyond the catalogue is taken out first: no effect is bent to follow it.
     cleared = [
-        replace(case, force=case.force - sum((parts[n][i] for n in beyond), np.zeros_like(case.force)))
-        for i, case in enumerate(cases)
+        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
     ]
     middle = np.log(50.0 * scene.deepest)
     shape = settled.point.shape
     law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
-    answer = refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
-    if not beyond:
-        return answer
-    return replace(answer, residuals=tuple(c.force - simulate(answer.tire, c.recording) for c in cases))
+    return refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
 
 
 def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
@@ -340,4 +345,4 @@ def _table(settled: Sequence[Settled]) -> tuple[Evidence, ...]:
     return tuple(rows)
 
 
-__all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose", "pointed"]
+__all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose"]

@@ -43,7 +43,9 @@ def _learned(by: str, scene: Scene, residuals: Sequence[FloatArray]) -> Correcti
     unit, coordinate = COORDINATES.get(by, ("s", lambda r: r.time))
     at = np.concatenate([coordinate(r) for r in scene.records])
     force = np.concatenate(residuals)
-    part = np.concatenate([np.minimum((FOLDS * r.time / (r.time[-1] + 1e-9)).astype(int), FOLDS - 1) for r in scene.records])
+    part = np.concatenate(
+        [np.minimum((FOLDS * r.time / (r.time[-1] + 1e-9)).astype(int), FOLDS - 1) for r in scene.records]
+    )
     knots = np.unique(np.quantile(at, np.linspace(0.0, 1.0, KNOTS)))
     foretold = np.zeros_like(force)
     for fold in range(FOLDS):

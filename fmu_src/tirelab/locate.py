@@ -2,7 +2,7 @@
 
 Time, direction, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, and recording are cut
 into spans. Each span has its mean residual, its share of the squared error beyond the noise, and how significant its
-mean is: the residual is cut into blocks longer than the noise's correlation, and the blocks, not the samples, are counted.
+mean is: the residual is cut into blocks longer than the noise's correlation, and blocks are counted, not samples.
 """
 
 from __future__ import annotations
@@ -70,7 +70,8 @@ def locate(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise
     floor = np.concatenate([np.full(r.size, n.level**2) for r, n in zip(residuals, noises, strict=True)])
     beyond = residual**2 - floor
     whole = max(float(np.sum(beyond)), 1e-12)
-    blocks = _blocks(residuals, noises)
+    strides = [max(r.time.size // r.rows.size, 1) for r in scene.records]
+    blocks = _blocks(residuals, noises, strides)
     found = []
     for by, unit, values, edges, labels in _coordinates(scene):
         for i in range(len(edges) - 1):
@@ -88,12 +89,12 @@ def locate(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise
     return tuple(sorted(judged, key=lambda s: (-int(s.significant), -s.share)))
 
 
-def _blocks(residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> IndexArray:
+def _blocks(residuals: Sequence[FloatArray], noises: Sequence[Noise], strides: Sequence[int]) -> IndexArray:
     """Return the number of the block of each sample: at least four correlation lengths of the noise long."""
     total = sum(r.size for r in residuals)
     numbers, at = [], 0
-    for r, n in zip(residuals, noises, strict=True):
-        length = max(int(np.ceil(4.0 * n.correlation_samples)), -(-total // BLOCKS), 2)
+    for r, n, stride in zip(residuals, noises, strides, strict=True):
+        length = max(int(np.ceil(4.0 * stride * n.correlation_samples)), -(-total // BLOCKS), 2)
         numbers.append(at + np.arange(r.size) // length)
         at = int(numbers[-1][-1]) + 1
     return np.concatenate(numbers)
@@ -138,14 +139,16 @@ def _coordinates(scene: Scene) -> list[_Coordinate]:
     found.append(("direction", "1", direction, np.array([-1.5, 0.0, 1.5]), ["unloading", "loading"]))
     cycle = joined([r.motion.cycle for r in records])
     if cycle.max() >= 1.0:
-        found.append(("cycle", "1", cycle, np.array([-0.5, 0.5, cycle.max() + 0.5]), ["first cycle", "later cycles"]))
+        found.append(
+            ("cycle", "1", cycle, np.array([-0.5, 0.5, cycle.max() + 0.5]), ["first cycle", "later cycles"])
+        )
     if len(scene.radii) > 1:
         nearest = joined([np.argmax(r.surface, axis=1).astype(float) for r in records])
-        edges = np.arange(len(scene.radii) + 1) - 0.5
+        edges = np.arange(len(scene.radii) + 1, dtype=np.float64) - 0.5
         found.append(("radius", "m", nearest, edges, [_radius(r) for r in scene.radii]))
     if len(records) > 1:
         number = joined([np.full(r.time.size, float(i)) for i, r in enumerate(records)])
-        edges = np.arange(len(records) + 1) - 0.5
+        edges = np.arange(len(records) + 1, dtype=np.float64) - 0.5
         found.append(("recording", "1", number, edges, [f"recording {i + 1}" for i in range(len(records))]))
     return found
 

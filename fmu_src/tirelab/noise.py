@@ -1,4 +1,4 @@
-"""The noise of a recording, from the data alone: its size, its colour, its spikes, and what the deflection's noise adds.
+"""The noise of a recording, from the data alone: its size, colour and spikes, and what the deflection's noise adds.
 
 The residual that is left by a model with every freedom at once (all effects and smooth functions of all coordinates) is
 taken for noise: an autoregression (order by BIC) whose innovations may have outliers. The reading of the deflection
@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
-from .explain.motion import BoolArray, FloatArray, IndexArray
+from .explain.motion import BoolArray, FloatArray
 
 ORDERS = (0, 1, 2, 4, 8, 16)
 """Orders of autoregression tried; 16 holds a slow drift and a mains hum at once."""
@@ -60,17 +60,6 @@ class Noise:
         return np.asarray(scaled * self.weight[across])
 
 
-    def whitened_at(self, values: FloatArray, rows: IndexArray) -> FloatArray:
-        """Return the rows `rows` of `whitened(values)`, without the others."""
-        across = (slice(None),) + (None,) * (values.ndim - 1)
-        inverse = 1.0 / (self.innovation * self.spread)
-        result = np.zeros((rows.size, *values.shape[1:]))
-        for back, coefficient in enumerate(self.filter):
-            source = np.maximum(rows - back, 0)
-            result += (coefficient * inverse[source])[across] * values[source]
-        return result * self.weight[rows][across]
-
-
 def first_guess(residual: FloatArray) -> Noise:
     """Return white noise of the size that the second differences of a residual [N] show."""
     sigma = MEDIAN_TO_SIGMA * float(np.median(np.abs(np.diff(residual, 2)))) / np.sqrt(6.0)
@@ -79,7 +68,9 @@ def first_guess(residual: FloatArray) -> Noise:
     return Noise(sigma, sigma, np.ones(1), ones, ones)
 
 
-def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: float, resolved: BoolArray) -> Noise:
+def noise_of(
+    residual: FloatArray, through_deflection: FloatArray, freedom: float, resolved: BoolArray
+) -> Noise:
     """Return the noise whose sample is `residual` [N], left by a model of `freedom` effective coefficients.
 
     through_deflection [N]: stiffness times the deflection's noise, sample by sample; resolved: False where the motion
@@ -98,7 +89,12 @@ def noise_of(residual: FloatArray, through_deflection: FloatArray, freedom: floa
     sigma = MEDIAN_TO_SIGMA * float(np.median(np.abs(innovations)))
     # Two samples in a row at most: what lasts longer is no spike but something left out.
     out = np.abs(innovations) > SPIKE * sigma
-    lone = out & ~(np.roll(out, 1) & np.roll(out, -1)) & ~(np.roll(out, 1) & np.roll(out, 2)) & ~(np.roll(out, -1) & np.roll(out, -2))
+    lone = (
+        out
+        & ~(np.roll(out, 1) & np.roll(out, -1))
+        & ~(np.roll(out, 1) & np.roll(out, 2))
+        & ~(np.roll(out, -1) & np.roll(out, -2))
+    )
     weight = np.where(lone | ~resolved, 0.0, 1.0)
     weight[: filter_.size - 1] = 0.0
     corrected = count / max(count - freedom, 0.2 * count)

@@ -15,7 +15,7 @@ from radialtire import CATALOGUE, Effect, Parameter, Recalibrated, State, TireMo
 from radialtire.effect import PLACES
 from scipy.optimize import least_squares
 
-from .explain.motion import FloatArray
+from .explain.motion import FloatArray, IndexArray
 from .noise import Noise
 from .simulate import Sampled, simulate
 
@@ -29,12 +29,13 @@ STEP = 1e-4
 
 @dataclass(frozen=True)
 class Case:
-    """One recording with its noise, and which of its samples are compared."""
+    """One recording with its noise, the samples that are compared, and what of their force is not to be followed."""
 
     recording: Sampled
     force: FloatArray
     noise: Noise
-    rows: FloatArray
+    rows: IndexArray
+    beyond: FloatArray
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,9 @@ class Refit:
     evaluations: int
 
 
-def assemble(believed: TireModel, knobs: Sequence[Knob], values: FloatArray, radii: Sequence[float]) -> TireModel:
+def assemble(
+    believed: TireModel, knobs: Sequence[Knob], values: FloatArray, radii: Sequence[float]
+) -> TireModel:
     """Return the believed tire with the knobs' values: effects in catalogue order, the law changed on `radii` [m]."""
     chosen: dict[str, list[float]] = {}
     law = np.zeros((len(radii), 2))
@@ -79,11 +82,13 @@ def assemble(believed: TireModel, knobs: Sequence[Knob], values: FloatArray, rad
     effects = {e.name: (e, v) for e, v in believed.effects} | {
         name: (CATALOGUE[name], tuple(v)) for name, v in chosen.items()
     }
-    order = sorted(effects.values(), key=lambda e: (PLACES.index(e[0].place), list(CATALOGUE).index(e[0].name)))
+    order = sorted(
+        effects.values(), key=lambda e: (PLACES.index(e[0].place), list(CATALOGUE).index(e[0].name))
+    )
     new_law = believed.law
     if changed:
         rows = tuple((float(r), float(a), float(b)) for r, (a, b) in zip(radii, law, strict=True))
-        new_law = Recalibrated(believed.law, rows)  # type: ignore[arg-type]
+        new_law = Recalibrated(believed.law, rows)
     return replace(believed, law=new_law, effects=tuple(order))
 
 
@@ -134,9 +139,14 @@ def starts_of(effect: Effect, deepest: float, strongest: float) -> list[State]:
     if effect.name == "bottoming":
         grids = {"onset": tuple(deepest * q for q in (0.5, 0.65, 0.75, 0.85, 0.92, 0.97))}
     if effect.name == "saturation":
-        grids = {"limit": tuple(strongest * q for q in (0.4, 0.55, 0.7, 0.8, 0.9, 0.96)), "knee": (0.0, 0.1 * strongest)}
+        grids = {
+            "limit": tuple(strongest * q for q in (0.4, 0.55, 0.7, 0.8, 0.9, 0.96)),
+            "knee": (0.0, 0.1 * strongest),
+        }
     if effect.name == "force_lag":
-        return [(a, b) for a, b in ((4e-3, 0.0), (0.0, 4e-3), (2e-2, 0.0), (0.0, 2e-2), (1e-3, 0.0), (0.0, 1e-3))]
+        return [
+            (a, b) for a, b in ((4e-3, 0.0), (0.0, 4e-3), (2e-2, 0.0), (0.0, 2e-2), (1e-3, 0.0), (0.0, 1e-3))
+        ]
     names = [p.name for p in effect.parameters]
     found = []
     for combination in product(*grids.values()):
@@ -150,12 +160,19 @@ def starts_of(effect: Effect, deepest: float, strongest: float) -> list[State]:
 
 
 def _matched(
-    effect: Effect, target: Sequence[FloatArray], cases: Sequence[Case], tire: TireModel, deepest: float, strongest: float
+    effect: Effect,
+    target: Sequence[FloatArray],
+    cases: Sequence[Case],
+    tire: TireModel,
+    deepest: float,
+    strongest: float,
 ) -> State:
     """Return the effect's values whose response comes nearest to its part in the search [N]."""
     best: tuple[float, State] = (np.inf, effect.typical)
-    amplitudes = [i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"]
-    wanted = np.concatenate([t[c.rows] for t, c in zip(target, cases, strict=True)])
+    amplitudes = [
+        i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"
+    ]
+    wanted = np.concatenate(target)
     bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
     for values in starts_of(effect, deepest, strongest):
         trial = values
@@ -180,7 +197,8 @@ def _matched(
 def _with(tire: TireModel, effect: Effect, values: State) -> TireModel:
     others = [(e, v) for e, v in tire.effects if e.name != effect.name]
     order = sorted(
-        [*others, (effect, values)], key=lambda e: (PLACES.index(e[0].place), list(CATALOGUE).index(e[0].name))
+        [*others, (effect, values)],
+        key=lambda e: (PLACES.index(e[0].place), list(CATALOGUE).index(e[0].name)),
     )
     return replace(tire, effects=tuple(order))
 
@@ -197,8 +215,8 @@ def refit(
 ) -> Refit:
     """Return the believed tire with the effects `names` fitted to the cases.
 
-    parts: what each effect adds in the search [N], sample by sample; law (surfaces, 2): first guess of the law's changes
-    on `radii` [m]; deepest [m], strongest [N]: largest deflection and force
+    parts: what each effect adds in the search [N], at the rows of each case; law (surfaces, 2): guess of the law's
+    changes on `radii` [m]; deepest [m], strongest [N]: largest deflection and force
     """
     law_knobs = [k for k in knobs_of(names, radii, False, deepest) if k.owner == "law"]
     tire = assemble(believed, law_knobs, law.ravel()[: len(law_knobs)], radii)
@@ -231,7 +249,11 @@ def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit 
 
 
 def _fit(
-    believed: TireModel, knobs: tuple[Knob, ...], start: FloatArray, cases: Sequence[Case], radii: Sequence[float]
+    believed: TireModel,
+    knobs: tuple[Knob, ...],
+    start: FloatArray,
+    cases: Sequence[Case],
+    radii: Sequence[float],
 ) -> Refit:
     scale = np.array([k.scale for k in knobs])
     low, high = np.array([k.low for k in knobs]) / scale, np.array([k.high for k in knobs]) / scale
@@ -241,7 +263,7 @@ def _fit(
         nonlocal evaluations
         evaluations += 1
         tire = assemble(believed, knobs, scaled * scale, radii)
-        parts = [c.noise.whitened_at(c.force - simulate(tire, c.recording), c.rows) for c in cases]
+        parts = [c.noise.whitened((c.force - simulate(tire, c.recording))[c.rows] - c.beyond) for c in cases]
         return np.concatenate(parts)
 
     centre = np.clip(start / scale, low, high)
@@ -253,10 +275,19 @@ def _fit(
     def penalised(scaled: FloatArray) -> FloatArray:
         return np.concatenate([residual(scaled), weight * (scaled - centre)])
 
-    inside = np.clip(centre, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high)))
+    inside = np.clip(
+        centre, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high))
+    )
     answer = least_squares(
-        penalised, inside, bounds=(low, high), x_scale="jac", diff_step=_steps(inside), loss="soft_l1", f_scale=3.0,
-        max_nfev=MOST_ROUNDS, method="trf",
+        penalised,
+        inside,
+        bounds=(low, high),
+        x_scale="jac",
+        diff_step=_steps(inside),
+        loss="soft_l1",
+        f_scale=3.0,
+        max_nfev=MOST_ROUNDS,
+        method="trf",
     )
     values = answer.x * scale
     tire = assemble(believed, knobs, values, radii)

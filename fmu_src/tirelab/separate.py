@@ -1,8 +1,8 @@
 """The test that would tell: the waveform on which two fitted tires differ most, whatever their parameters then do.
 
-For every waveform that the rig can drive, both tires are simulated; what a refit of the rival's own parameters could take
-up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). What is left, over the noise and
-the root of the number of samples, is the separation: the square root of twice the expected gain in log likelihood.
+For every waveform that the rig can drive, both tires are simulated; what a refit of the rival's own parameters could
+take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). What is left, over the noise
+and the root of the number of samples, is the separation: the square root of twice the expected gain in log likelihood.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ Waveform = Callable[[Limits], FloatArray]
 
 
 def _time(limits: Limits) -> FloatArray:
-    return np.arange(int(limits.longest / limits.step)) * limits.step
+    return np.arange(int(limits.longest / limits.step), dtype=np.float64) * limits.step
 
 
 def _triangle(limits: Limits, phase: FloatArray) -> FloatArray:
@@ -102,7 +102,9 @@ def sweep(limits: Limits) -> FloatArray:
     swing = 0.3 * limits.deepest
     high = limits.fastest / (2.0 * np.pi * swing)
     growth = np.log(high / 0.05) / limits.longest
-    return 0.5 * limits.deepest - swing * np.cos(2.0 * np.pi * 0.05 * np.expm1(growth * t) / growth)
+    return np.asarray(
+        0.5 * limits.deepest - swing * np.cos(2.0 * np.pi * 0.05 * np.expm1(growth * t) / growth)
+    )
 
 
 def growing(limits: Limits) -> FloatArray:
@@ -171,7 +173,7 @@ def separate(
     for name, waveform in WAVEFORMS.items():
         for radius in surfaces:
             path = waveform(limits)
-            test = Test(name, np.arange(path.size) * limits.step, path, np.full(path.size, radius))
+            test = Test(name, _time(limits), path, np.full(path.size, radius))
             gap = simulate(first[0], test) - simulate(second[0], test)
             jacobian = _jacobian(believed, knobs, values, radii, test)
             if jacobian.shape[1]:
@@ -179,7 +181,11 @@ def separate(
             typical = float(np.sqrt(np.mean(gap**2))) / noise
             separation = typical * float(np.sqrt(gap.size))
             if best is None or separation > best.separation:
-                place = "flat ground" if not np.isfinite(radius) else f"a surface of radius {100.0 * radius:.4g} cm"
+                place = (
+                    "flat ground"
+                    if not np.isfinite(radius)
+                    else f"a surface of radius {100.0 * radius:.4g} cm"
+                )
                 sentence = (
                     f"Drive {name} to {1e3 * path.max():.1f} mm on {place}, up to "
                     f"{1e3 * np.abs(np.diff(path)).max() / limits.step:.0f} mm/s for {limits.longest:.0f} s: "

@@ -1,4 +1,4 @@
-"""What we can and cannot say: the effects found, how sure, what else it could be and why, and what stays unexplained."""
+"""What we can and cannot say: the effects found, how sure, what else it could be and why, what stays unexplained."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from radialtire import CATALOGUE, TireModel
 
 from .explain.beyond import AGNOSTIC_FAMILIES
+from .explain.judge import MATERIAL
 from .explain.motion import FloatArray
 from .explain.scene import Scene
 from .explain.search import Settled
@@ -24,7 +25,10 @@ the form of the effects."""
 
 MOST_RIVALS = 4
 
-SUREST = 0.97
+FORM_DOUBT = 0.5
+"""Power to which odds between sets are taken: the forms of two sets err independently, each as allowed for."""
+
+SUREST = 0.95
 """No verdict is surer than this: the chance that the recording's own trouble is none that was thought of."""
 
 
@@ -104,6 +108,7 @@ class Verdict:
     unexplained: whether something acts that no effect explains, by `unexplained_by` (coordinates)
     summary: sentences for a reader; where: spans of the misfit before the correction; tire: the corrected one
     evidence: all sets that were compared to the end; separating_test: what would tell the first rival apart
+    compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
     """
 
     effects: tuple[NamedEffect, ...]
@@ -119,6 +124,7 @@ class Verdict:
     evidence: tuple[Evidence, ...]
     separating_test: SeparatingTest | None
     compared: int
+    evaluations: int
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -134,7 +140,8 @@ class Verdict:
                     {
                         "name": e.name,
                         "parameters": {
-                            p: {"value": v.value, "std": v.std, "unit": v.unit} for p, v in e.parameters.items()
+                            p: {"value": v.value, "std": v.std, "unit": v.unit}
+                            for p, v in e.parameters.items()
                         },
                         "share": e.share,
                     }
@@ -144,7 +151,9 @@ class Verdict:
                 "alternatives": [list(r.names) for r in self.rivals],
                 "unexplained": self.unexplained,
                 "summary": self.summary,
-                "separating_test": None if self.separating_test is None else self.separating_test.to_contract(),
+                "separating_test": None
+                if self.separating_test is None
+                else self.separating_test.to_contract(),
             },
             "where": [s.to_contract() for s in self.where],
             "fit": {
@@ -161,32 +170,76 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
+STATIC = frozenset(
+    {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
+)
+
+CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
+    (
+        frozenset({"deflection", "direction"}),
+        frozenset(
+            {
+                "recalibration",
+                "deflection_offset",
+                "series_compliance",
+                "gas_compression",
+                "bottoming",
+                "saturation",
+            }
+        ),
+    ),
+    (
+        frozenset({"time", "time, added", "jump", "period", "period, added"}),
+        frozenset({"pressure_leak", "warm_up", "force_drift", "mullins_softening"}),
+    ),
+    (
+        frozenset({"rate", "rate and deflection", "acceleration", "resonance"}),
+        frozenset({"viscous_damping", "viscoelastic_relaxation", "force_lag", "inertia"}),
+    ),
+)
+"""Coordinates, and the effects that are told by them: where one stays unexplained, its effects cannot be named."""
+
+
 def named(settled: Settled) -> tuple[str, ...]:
-    """Return the names of a settled set as a verdict gives them."""
-    known = [n for n in settled.names if n not in BEYOND and n != "shape"]
-    return (*known, *((UNKNOWN,) if len(known) < len([n for n in settled.names if n != "shape"]) else ()))
+    """Return the names of a settled set as a verdict gives them: none that is told by what stays unexplained."""
+    beyond = BEYOND & set(settled.names)
+    doubtful = {n for coordinates, effects in CONCERNS if coordinates & beyond for n in effects}
+    known = [n for n in settled.names if n not in BEYOND and n != "shape" and n not in doubtful]
+    return (*known, *((UNKNOWN,) if beyond else ()))
 
 
 def confidence_of(settled: Sequence[Settled]) -> float:
     """Return the probability of the first set's names among all sets that were settled."""
     logs = np.array([s.log_evidence for s in settled])
-    weights = np.exp(np.where(np.isfinite(logs), logs, -np.inf) - logs[0])
+    weights = np.exp(FORM_DOUBT * (np.where(np.isfinite(logs), logs, -np.inf) - logs[0]))
     same = np.array([named(s) == named(settled[0]) for s in settled])
     return SUREST * float(np.sum(weights[same]) / np.sum(weights))
 
 
 def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
-    """Return the sets of other names within DECIDABLE of the first one, and those that no such recording can rule out."""
+    """Return the sets of other names within DECIDABLE of the first one, and those that one rate cannot rule out."""
     best = settled[0]
     found: dict[tuple[str, ...], float] = {}
     for s in settled[1:]:
         gap = best.log_evidence - s.log_evidence
+        if not np.isfinite(gap) or _adds_nothing(s, best):
+            continue
         if gap < DECIDABLE and named(s) != named(best) and named(s) not in found:
             found[named(s)] = gap
     for names in one_rate_rivals(named(best), scene):
         found.setdefault(names, DECIDABLE)
     order = sorted(found.items(), key=lambda item: item[1])[:MOST_RIVALS]
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
+
+
+def _adds_nothing(settled: Settled, best: Settled) -> bool:
+    """Return whether a set is the best one with something beside it that is not material."""
+    more = set(named(settled)) - set(named(best))
+    if not more or not set(named(best)) < set(named(settled)):
+        return False
+    own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
+    law = max(own.get("recalibration", 0.0), own.get("shape", 0.0))
+    return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
 
 
 LOOPS = ("rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "force_lag")
@@ -232,10 +285,11 @@ def poverty(scene: Scene) -> list[str]:
 
 def _longest_rest(time: FloatArray, still: np.ndarray) -> float:
     ends = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
-    return max((float(time[b - 1] - time[a]) for a, b in zip(ends[::2], ends[1::2], strict=True)), default=0.0)
+    return max(
+        (float(time[b - 1] - time[a]) for a, b in zip(ends[::2], ends[1::2], strict=True)), default=0.0
+    )
 
 
-STATIC = frozenset({"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"})
 SLOW = frozenset({"pressure_leak", "warm_up", "mullins_softening", "force_drift"})
 
 
@@ -256,15 +310,21 @@ def reason_of(names: tuple[str, ...], other: tuple[str, ...], scene: Scene) -> s
 
 
 def summarise(
-    effects: Sequence[NamedEffect], rivals: Sequence[Rival], unexplained_by: Sequence[str], confidence: float, fit: Fit
+    effects: Sequence[NamedEffect],
+    rivals: Sequence[Rival],
+    unexplained_by: Sequence[str],
+    confidence: float,
+    fit: Fit,
 ) -> str:
     """Return the verdict in two or three sentences."""
     if not effects and not unexplained_by:
-        first = f"Nothing is missing: the tire follows the recordings to {fit.before:.3g} N, the noise is {fit.noise:.3g} N."
+        first = f"Nothing is missing: the error is {fit.before:.3g} N, the noise {fit.noise:.3g} N."
     else:
         told = [_statement(e.name) for e in effects]
         if unexplained_by:
-            told.append(f"something that no effect of the catalogue explains, depending on {' and '.join(unexplained_by)}")
+            told.append(
+                f"something that no effect of the catalogue explains, depending on {' and '.join(unexplained_by)}"
+            )
         first = (
             f"Left out: {'; '.join(told)}. The error falls from {fit.before:.3g} N to {fit.after:.3g} N, "
             f"the noise is {fit.noise:.3g} N."
@@ -277,7 +337,10 @@ def summarise(
 
 
 def _and(names: tuple[str, ...]) -> str:
-    return " with ".join("something unknown" if n == UNKNOWN else n.replace("_", " ") for n in names) or "nothing"
+    return (
+        " with ".join("something unknown" if n == UNKNOWN else n.replace("_", " ") for n in names)
+        or "nothing"
+    )
 
 
 def _statement(name: str) -> str:

@@ -30,8 +30,10 @@ ELASTIC_SHAPE = Effect(
     place="scale",
     parameters=(
         Parameter("bend", "c2", "1", 0.0, -2.0, 2.0, "curvature of ln F over ln x", off=0.0, typical=0.02),
-        Parameter("twist", "c3", "1", 0.0, -1.0, 1.0, "change of that curvature", off=0.0),
-        Parameter("reference", "xr", "m", 0.0125, 1e-4, 0.2, "deflection at which the power law holds", extra=True),
+        Parameter("twist", "c3", "1", 0.0, -1.0, 1.0, "change of that curvature", off=0.0, extra=True),
+        Parameter(
+            "reference", "xr", "m", 0.0125, 1e-4, 0.2, "deflection at which the power law holds", extra=True
+        ),
     ),
     rest=(),
     respond=respond,

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..noise import Noise, first_guess, noise_of
+from .columns import Built, Layout, build, layout_of
 from .evidence import explain, products_of
-from .families import Family, Point
-from .motion import FloatArray
+from .families import Family
+from .motion import FloatArray, IndexArray
+from .place import Point
 from .scene import Scene
-from .search import Built, Layout, build, layout_of
 
 SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""
@@ -28,9 +29,8 @@ def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[
     noises = [first_guess(b.residual) for b in built]
     total = sum(b.residual.size for b in built)
     for _ in range(ROUNDS):
-        rows = [r.rows for r in scene.records]
-        data = [n.whitened_at(b.residual, r) for n, b, r in zip(noises, built, rows, strict=True)]
-        white = [n.whitened_at(c, r) for n, c, r in zip(noises, columns, rows, strict=True)]
+        data = [n.whitened(b.residual) for n, b in zip(noises, built, strict=True)]
+        white = [n.whitened(c) for n, c in zip(noises, columns, strict=True)]
         explained = explain(products_of(np.concatenate(white), np.concatenate(data)), groups, 1.0)
         following = []
         for b, own, record in zip(built, columns, scene.records, strict=True):
@@ -39,14 +39,14 @@ def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[
                 left -= own[:, group] @ values
             freedom = explained.freedom * left.size / total
             through = b.place.stiffness * record.motion.noise
-            following.append(noise_of(left, through, freedom, record.motion.resolved))
+            following.append(noise_of(left, through, freedom, record.thin.motion.resolved))
         noises = following
     return tuple(noises)
 
 
 def _thinned(
     built: Sequence[Built], families: Sequence[Family], layout: Layout
-) -> tuple[list[FloatArray], list[FloatArray]]:
+) -> tuple[list[FloatArray], list[IndexArray]]:
     groups, chosen, at = [], [], 0
     for f in families:
         own = layout.whole(f.name)

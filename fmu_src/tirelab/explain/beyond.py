@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter
 
-from .families import Family, Place, one_each, pairs, scale_of
+from .families import Family, one_each, pairs, scale_of
 from .motion import FloatArray
+from .place import Place
 
 
 def _cosines(values: FloatArray, first: int, last: int) -> list[FloatArray]:
@@ -60,7 +61,7 @@ MOST_SEPARATE = 4
 def _own(p: Place, columns: list[FloatArray]) -> FloatArray:
     """Return the columns of one recording beside nothing in the place of the others'."""
     count = min(len(p.scene.records), MOST_SEPARATE)
-    number = next(i for i, r in enumerate(p.scene.records) if r is p.record) % count
+    number = p.record.number % count
     wide = np.zeros((p.elastic.size, count * len(columns)))
     wide[:, number * len(columns) : (number + 1) * len(columns)] = np.stack(columns, axis=1)
     return wide
@@ -94,7 +95,7 @@ RESONANCES = 16
 
 
 def _resonance(p: Place) -> FloatArray:
-    """The elastic force through a lightly damped mode, at frequencies from once a recording to a sixth of the sampling."""
+    """The elastic force through a lightly damped mode, at frequencies from four in a recording up."""
     columns = []
     for frequency in np.geomspace(4.0 / p.scene.longest, 1.0 / (6.0 * p.scene.finest), RESONANCES):
         angle = 2.0 * np.pi * frequency * p.record.step
@@ -102,7 +103,7 @@ def _resonance(p: Place) -> FloatArray:
         poles = [1.0, -2.0 * radius * np.cos(angle), radius**2]
         change = np.diff(p.elastic, prepend=p.elastic[0])
         ringing = lfilter([1.0], poles, change)
-        columns += [ringing, np.diff(ringing, prepend=0.0)]
+        columns += [p.taken(ringing), p.taken(np.diff(ringing, prepend=0.0))]
     return np.stack(columns, axis=1)
 
 
@@ -145,7 +146,7 @@ AGNOSTIC_FAMILIES: tuple[Family, ...] = (
     Family("time, added", _time_added, agnostic=True, after_lag=True),
     Family("jump", _jump, one_each, agnostic=True),
     Family("history", _history, agnostic=True),
-    Family("resonance", _resonance, pairs, agnostic=True),
+    Family("resonance", _resonance, pairs, agnostic=True, remembers=True),
     Family("period, added", _periodic, agnostic=True, after_lag=True),
     Family("period", _periodic_scale, agnostic=True),
     Family("way", _periodic_way, agnostic=True),

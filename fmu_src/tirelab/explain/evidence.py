@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .motion import FloatArray
+from .motion import FloatArray, IndexArray
 
 SCALE_COST = float(np.log(8.0))
 """Price of a scale found from the data: about eight distinguishable ones between a tenth and a hundred noises."""
@@ -30,7 +30,7 @@ ROUNDS = 9
 class Products:
     """What every comparison needs: products of the whitened columns and the data, in units of the noise.
 
-    gram (k, k); moment (k,); power: y'y; samples: number of whitened samples; scale (k,): root mean square of each column
+    gram (k, k); moment (k,); power: y'y; samples: number of whitened samples; scale (k,): RMS of each column
     """
 
     gram: FloatArray
@@ -52,8 +52,8 @@ def products_of(columns: FloatArray, data: FloatArray) -> Products:
 class Explained:
     """A set of groups and how well it explains: log evidence, chi square per sample, coefficients and contributions.
 
-    coefficients: of the columns as given; covariance: theirs, scaled likewise; size: root mean square of each group's
-    contribution in units of the noise; unique: what the chi square per sample rises by without the group, its root; freedom: effective number of coefficients
+    coefficients: of the columns as given; size: root mean square of each group's contribution in units of the noise
+    unique: the same of what no other group can stand for; freedom: effective number of coefficients
     """
 
     log_evidence: float
@@ -64,7 +64,7 @@ class Explained:
     freedom: float
 
 
-def explain(p: Products, groups: Sequence[Sequence[int]], zeta: float) -> Explained:
+def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained:
     """Return how well the groups of column numbers explain the data together."""
     if not groups:
         return Explained(-0.5 * zeta * p.power, p.power / p.samples, (), (), (), 0.0)
@@ -99,4 +99,6 @@ def explain(p: Products, groups: Sequence[Sequence[int]], zeta: float) -> Explai
         block = np.linalg.inv(covariance[here, here])
         unique.append(float(np.sqrt(max(mean[here] @ (block @ mean[here]), 0.0) / zeta / p.samples)))
     split = np.split(np.where(np.isfinite(p.scale[index]), mean / p.scale[index], 0.0), ends[:-1])
-    return Explained(float(log_evidence), chi_square, tuple(split), tuple(size), tuple(unique), float(np.sum(known)))
+    return Explained(
+        float(log_evidence), chi_square, tuple(split), tuple(size), tuple(unique), float(np.sum(known))
+    )

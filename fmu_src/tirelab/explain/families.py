@@ -1,92 +1,23 @@
 """Every explanation as columns: what each effect, in every form its physics allows, would add to the force.
 
-A family is linear in its coefficients around a point (the elastic law and the shifts found so far), so that thousands of
-sets can be compared on one matrix of products. Which form an effect takes (Dahl or Iwan elements, one relaxation time
-or a spectrum, sharp knee or soft) is left to the coefficients of its own family.
+A family is linear in its coefficients around a point (the elastic law and the shifts found so far), so that thousands
+of sets can be compared on one matrix of products. Which form an effect takes (Dahl or Iwan elements, one relaxation
+time or a spectrum, sharp knee or soft) is left to the coefficients of its own family.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 from scipy.signal import lfilter
 
 from .lag import lagged
-from .motion import BoolArray, FloatArray
-from .scene import DEEP_IN_CM, Record, Scene
-
-
-@dataclass(frozen=True)
-class Point:
-    """Where the columns are taken.
-
-    shape (surfaces, 4): coefficients of log(force/law) in powers of the logarithm of the deflection
-    offset [m]; compliance [m/N]; lag [s] and the number of first-order stages that share it, 0 for a pure delay
-    lifted: for each recording, where the tire has lost the ground: it cannot pull, so that nothing acts there
-    """
-
-    shape: FloatArray
-    offset: float = 0.0
-    compliance: float = 0.0
-    lag: float = 0.0
-    stages: int = 0
-    lifted: tuple[BoolArray, ...] | None = None
-
-
-@dataclass(frozen=True)
-class Place:
-    """One recording at a point: deflection of the tire, elastic force [N], its tangents, and the scales."""
-
-    record: Record
-    scene: Scene
-    deflection: FloatArray
-    elastic: FloatArray
-    stiffness: FloatArray
-    logarithm: FloatArray
-    reading: FloatArray = field(repr=False)
-
-
-POWERS = 4
-
-
-def logarithm_of(deflection: FloatArray, deepest: float) -> FloatArray:
-    """Return log(x / x_half) with x_half half the largest deflection, held below DEEP_IN_CM."""
-    return np.log(np.maximum(100.0 * deflection, DEEP_IN_CM) / (50.0 * deepest))
-
-
-def place_at(record: Record, scene: Scene, point: Point) -> Place:
-    """Return the recording at the point: x = x_read + offset - compliance * force, force = law * exp(shape)."""
-    x = record.motion.deflection + point.offset
-
-    def elastic(deflection: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        logarithm = logarithm_of(deflection, scene.deepest)
-        coefficients = record.surface @ point.shape
-        exponent = np.zeros_like(deflection)
-        slope = np.zeros_like(deflection)
-        for power in range(POWERS):
-            exponent += coefficients[:, power] * logarithm**power
-            if power:
-                slope += power * coefficients[:, power] * logarithm ** (power - 1)
-        factor = np.exp(np.clip(exponent, -3.0, 3.0))
-        force = record.elastic(deflection) * factor
-        loaded = np.maximum(deflection, 1e-2 * DEEP_IN_CM)
-        stiffness = np.where(deflection > 0.0, record.stiffness(deflection) * factor + force * slope / loaded, 0.0)
-        return force, stiffness, logarithm
-
-    deflection = x
-    if point.compliance != 0.0:
-        for _ in range(6):
-            force, stiffness, _ = elastic(deflection)
-            gap = deflection + point.compliance * force - x
-            deflection = deflection - gap / np.maximum(1.0 + point.compliance * stiffness, 0.2)
-    force, stiffness, logarithm = elastic(deflection)
-    if point.compliance != 0.0:
-        stiffness = stiffness / np.maximum(1.0 + point.compliance * stiffness, 0.2)
-    return Place(record, scene, deflection, force, stiffness, logarithm, x)
-
+from .motion import FloatArray
+from .place import Place
+from .scene import Scene
 
 Builder = Callable[[Place], FloatArray]
 
@@ -98,6 +29,7 @@ class Family:
     variants: lists of column numbers, one of which is used; None means all columns together
     sign: +1 or -1 where the projection on the first variant's leading column must be so, 0 where both are allowed
     agnostic: True for a smooth function of coordinates that is no physics of the catalogue
+    remembers: True where the columns need every sample before
     after_lag: True where the columns are added behind the lag of the force's reading
     """
 
@@ -107,6 +39,7 @@ class Family:
     sign: float = 0.0
     agnostic: bool = False
     after_lag: bool = False
+    remembers: bool = False
 
 
 def scale_of(p: Place, what: str) -> float:
@@ -120,28 +53,29 @@ def one_each(count: int) -> list[list[int]]:
 
 def _law(powers: tuple[int, ...]) -> Builder:
     def build(p: Place) -> FloatArray:
-        return np.stack(
-            [w * p.elastic * p.logarithm**k for w in p.record.surface.T for k in powers], axis=1
-        )
+        return np.stack([w * p.elastic * p.logarithm**k for w in p.record.surface.T for k in powers], axis=1)
 
     return build
 
 
-def dahl(deflection: FloatArray, reach: float, forgets: bool) -> FloatArray:
-    """Return z with dz/dx = (sign(dx) - z)/reach, exact between reversals.
+@njit(cache=True)
+def jenkins(deflection: FloatArray, reach: float, forgets: bool) -> FloatArray:
+    """Return the pull of a spring with a slider, -1 to 1, that slides after `reach` [m] of travel (Iwan 1966).
 
     forgets: True where a tire that has left the ground starts anew, False where it comes back as it left
     """
-    travel = np.diff(deflection, prepend=deflection[0])
-    decay = np.exp(-np.abs(travel) / reach)
-    drive = np.sign(travel) * (1.0 - decay)
-    if forgets:
-        decay[deflection <= 0.0] = 0.0
-        drive[deflection <= 0.0] = 0.0
-    return np.asarray(linear_recursion(decay, drive))
+    state = np.empty_like(deflection)
+    z = 0.0
+    for i in range(deflection.size):
+        z += (deflection[i] - deflection[max(i - 1, 0)]) / reach
+        z = min(max(z, -1.0), 1.0)
+        if forgets and deflection[i] <= 0.0:
+            z = 0.0
+        state[i] = z
+    return state
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def linear_recursion(decay: FloatArray, drive: FloatArray) -> FloatArray:
     """Return z with z[i] = decay[i] z[i-1] + drive[i], z[-1] = 0."""
     state = np.empty_like(drive)
@@ -152,7 +86,8 @@ def linear_recursion(decay: FloatArray, drive: FloatArray) -> FloatArray:
     return state
 
 
-REACHES = (1e-4, 3e-4, 8e-4, 2e-3, 5e-3)
+REACHES = (1e-4, 2.5e-4, 5e-4, 1e-3, 1.7e-3, 3e-3, 6e-3, 1.2e-2)
+"""Travels [m] after which the sliders of an Iwan model slide: sums of them follow Dahl, Bouc-Wen and Iwan loops."""
 
 
 def _friction(p: Place) -> FloatArray:
@@ -160,11 +95,11 @@ def _friction(p: Place) -> FloatArray:
     contact = _contact(p)
     states = p.record.kept(
         "friction",
-        lambda motion: np.stack(
-            [dahl(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES]
+        lambda motion: (
+            jenkins(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES
         ),
     )
-    return np.stack([z * share for z in states for share in (contact, load)], axis=1)
+    return np.stack([z * share for z in states for share in (contact, load, 1.0)], axis=1)
 
 
 CLOSING = 3e-4
@@ -175,11 +110,17 @@ def _contact(p: Place) -> FloatArray:
     return np.asarray(-np.expm1(-np.maximum(p.deflection, 0.0) / CLOSING))
 
 
-def _both_memories(count: int) -> list[list[int]]:
-    return [list(range(count // 2)), list(range(count // 2, count))]
+def _memories(count: int) -> list[list[int]]:
+    """Return one variant for each memory of the air, with the dry force growing as the contact closes or at once."""
+    half = count // 2
+    return [
+        [first + 3 * i + k for i in range(half // 3) for k in (constant, 1)]
+        for first in (0, half)
+        for constant in (0, 2)
+    ]
 
 
-RATE_EXPONENTS = (1.0, 0.6, 1.5)
+RATE_EXPONENTS = (1.0, 0.75, 0.5, 1.35, 1.8)
 
 
 def _viscous(p: Place) -> FloatArray:
@@ -188,9 +129,7 @@ def _viscous(p: Place) -> FloatArray:
     typical = scale_of(p, "rate")
     powers = p.record.kept(
         "rate powers",
-        lambda motion: np.stack(
-            [np.sign(motion.rate) * np.abs(motion.rate / typical) ** n for n in RATE_EXPONENTS]
-        ),
+        lambda motion: (np.sign(motion.rate) * np.abs(motion.rate / typical) ** n for n in RATE_EXPONENTS),
     )
     columns = [power * share for power in powers for share in (contact, contact * depth)]
     return np.stack([*columns, powers[0] * depth**2], axis=1)
@@ -214,7 +153,8 @@ def high_pass(time: FloatArray, signal: FloatArray, time_constant: float) -> Flo
 
 
 def _relaxation(p: Place) -> FloatArray:
-    return np.stack([high_pass(p.record.time, p.elastic, tau) for tau in relaxation_times(p.scene)], axis=1)
+    times = relaxation_times(p.scene)
+    return np.stack([p.taken(high_pass(p.record.time, p.elastic, tau)) for tau in times], axis=1)
 
 
 def _mullins(p: Place) -> FloatArray:
@@ -224,10 +164,10 @@ def _mullins(p: Place) -> FloatArray:
     shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
     way = np.cumsum(np.abs(np.diff(p.deflection, prepend=p.deflection[0])) * (below > 0.0))
     damage = -np.expm1(-way / p.scene.deepest)
-    return np.stack([p.elastic * shape * part for part in (1.0, damage) for shape in shapes], axis=1)
+    return np.stack([p.taken(p.elastic * shape * part) for part in (1.0, damage) for shape in shapes], axis=1)
 
 
-GAS_POWERS = (1.5, 2.0, 2.5, 3.0)
+GAS_POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25)
 
 
 def _gas(p: Place) -> FloatArray:
@@ -303,8 +243,8 @@ LAGS = tuple((lag, stages) for stages in (0, 1, 2) for lag in (1e-3, 2e-3, 4e-3,
 def _lag(p: Place) -> FloatArray:
     """The slope in time, and what each of LAGS would take away: the coefficient of the right one is -1."""
     slope = np.gradient(p.elastic, p.record.time)
-    steps = [p.elastic - lagged(p.record.time, p.elastic[:, None], *lag)[:, 0] for lag in LAGS]
-    return np.stack([slope, *steps, np.zeros_like(slope)], axis=1)
+    steps = [p.taken(p.elastic - lagged(p.record.time, p.elastic[:, None], *lag)[:, 0]) for lag in LAGS]
+    return np.stack([p.taken(slope), *steps, p.taken(np.zeros_like(slope))], axis=1)
 
 
 def _lag_variants(count: int) -> list[list[int]]:
@@ -313,8 +253,11 @@ def _lag_variants(count: int) -> list[list[int]]:
 
 
 def _warm(p: Place) -> FloatArray:
+    """Stiffer by what the air or the rubber has warmed; less where the casing carries more of the force."""
     part = p.record.time / p.scene.longest
-    return np.stack([-p.elastic * np.expm1(-part / share) for share in (0.03, 0.1, 0.3)], axis=1)
+    depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
+    courses = [-np.expm1(-part / share) for share in (0.03, 0.1, 0.3)]
+    return np.stack([*(p.elastic * c for c in courses), p.elastic * depth * courses[1]], axis=1)
 
 
 def _drift(p: Place) -> FloatArray:
@@ -322,25 +265,29 @@ def _drift(p: Place) -> FloatArray:
 
 
 def _leak(p: Place) -> FloatArray:
+    """Softer as the air goes; less where the casing carries more of the force."""
     part = p.record.time / p.scene.longest
-    return np.stack([p.elastic * part, p.elastic * part**2], axis=1)
+    depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
+    return np.stack(
+        [*(p.elastic * part**k for k in (1, 2, 3)), *(p.elastic * depth * part**k for k in (1, 2))], axis=1
+    )
 
 
 CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("deflection_offset", lambda p: p.stiffness[:, None]),
     Family("force_offset", lambda p: np.ones((p.elastic.size, 1)), after_lag=True),
-    Family("rate_independent_hysteresis", _friction, _both_memories, sign=1.0),
+    Family("rate_independent_hysteresis", _friction, _memories, sign=1.0),
     Family("viscous_damping", _viscous, sign=1.0),
-    Family("viscoelastic_relaxation", _relaxation, sign=1.0),
+    Family("viscoelastic_relaxation", _relaxation, sign=1.0, remembers=True),
     Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),
     Family("gas_compression", _gas, pairs, sign=1.0),
     Family("bottoming", _bottoming, _soft_knees, sign=1.0),
-    Family("mullins_softening", _mullins, sign=-1.0),
+    Family("mullins_softening", _mullins, sign=-1.0, remembers=True),
     Family("pressure_leak", _leak, sign=-1.0),
     Family("warm_up", _warm, sign=1.0),
     Family("force_drift", _drift, after_lag=True),
     Family("inertia", lambda p: p.record.motion.acceleration[:, None], sign=1.0),
-    Family("force_lag", _lag, _lag_variants, sign=-1.0),
+    Family("force_lag", _lag, _lag_variants, sign=-1.0, remembers=True),
     Family("saturation", _saturation, _soft_ceilings, sign=-1.0),
 )
 

@@ -65,7 +65,7 @@ def deflection_noise(deflection: FloatArray) -> float:
     differences = np.diff(deflection, 5)
     scaled = 1.4826 * float(np.median(np.abs(differences))) / np.sqrt(252.0)
     # A quantised reading at rest has differences of nothing: then the quarter of largest ones speaks.
-    return max(scaled, 1e-9)
+    return float(max(scaled, 1e-9))
 
 
 def _local_cubics(
@@ -122,7 +122,9 @@ def _cubic_at_centres(values: FloatArray, window: int, step: float) -> tuple[Flo
     basis = np.linalg.qr(np.vander(steps / (window // 2), 4, increasing=True).astype(float))[0]
     level = float(np.mean(values))
     centred = values - level
-    cubic = np.stack([savgol_filter(centred, window, 3, deriv=d, delta=step, mode="nearest") for d in range(4)])
+    cubic = np.stack(
+        [savgol_filter(centred, window, 3, deriv=d, delta=step, mode="nearest") for d in range(4)]
+    )
     square = uniform_filter1d(centred**2, window, mode="nearest") * window
     for column in basis.T:
         square -= correlate1d(centred, column, mode="nearest") ** 2
@@ -131,17 +133,23 @@ def _cubic_at_centres(values: FloatArray, window: int, step: float) -> tuple[Flo
 
 
 def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return direction, cycle number and travel since the last reversal; a reversal counts beyond `threshold` [m]."""
-    direction = np.empty(deflection.size)
-    cycle = np.empty(deflection.size)
-    turned = np.empty(deflection.size)
-    peak = trough = deflection[0]
-    way, number, start = 1.0, 0.0, deflection[0]
-    for i, x in enumerate(deflection):
-        peak, trough = max(peak, x), min(trough, x)
-        if way > 0.0 and x < peak - threshold:
-            way, start, trough = -1.0, peak, x
-        elif way < 0.0 and x > trough + threshold:
-            way, start, peak, number = 1.0, trough, x, number + 1.0
-        direction[i], cycle[i], turned[i] = way, number, abs(x - start)
-    return direction, cycle, turned
+    """Return direction, cycle number and travel since the last reversal; a reversal counts beyond `threshold` [m].
+
+    It is known late, but counts from the turning point on.
+    """
+    turns, way, best = [0], 1.0, 0
+    highest = deflection[0]
+    values = deflection.tolist()
+    for i, x in enumerate(values):
+        ahead = way * (x - highest)
+        if ahead >= 0.0:
+            best, highest = i, x
+        elif -ahead > threshold:
+            turns.append(best + 1)
+            way, best, highest = -way, i, x
+    spans = np.diff([*turns, deflection.size])
+    number = np.arange(spans.size)
+    direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), spans)
+    cycle = np.repeat(np.floor(number / 2.0), spans)
+    start = np.repeat(deflection[np.maximum(np.array(turns) - 1, 0)], spans)
+    return direction, cycle, np.abs(deflection - start)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
-
 from radialtire import FLAT_RADIUS, TireModel
 
 from .motion import FloatArray, IndexArray, Motion, motion_of
@@ -26,7 +26,8 @@ class Record:
     """One recording as the candidates see it.
 
     time [s], force [N] as read; motion; surface: weights (n, surfaces) of the law's support points, rows sum to 1;
-    coefficient A [N/cm^B], exponent B [1] of the believed law; rows: indices of the samples that are compared
+    coefficient A [N/cm^B], exponent B [1] of the believed law; rows: indices of the samples that are compared;
+    number: of the recording; whole: the recording of which this one is a part
     """
 
     time: FloatArray
@@ -36,12 +37,28 @@ class Record:
     coefficient: FloatArray
     exponent: FloatArray
     rows: IndexArray
+    number: int
+    whole: Record | None = field(default=None, repr=False)
     memory: dict[str, FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
-    def kept(self, name: str, compute: Callable[[Motion], FloatArray]) -> FloatArray:
-        """Return what `compute` makes of the motion, computed once."""
+    @cached_property
+    def thin(self) -> Record:
+        """The recording at its `rows` alone; what remembers is still computed on the whole of it."""
+        rows = self.rows
+        if rows.size == self.time.size:
+            return self
+        motion = Motion(**{k: v if k == "noise" else v[rows] for k, v in self.motion.__dict__.items()})
+        arrays = (self.time, self.force, motion, self.surface, self.coefficient, self.exponent)
+        sliced = [a if isinstance(a, Motion) else a[rows] for a in arrays]
+        return Record(*sliced, np.arange(rows.size), self.number, self)  # type: ignore[arg-type, call-arg]
+
+    def kept(self, name: str, compute: Callable[[Motion], Iterable[FloatArray]]) -> FloatArray:
+        """Return what `compute` makes of the whole motion, one row each at this record's samples, computed once."""
         if name not in self.memory:
-            self.memory[name] = compute(self.motion)
+            if self.whole is None:
+                self.memory[name] = np.stack(list(compute(self.motion)))
+            else:
+                self.memory[name] = np.stack([row[self.whole.rows] for row in compute(self.whole.motion)])
         return self.memory[name]
 
     def kept_lines(self, course: FloatArray, weight: FloatArray, count: int) -> FloatArray:
@@ -60,7 +77,9 @@ class Record:
         if "leftover" not in self.memory:
             elastic = self.elastic(self.motion.deflection)
             depth = np.clip(self.motion.deflection / self.motion.deflection.max(), 0.0, 1.0)
-            basis = [np.cos(np.pi * j * depth) * side for j in range(6) for side in (1.0, self.motion.direction)]
+            basis = [
+                np.cos(np.pi * j * depth) * side for j in range(6) for side in (1.0, self.motion.direction)
+            ]
             columns = np.stack([*basis, elastic, self.motion.rate, self.motion.acceleration], axis=1)
             columns /= np.sqrt(np.mean(columns**2, axis=0)) + 1e-12
             residual = self.force - elastic
@@ -102,7 +121,9 @@ def strongest_lines(course: FloatArray, weight: FloatArray, values: FloatArray, 
     lines = []
     for _ in range(count):
         at = int(np.argmax(spectrum))
-        waves = np.stack([weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1)
+        waves = np.stack(
+            [weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1
+        )
         fitted = waves @ np.linalg.lstsq(waves, values, rcond=None)[0]
         lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / sigma))
         spectrum[max(at - 12, 0) : at + 13] = 0.0
@@ -125,12 +146,14 @@ class Scene:
     finest: float
 
 
-def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]], tire: TireModel) -> Scene:
+def scene_of(
+    recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]], tire: TireModel
+) -> Scene:
     """Return the scene of recordings given as time [s], deflection [m], surface radius [m] and force [N]."""
     radii = _support(np.concatenate([np.unique(r) for _, _, r, _ in recordings]))
     records = []
     share = ROWS // len(recordings)
-    for time, deflection, radius, force in recordings:
+    for number, (time, deflection, radius, force) in enumerate(recordings):
         distinct, inverse = np.unique(radius, return_inverse=True)
         pairs = np.array([tire.law.coefficients(float(r)) for r in distinct])
         weights = np.stack([_hats(float(r), radii) for r in distinct])
@@ -143,6 +166,7 @@ def scene_of(recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArr
                 pairs[inverse, 0],
                 pairs[inverse, 1],
                 np.arange(0, time.size, -(-time.size // share)),
+                number,
             )
         )
     return Scene(
