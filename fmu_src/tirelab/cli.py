@@ -8,9 +8,8 @@ from pathlib import Path
 
 import click
 
-if (
-    sys.prefix != sys.base_prefix
-):  # matplotlib keeps its font cache in the user's home if it is not told otherwise
+# matplotlib keeps its font cache in the user's home if it is not told otherwise
+if sys.prefix != sys.base_prefix:
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
 from .commands import article, build, compare, diagnose, identify, prove, ride, rig
