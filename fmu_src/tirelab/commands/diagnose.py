@@ -21,19 +21,18 @@ from radialtire import TireModel, read_tire, write_tire
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from ..channels import parse_columns
 from ..diagnose import diagnose
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..formats import LOADERS
-from ..recording import Recording, read_recording
+from ..recording import Recording
 from ..replay import replay
 from ..report import write_report
 from ..report.outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, beside, contract_of
 from ..report.terminal import print_diagnosis, printable
 from ..simulate import simulate
 from ..verdict import Verdict
-from .options import FILE, SentenceCommand, out, reading
+from .options import FILE, Reading, SentenceCommand, out, reading
 
 AGREEMENT = 1e-9
 """The FMU and the simulation differ by less than this part of the largest force: they sum the same in another order."""
@@ -63,15 +62,15 @@ def command(
     tire: Path | None,
     held_out: tuple[Path, ...],
     out: Path,
-    columns: str | None,
-    radius: str | None,
+    reading: Reading,
     as_json: bool,
     quiet: bool,
 ) -> None:
     """Say which physics a tire lacks to follow RECORDING..., files or folders of them, and correct it."""
-    told = {"--tire": tire, "--out": out, "--columns": columns, "--radius": radius}
+    told = {"--tire": tire, "--out": out}
     words = ["tirelab", "diagnose", *(str(r) for r in recordings)]
     words += [str(part) for option, value in told.items() if value is not None for part in (option, value)]
+    words += reading.words()
     words += [str(part) for kept in held_out for part in ("--held-out", kept)]
 
     believed = TireModel() if tire is None else read_tire(tire)
@@ -79,11 +78,10 @@ def command(
     _check_once([*files, *kept_files])
     _check_folder(out)
     with _progress(quiet) as tell:
-        named = parse_columns(columns) if columns else None
 
         def read(file: Path) -> Recording:
             tell(f"reading {file.name}")
-            return read_recording(file, columns=named, radius=radius)
+            return reading(file)
 
         fitted, kept = [read(file) for file in files], [read(file) for file in kept_files]
         verdict = diagnose(fitted, believed, held_out=kept, progress=tell)

@@ -9,12 +9,11 @@ from radialtire import write_tire
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
-from ..channels import parse_columns
 from ..errors import TirelabError
 from ..identify import LAWS, Identification, identify
 from ..identify.table import constant_table, surface_table
-from ..recording import Recording, read_recording
-from .options import FILE, SentenceCommand, reading
+from ..recording import Recording
+from .options import FILE, Reading, SentenceCommand, reading
 
 WIDTH_LEAST = 100
 """Columns that the tables need; a narrower terminal wraps them, a file has room."""
@@ -35,9 +34,7 @@ WIDTH_LEAST = 100
 )
 @click.option("--name", default="", help="The tire's name.")
 @reading
-def command(
-    recordings: tuple[Path, ...], out: Path, law: str, name: str, columns: str | None, radius: str | None
-) -> None:
+def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, reading: Reading) -> None:
     """Identify the tire that RECORDING... show, and say how sure that is.
 
     Writes the tire file, and beside it FILE.identification.json with uncertainties, intervals and Table 1.
@@ -46,10 +43,7 @@ def command(
     if not console.is_terminal:
         console.width = WIDTH_LEAST
     with _bars() as bars:
-        read = [
-            read_recording(path, columns=parse_columns(columns) if columns else None, radius=radius)
-            for path in bars.track(recordings, description="reading")
-        ]
+        read = [reading(path) for path in bars.track(recordings, description="reading")]
         tasks: dict[str, TaskID] = {}
 
         def show(what: str, done: int, total: int) -> None:
