@@ -1,9 +1,13 @@
 """Fixtures that every test may use."""
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
+
+if sys.prefix != sys.base_prefix:  # as the program does: nothing outside the checkout is touched
+    os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 

@@ -14,10 +14,13 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
+from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
@@ -28,7 +31,9 @@ from .recalibrated import Recalibrated
 
 SCHEMA = 1
 
-LAWS: dict[str, type[Hull1996] | type[PowerLaw]] = {law.name: law for law in (Hull1996, PowerLaw)}
+LAWS: dict[str, type[Hull1996] | type[PowerLaw] | type[CurvatureLaw]] = {
+    law.name: law for law in (Hull1996, PowerLaw, CurvatureLaw)
+}
 
 
 class TireFileError(ValueError):
@@ -109,14 +114,17 @@ def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
     of_effect: dict[str, dict[str, float]] = {}
     known = parameters_of(tire)
     for key, value in values.items():
-        known[key][0].checked(value)
         owner, name = key.split(".")
+        with _owned_by(owner):
+            known[key][0].checked(value)
         (of_law if owner == "law" else of_effect.setdefault(owner, {}))[name] = value
     effects = tuple(
         (e, tuple(of_effect.get(e.name, {}).get(p.name, v) for p, v in zip(e.parameters, old, strict=True)))
         for e, old in tire.effects
     )
-    return replace(tire, law=replace(tire.law, **of_law), effects=effects)  # type: ignore[type-var]
+    with _owned_by("law"):
+        law = replace(tire.law, **of_law)  # type: ignore[type-var]
+    return replace(tire, law=law, effects=effects)
 
 
 def parameters_of(tire: TireModel) -> dict[str, tuple[Parameter, float]]:
@@ -125,6 +133,15 @@ def parameters_of(tire: TireModel) -> dict[str, tuple[Parameter, float]]:
     for effect, values in tire.effects:
         found |= {f"{effect.name}.{p.name}": (p, v) for p, v in zip(effect.parameters, values, strict=True)}
     return found
+
+
+@contextmanager
+def _owned_by(owner: str) -> Iterator[None]:
+    """Name the parameter in a ParameterError in full."""
+    try:
+        yield
+    except ParameterError as error:
+        raise ParameterError(f"{owner}.{error}") from None
 
 
 def _order(name: str) -> tuple[int, int]:

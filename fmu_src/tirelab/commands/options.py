@@ -1,0 +1,59 @@
+"""What the commands share: options, and failures told in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+from radialtire import InputError, ParameterError, TireFileError
+
+from ..errors import TirelabError
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+FILE = click.Path(path_type=Path)
+
+
+class Told(click.ClickException):
+    """A failure told in one sentence: exit status 2, no traceback."""
+
+    exit_code = 2
+
+
+class SentenceCommand(click.Command):
+    """A command that ends on bad input with its sentence."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except (TirelabError, TireFileError, ParameterError, InputError) as error:
+            raise Told(str(error)) from None
+
+
+def reading(command: Command) -> Command:
+    """Add the options that say how a recording is to be read."""
+    for option in (
+        click.option(
+            "--columns", metavar="NAME=COLUMN,...", help="Which of the file's columns is which quantity."
+        ),
+        click.option(
+            "--radius", metavar="R", help="Surface of a recording without a radius column: flat, 25.4cm, ..."
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+def out(default: str) -> Callable[[Command], Command]:
+    """Add the option --out DIR."""
+    return click.option(
+        "--out",
+        type=FILE,
+        default=Path(default),
+        show_default=True,
+        metavar="DIR",
+        help="Folder for what is written.",
+    )

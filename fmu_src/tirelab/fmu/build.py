@@ -1,0 +1,157 @@
+"""A tire file -> BicycleTire.fmu, byte for byte the same for the same source.
+
+pythonfmu packs the embedded sources and describes them; then its archive is written anew with what it lacks: a Linux
+binary for hosts that are not Python, documentation, licences, an icon, and a GUID made from the content.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import importlib.util
+import re
+import shutil
+import sys
+import tempfile
+import uuid
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import fmpy
+import fmpy.validation
+import radialtire
+from pythonfmu import FmuBuilder
+from radialtire import TireModel, write_tire
+
+from ..errors import TirelabError
+from . import documentation
+from .loader import Compiler, compile_loader
+
+SHELL = "bicycle_tire_fmu"
+PHYSICS = "radialtire"
+MODEL = "BicycleTire"
+LINUX_BINARY = f"binaries/linux64/{MODEL}.so"
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The date of every archive member: the earliest a ZIP can hold."""
+
+
+@dataclass(frozen=True)
+class BuiltFmu:
+    """An FMU that was written: its path, its GUID, and what compiled its Linux binary (None: it is pythonfmu's)."""
+
+    path: Path
+    guid: str
+    compiler: Compiler | None
+
+
+def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> BuiltFmu:
+    """Write `folder`/BicycleTire.fmu for `tire` and return what was written.
+
+    with_loader: compile the Linux binary for hosts that are not Python, if there is a compiler; an FMU without it has
+    pythonfmu's, which runs in Python hosts only
+    Raises TirelabError where the folder cannot be written, a compiler fails, or the FMU is not valid FMI 2.0.
+    """
+    with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
+        work = Path(name)
+        members = _packed(tire, work)
+        compiler = compile_loader(work / "loader.so") if with_loader else None
+        if compiler is not None:
+            members[LINUX_BINARY] = (work / "loader.so").read_bytes()
+
+        description = ElementTree.fromstring(members.pop("modelDescription.xml"))
+        members |= documentation.pages(tire, description, _wrapper_license())
+        guid = _guid(members, description)
+        description.set("guid", guid)
+        ElementTree.indent(description)
+        text = ElementTree.tostring(description, encoding="UTF-8", xml_declaration=True)
+        members["modelDescription.xml"] = text + b"\n"
+        path = _write(members, folder)
+    problems = fmpy.validation.validate_fmu(str(path))
+    if problems:
+        raise TirelabError(f"{path} is not a valid FMU: {problems[0]}; report this with the tire file")
+    return BuiltFmu(path, guid, compiler)
+
+
+def _sources() -> dict[str, bytes]:
+    """The files that go into the FMU, by their names in the source tree."""
+    package = Path(radialtire.__file__).parent
+    found = {f"{PHYSICS}/{f.relative_to(package).as_posix()}": f.read_bytes() for f in package.rglob("*.py")}
+    spec = importlib.util.find_spec(SHELL)
+    assert spec is not None
+    assert spec.origin is not None
+    found[f"{SHELL}.py"] = Path(spec.origin).read_bytes()
+    return dict(sorted(found.items()))
+
+
+def _packed(tire: TireModel, work: Path) -> dict[str, bytes]:
+    """Let pythonfmu pack the sources and return the members of its archive.
+
+    Two FMUs in one process share one table of modules: the names carry a hash of the content, or the second would run
+    the code of the first.
+    """
+    sources = _sources()
+    digest = hashlib.sha256(b"".join(name.encode() + b"\0" + data + b"\0" for name, data in sources.items()))
+    mark = digest.hexdigest()[:12]
+    stage = work / "stage"
+    for name, data in sources.items():
+        target = stage / name.replace(PHYSICS, f"{PHYSICS}_{mark}", 1).replace(SHELL, f"{SHELL}_{mark}", 1)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        text = re.sub(rf"^from {PHYSICS}\b", f"from {PHYSICS}_{mark}", data.decode(), flags=re.MULTILINE)
+        target.write_text(text, encoding="utf-8")
+    write_tire(tire, stage / "tire.json")
+
+    script = stage / f"{SHELL}_{mark}.py"
+    path_before, modules_before = list(sys.path), set(sys.modules)
+    try:
+        archive = FmuBuilder.build_FMU(
+            script, dest=work / "packed", project_files=[stage / f"{PHYSICS}_{mark}", stage / "tire.json"]
+        )
+    finally:
+        sys.path[:] = path_before
+        for module in [m for m in sys.modules if m not in modules_before and mark in m]:
+            del sys.modules[module]
+    with zipfile.ZipFile(archive) as packed:
+        return {
+            n: packed.read(n) for n in packed.namelist() if "__pycache__" not in n and not n.endswith("/")
+        }
+
+
+def _wrapper_license() -> str:
+    """The licence text that pythonfmu was installed with."""
+    for file in importlib.metadata.files("pythonfmu") or ():
+        if file.name.upper().startswith("LICENSE"):
+            return file.read_text()
+    raise TirelabError(
+        "pythonfmu is installed without its licence, which the FMU must carry; install it again"
+    )
+
+
+def _guid(members: dict[str, bytes], description: ElementTree.Element) -> str:
+    """A GUID that is the same for the same content, and another for any other."""
+    description.set("guid", "")
+    digest = hashlib.sha256(ElementTree.tostring(description))
+    for name in sorted(members):
+        digest.update(name.encode() + b"\0" + hashlib.sha256(members[name]).digest())
+    return "{" + str(uuid.UUID(bytes=digest.digest()[:16], version=5)) + "}"
+
+
+def _write(members: dict[str, bytes], folder: Path) -> Path:
+    """Write the archive under a temporary name and move it into place, so that no half FMU is ever seen."""
+    path = folder / f"{MODEL}.fmu"
+    partial = path.with_suffix(".partial")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+            for name in sorted(members):
+                info = zipfile.ZipInfo(name, EPOCH)
+                info.compress_type = zipfile.ZIP_DEFLATED
+                info.external_attr = 0o644 << 16
+                archive.writestr(info, members[name])
+        shutil.move(partial, path)
+    except OSError as error:
+        raise TirelabError(
+            f"{path} cannot be written ({error.strerror}); name another folder with --out"
+        ) from None
+    return path

@@ -1,0 +1,49 @@
+"""What an FMU says of itself: documentation, licences, what it needs, and its icon."""
+
+from __future__ import annotations
+
+from importlib import resources
+from xml.etree import ElementTree
+
+import jinja2
+from radialtire import TireModel
+
+NEEDS = """\
+This FMU runs Python code. It needs
+
+everywhere
+    Python 3.10 or newer; the standard library is enough, no package has to be installed.
+
+Linux (x86-64, glibc 2.17 or newer; newer where the binary was compiled by a machine's own compiler)
+    - in a host that is itself a Python (fmpy): nothing more
+    - in any other host: Python's shared library, libpython3.x.so.1.0. Debian and Ubuntu have it in the package
+      libpython3.x, conda brings it along. It is looked for in this order: the path in the environment variable
+      TIRELAB_LIBPYTHON, the Python of the active virtual environment, python3 and python on PATH, the system's.
+
+Windows (x86-64)
+    - python3.dll and python3x.dll of one installation of Python on PATH
+    - the Microsoft Visual C++ Redistributable 2015-2022
+"""
+
+
+def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: str) -> dict[str, bytes]:
+    """Return the documentation's files by their names in the FMU.
+
+    description: the model description, whose variables the page lists
+    wrapper_license: the licence of pythonfmu, whose code the FMU carries
+    """
+    here = resources.files(__package__)
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    page = environment.from_string((here / "index.html.jinja").read_text(encoding="utf-8"))
+    variables = [
+        {**variable.attrib, **variable[0].attrib, "type": variable[0].tag}
+        for variable in description.iterfind("ModelVariables/ScalarVariable")
+    ]
+    tirelab_license = (here / "license.txt").read_text(encoding="utf-8")
+    return {
+        "documentation/index.html": page.render(tire=tire, variables=variables).encode(),
+        "documentation/externalDependencies.txt": NEEDS.encode(),
+        "documentation/licenses/license.txt": tirelab_license.encode(),
+        "documentation/licenses/pythonfmu.txt": wrapper_license.encode(),
+        "model.png": (here / "model.png").read_bytes(),
+    }

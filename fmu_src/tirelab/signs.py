@@ -1,0 +1,69 @@
+"""Which way a rig counts: compression and compressive force positive, or negative."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+CLEAR = 0.5
+"""How strong a piece of evidence (-1 to 1) must be to count: far above noise, far below what a load gives."""
+
+ROUNDING = 1e-11
+"""A spread below this share of the sum of squares is what roundings leave of a constant, and no evidence."""
+
+
+@dataclass(frozen=True)
+class Signs:
+    """The factors, 1 or -1, that make both channels positive in compression, or why they cannot be told."""
+
+    deflection: int = 1
+    force: int = 1
+    doubt: str = ""
+
+
+def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> Signs:
+    """The signs of a rig, from three pieces of evidence, each from -1 to 1.
+
+    together     correlation of x and F: positive when both count the same way
+    pushing      sum F|F| / sum F^2: 1 when the force is positive wherever it is large
+    compressed   sum x F^2 / sum |x| F^2: 1 when the deflection is positive wherever the force is large
+
+    A tire pushes and never pulls, so the last two show the sign of either channel, and the first must agree
+    with their product. Evidence below `CLEAR` counts for nothing: force that follows no deflection, as in the
+    air, leaves the signs as they are. Parameters: `deflection`, `force`, of shape (samples,), in any units.
+    """
+    # Numbers too large to be squared are refused elsewhere; here they are no evidence.
+    with np.errstate(all="ignore"):
+        evidence = _evidence(deflection, force)
+    together, pushing, compressed = (0 if not abs(e) >= CLEAR else (1 if e > 0.0 else -1) for e in evidence)
+    if together and pushing and compressed and compressed * pushing == together:
+        return Signs(compressed, pushing)
+    negative = together < 0 or pushing < 0 or compressed < 0
+    unloaded = together == 0 and pushing == 0
+    if not negative or unloaded:
+        return Signs()
+    falls = {1: "rises with", 0: "does not follow", -1: "falls with"}[together]
+    side = {1: "positive", 0: "of both signs", -1: "negative"}
+    return Signs(
+        doubt=f"force {falls} deflection; under load force is {side[pushing]}, deflection {side[compressed]}"
+    )
+
+
+def _evidence(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[float, float, float]:
+    # Sums of products rather than centred copies: a long recording is large enough as it is.
+    samples = len(force)
+    x, f = float(deflection.mean()), float(force.mean())
+    xx, ff = float(np.dot(deflection, deflection)), float(np.dot(force, force))
+    covariance = float(np.dot(deflection, force)) - samples * x * f
+    spread_x, spread_f = xx - samples * x * x, ff - samples * f * f
+    told = spread_x > ROUNDING * xx and spread_f > ROUNDING * ff
+    size = np.abs(force)
+    pushing = float(np.dot(force, size))
+    size *= size
+    compressed = float(np.dot(deflection, size))
+    reached = float(np.dot(np.abs(deflection), size))
+    return (
+        covariance / float(np.sqrt(spread_x * spread_f)) if told else 0.0,
+        pushing / ff if ff > 0.0 else 0.0,
+        compressed / reached if reached > 0.0 else 0.0,
+    )

@@ -1,0 +1,28 @@
+"""The code as a reader meets it: linted, formatted, type-checked, and free of what does not belong."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+
+@pytest.mark.parametrize("tool", [["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"]])
+def test_tools_find_nothing(repository: Path, tool: list[str]) -> None:
+    pytest.importorskip(tool[0])
+    done = subprocess.run(
+        [sys.executable, "-m", *tool], cwd=repository, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_embedded_package_needs_the_standard_library_only(repository: Path) -> None:
+    code = f"import sys; sys.path.insert(0, {str(repository / 'fmu_src')!r}); import radialtire"
+    subprocess.run([sys.executable, "-I", "-S", "-c", code], check=True)
+
+
+def test_the_licence_in_the_fmu_is_the_repositorys(repository: Path) -> None:
+    packed = repository / "fmu_src" / "tirelab" / "fmu" / "license.txt"
+    assert packed.read_text() == (repository / "LICENSE").read_text()

@@ -1,0 +1,85 @@
+"""FMUs and the hosts that run them, each host in a fresh process without the project."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from loader_bench import HERE, Bench, unpacked
+from radialtire import TireModel
+from tirelab.fmu.build import build_fmu
+from tirelab.fmu.loader import NO_COMPILER, Compiler, compile_loader, find_compiler
+
+HOSTS = Path(__file__).parent / "hosts"
+
+
+@pytest.fixture(scope="session")
+def article_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU of the article's tire, with the loader where there is a compiler."""
+    return build_fmu(TireModel(), tmp_path_factory.mktemp("article")).path
+
+
+@pytest.fixture(scope="session")
+def run_host() -> Callable[..., str]:
+    """Runs a host script in isolation and returns what it printed; its failure is the test's."""
+    return _run_host
+
+
+@pytest.fixture(scope="session")
+def run_fmpy() -> Callable[[list[Path], list[list[Any]]], list[Any]]:
+    """Runs calls on instances of FMUs in one fresh process with fmpy and returns their answers."""
+
+    def run(fmus: list[Path], calls: list[list[Any]]) -> list[Any]:
+        answers = json.loads(_run_host("with_fmpy.py", job={"fmus": list(map(str, fmus)), "calls": calls}))
+        assert isinstance(answers, list)
+        return answers
+
+    return run
+
+
+def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) -> str:
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    # The oneTBB that ecospy needs is installed beside the interpreter, where the linker does not look.
+    environment["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
+    result = subprocess.run(
+        [sys.executable, "-I", str(HOSTS / script), *map(str, arguments)],
+        input=json.dumps(job),
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=timeout,
+        check=False,
+    )
+    assert result.returncode == 0, f"{script} exited with {result.returncode}:\n{result.stderr}"
+    return result.stdout
+
+
+@pytest.fixture(scope="session")
+def compiler() -> Compiler:
+    """The machine's own compiler, if it has one: ziglang takes more time."""
+    if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
+        pytest.skip("the loader is for Linux on x86-64")
+    found = Compiler("cc", ("cc",), None) if shutil.which("cc") else find_compiler()
+    if found is None:
+        pytest.skip(NO_COMPILER)
+    return found
+
+
+@pytest.fixture(scope="session")
+def bench(compiler: Compiler, tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    """The C host, the native FMU and the FMU under test."""
+    folder = tmp_path_factory.mktemp("loader")
+    host, native, loader = folder / "host", folder / "native.so", folder / "loader.so"
+    strict = [*compiler.command, "-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", "-pthread"]
+    subprocess.run([*strict, "-o", host, HERE / "host.c", "-ldl", "-lm"], check=True)
+    subprocess.run([*strict, "-shared", "-fPIC", "-o", native, HERE / "native.c", "-lm"], check=True)
+    compile_loader(loader, compiler)
+    return Bench(host, native, loader, unpacked(folder / "fmu", loader))

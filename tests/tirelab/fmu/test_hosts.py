@@ -1,0 +1,63 @@
+"""The FMU in other people's importers, each in a fresh process."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import stat
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Run = Callable[..., Any]
+INPUTS = [[0.02, 1e5], [0.02, 0.254], [0.01, -0.381]]
+
+# 2 cm on flat ground, on a convex 25.4 cm and 1 cm on a concave 38.1 cm surface, from equations 2, 5 and 6.
+FORCES = [
+    550.9 * 2**1.422,
+    (550.9 - 337.8 * 2.718281828459045 ** (-0.2519 * 25.4))
+    * 2 ** (1.422 - 0.2469 * 2.718281828459045 ** (-0.1651 * 25.4)),
+    550.9 + 7822.0 * 2.718281828459045 ** (-0.1398 * 38.1),
+]
+
+
+def forces(printed: str) -> list[float]:
+    (line,) = [line for line in printed.splitlines() if line.startswith("forces ")]
+    found = json.loads(line.removeprefix("forces "))
+    assert isinstance(found, list)
+    return found
+
+
+@pytest.mark.parametrize("package", ["libcosimpy", "ecospy"])
+def test_co_simulation_masters(run_host: Run, article_fmu: Path, package: str) -> None:
+    if importlib.util.find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    printed = run_host(f"with_{package}.py", article_fmu, job=INPUTS)
+    assert forces(printed) == pytest.approx(FORCES, rel=1e-12)
+
+
+def test_fmutool_finds_it_compliant(run_host: Run, article_fmu: Path) -> None:
+    pytest.importorskip("fmutool")
+    printed = run_host("with_fmutool.py", article_fmu, job=None)
+    assert "INFO: This FMU seems to be compliant with FMI-2.0." in printed
+    assert "ERROR" not in printed
+    assert "input : 2" in printed
+
+
+def test_proxyfmu_a_host_without_python(
+    run_host: Run, article_fmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """ecospy's proxyfmu is a compiled program of its own: the FMU has to bring its Python along."""
+    program = Path(sys.prefix) / "Scripts" / "proxyfmu"
+    if not program.is_file():
+        pytest.skip("ecospy has no proxyfmu here")
+    shutil.copy(program, tmp_path)
+    (tmp_path / "proxyfmu").chmod(stat.S_IRWXU)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    printed = run_host("with_ecospy.py", f"proxyfmu://localhost?file={article_fmu}", job=INPUTS)
+    assert forces(printed) == pytest.approx(FORCES, rel=1e-12)
