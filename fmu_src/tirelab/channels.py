@@ -228,7 +228,7 @@ def _all(headers: Sequence[Header]) -> str:
 
 
 def _missing(path: Path, headers: Sequence[Header], missing: Sequence[str]) -> RecordingError:
-    if all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
+    if headers and all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
         return RecordingError(
             f"{path.name}: has no header row; put one above the numbers, such as time [s],deflection [mm],"
             "force [N], or name columns by number: --columns time=#1,deflection=#2,force=#3 "

@@ -13,7 +13,7 @@ if (
 ):  # matplotlib keeps its font cache in the user's home if it is not told otherwise
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
-from .commands import build, compare
+from .commands import article, build, compare, diagnose, identify, rig
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -22,5 +22,5 @@ def main() -> None:
     """Off-road bicycle tires: from recordings to a tire, an FMU, and the physics that a simulation left out."""
 
 
-for module in (build, compare):
+for module in (diagnose, compare, identify, rig, article, build):
     main.add_command(module.command)

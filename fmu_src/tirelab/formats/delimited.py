@@ -127,8 +127,8 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
 
 def _parsed(block: bytes, layout: Layout, names: Sequence[str]) -> pl.DataFrame | None:
     """The columns of a block, or None where it holds anything but rows of numbers."""
-    # A comment would pass for a row; polars takes a point beside decimal commas.
-    if b"#" in block or (layout.decimal_comma and b"." in block):
+    # A comment may pass for a row, a point for a decimal comma; polars 1 skips empty lines at the start.
+    if b"#" in block or (layout.decimal_comma and b"." in block) or block[:1] in b"\r\n":
         return None
     try:
         with warnings.catch_warnings():

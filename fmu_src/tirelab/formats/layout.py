@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tirelab.formats.table import BLANK_WORDS, Header, RecordingError, quoted
+from tirelab.formats.table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
 from tirelab.units import QUANTITIES, measures, split_header
 
 HEAD = 65_536
@@ -64,7 +64,7 @@ def find_layout(path: Path) -> Layout:
     try:
         header = next(rows)
         data_line = rows.line_num
-        body = [row for row in rows if row and not row[0].startswith("#")]
+        body = [row for row in rows if row and not is_comment(row[0])]
     except csv.Error as error:
         raise RecordingError(
             f"{path.name}, row {start + 1}: {error}; mend the quotes of the header"
@@ -119,11 +119,10 @@ def _whole_lines(path: Path, raw: bytes, encoding: str) -> list[str]:
 def _preamble(lines: Sequence[str]) -> tuple[int, str | None]:
     separator = None
     for number, line in enumerate(lines):
-        text = line.strip(" \r\n")
-        declared = re.fullmatch(r"sep=([\t;,])", text)
+        declared = re.fullmatch(r"sep=([\t;,])", line.strip("\r\n"))
         if declared:
             separator = declared[1]
-        elif text and not text.startswith("#"):
+        elif line.strip() and not is_comment(line):
             return number, separator
     return len(lines), separator
 

@@ -16,6 +16,9 @@ BLANK_WORDS = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none"}
 """What a cell may hold, in lower case, to say that nothing was measured."""
 
 
+_EXCEL_ERRORS = ("#n/a", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!")
+
+
 class RecordingError(TirelabError):
     """A recording that cannot be read: the file, the place in it, what is wrong there, and the next step."""
 
@@ -62,6 +65,12 @@ class Table(Protocol):
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
         """The numbers of the columns wanted, in that order."""
+
+
+def is_comment(cell: str) -> bool:
+    """Whether a row that starts with this cell is a comment, and not with #N/A or another Excel error."""
+    start = cell.lstrip().lower()
+    return start.startswith("#") and not start.startswith(_EXCEL_ERRORS)
 
 
 def quoted(text: object) -> str:
