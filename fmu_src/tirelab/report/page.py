@@ -263,7 +263,13 @@ def _test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None) ->
             text = str(value)
         facts.append((title, text))
     drawn = draw_waveform(waveform["time"], waveform["deflection"], "w") if waveform else None
-    return {"sentence": test.get("sentence", ""), "facts": facts, "picture": drawn}
+    weak = test.get("separation", words.CLEAR) < words.CLEAR
+    return {
+        "sentence": test.get("sentence", ""),
+        "weak": words.TOO_WEAK if weak else "",
+        "facts": facts,
+        "picture": drawn,
+    }
 
 
 def _corrections(found: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None) -> list[dict[str, Any]]:

@@ -68,6 +68,8 @@ def print_diagnosis(
         console.print(Text(f"it could also be {words.set_title(names)}: {reason}"))
     if verdict["separating_test"] is not None:
         console.print(Text(f"the test that would tell: {verdict['separating_test']['sentence']}"))
+        if verdict["separating_test"]["separation"] < words.CLEAR:
+            console.print(Text(words.TOO_WEAK))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
     if verdict["separating_test"] is not None:
         files.append(verdict["separating_test"]["file"])

@@ -12,6 +12,13 @@ RECALIBRATION = "recalibration"
 RECALIBRATED = "the coefficients of the elastic law are another tire's; no physics is missing"
 UNKNOWN = "unknown"
 
+CLEAR = 5.0
+"""Separation, in units of the noise, from which a test would tell two sets apart without doubt."""
+
+TOO_WEAK = (
+    "Within the rig's limits this is the best motion that was tried, but it would hardly tell them apart."
+)
+
 _SCALES = {
     "m": (1e3, "mm"),
     "m/s": (1e3, "mm/s"),
@@ -152,6 +159,8 @@ def span(place: Mapping[str, Any]) -> str:
     if start == stop:
         return with_unit(_edge(start, factor), name)
     digits = 3 if _edge(start, factor) != _edge(stop, factor) else 5
+    if _edge(start, factor, digits) == _edge(stop, factor, digits):
+        return with_unit(_edge(start, factor, digits), name)
     return with_unit(f"{_edge(start, factor, digits)} to {_edge(stop, factor, digits)}", name)
 
 

@@ -51,6 +51,7 @@ def place(by: str, start: Any, stop: Any, unit: str, **more: Any) -> dict[str, A
     [
         (place("deflection", 0.012, 0.015, "m"), "12.0 to 15.0 mm"),
         (place("rate", 0.0240, 0.024003, "m/s"), "24.000 to 24.003 mm/s"),
+        (place("rate", 0.0599999999, 0.06, "m/s"), "60.000 mm/s"),
         (place("direction", -1.5, 0.0, "1"), "unloading"),
         (place("direction", 0.0, 1.5, "1"), "loading"),
         (place("radius", "inf", "inf", "m"), "flat ground"),
