@@ -173,6 +173,11 @@ def unit_of_column(header: Header, channel: str) -> str | None:
     return tail if fits else None
 
 
+def says_absolute(header: Header) -> bool:
+    """Whether the name of a pressure column says that it is absolute."""
+    return bool({"abs", "absolute"} & set(_words(header.name).split()))
+
+
 def _named(path: Path, headers: Sequence[Header], channel: str, text: str) -> Match:
     exact = _finds(headers, text)
     if exact:
@@ -235,6 +240,6 @@ def _missing(path: Path, headers: Sequence[Header], missing: Sequence[str]) -> R
             "--units time=s,deflection=mm,force=N"
         )
     return RecordingError(
-        f"{path.name}: no column for {' and '.join(missing)}; its columns are {_all(headers)}; "
+        f"{path.name}: no column for {', '.join(missing)}; its columns are {_all(headers)}; "
         f"name it with --columns {','.join(f'{name}=NAME' for name in missing)}"
     )

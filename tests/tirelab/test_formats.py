@@ -97,6 +97,15 @@ class TestText:
             "skipped as empty: row 208, row 209",
         )
 
+    def test_names_in_a_comment_above_the_numbers(self, tmp_path: Path) -> None:
+        path = tmp_path / "a.csv"
+        np.savetxt(
+            path, np.column_stack(list(COLUMNS.values())), "%.17g", delimiter=",", header=",".join(HEADERS)
+        )
+        assert_the_recording(
+            read_recording(path, radius="flat"), "column names taken from the comment in row 1"
+        )
+
     def test_quoted_numbers_and_columns_of_text_beside_them(self, tmp_path: Path) -> None:
         samples = zip(*(column.tolist() for column in COLUMNS.values()), strict=True)
         rows = [f'"{t!r}","a, ""b""\nc",{x!r},"{f!r}"' for t, x, f in samples]

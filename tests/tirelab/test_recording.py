@@ -1,7 +1,6 @@
 """Recordings: what is read from a good file, what is said about it, and what a bad one is told."""
 
 import math
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -237,6 +236,13 @@ class TestUnitsOfColumns:
         assert f"column 'force [{unit}]'" in message
         assert said in message
 
+    def test_a_unit_given_is_taken_before_that_of_the_file_and_said(self, tmp_path: Path) -> None:
+        path = write_rows(tmp_path / "a.csv", "time [s],deflection [m],force [N]", *loading())
+        recording = read_recording(path, radius="flat", units={"deflection": "cm"})
+        assert recording.deflection.max() == pytest.approx(0.025)
+        assert "deflection read in cm as given, not in m" in recording.notes
+        assert "'stroke' is no channel" in refusal(path, radius="flat", units={"stroke": "cm"})
+
     def test_millimetres_labelled_as_metres_are_not_believed(self, tmp_path: Path) -> None:
         path = write_rows(tmp_path / "a.csv", "time [s],deflection [m],force [N]", *loading())
         said = refusal(path, radius="flat")
@@ -299,9 +305,8 @@ class TestSidecar:
             '[columns]\ntime = "Zeit"\ndeflection = "Weg"\nforce = "Kraft"\n[units]\ndeflection = "cm"\n'
         )
         bare.with_name("recording.toml").write_text('radius = "flat"\n' + columns, encoding="utf-8")
-        bare.with_suffix(".toml").write_text('radius = "-50.8cm"\nname = "hollow"\n', encoding="utf-8")
+        bare.with_suffix(".toml").write_text('radius = "-50.8cm"\n', encoding="utf-8")
         recording = read_recording(bare)
-        assert recording.name == "hollow"
         assert recording.surface_radius[0] == -0.508
         assert read_recording(bare, radius="10cm").surface_radius[0] == 0.1
 
@@ -423,6 +428,7 @@ class TestRowsAndTime:
             ("1.0,1_0,inf,90", "'1_0' is not a number"),
             ("1.0,0x1F,inf,90", "'0x1F' is not a number"),
             ("1.0,=1+1,inf,90", "'=1+1' is not a number"),
+            ("00:00:01,0.3,inf,90", "write times as numbers of seconds"),
             ("1.0,0.3,inf,inf", "column 'force [N]': inf is no force"),
             ("1.0,0.3,inf,1e300", "1e+300 N cannot be"),
             ("1.0,0.3,inf,1e999", "inf is no force"),
@@ -456,10 +462,12 @@ class TestRowsAndTime:
         assert "no such file" in refusal(tmp_path / "none.csv")
         assert "is a folder" in refusal(tmp_path)
 
-    @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may read everything")
-    def test_a_file_that_may_not_be_read_is_told(self, rig: Path) -> None:
-        rig.chmod(0)
-        assert "permissions" in refusal(rig)
+    def test_a_file_that_may_not_be_read_is_told(self, rig: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        def refuse(*_: object, **__: object) -> None:
+            raise PermissionError(13, "Permission denied")
+
+        monkeypatch.setattr(Path, "open", refuse)
+        assert "cannot be opened (Permission denied); check its permissions" in refusal(rig)
 
 
 class TestSize:

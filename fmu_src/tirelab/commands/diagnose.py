@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import shlex
 import sys
 from collections.abc import Iterator, Sequence
@@ -76,6 +77,7 @@ def command(
     believed = TireModel() if tire is None else read_tire(tire)
     files, kept_files = _files(recordings), _files(held_out)
     _check_once([*files, *kept_files])
+    _check_folder(out)
     with _progress(quiet) as tell:
         named = parse_columns(columns) if columns else None
 
@@ -152,6 +154,14 @@ def _check_once(files: Sequence[Path]) -> None:
         if file.resolve() in seen:
             raise TirelabError(f"{file} is given twice; a recording is either fitted or held out, once")
         seen.add(file.resolve())
+
+
+def _check_folder(out: Path) -> None:
+    """Raise TirelabError where `out` cannot become a folder to write into: before the work, not after it."""
+    there = next(path for path in (out.absolute(), *out.absolute().parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        why = "is not writable" if there.is_dir() else "is a file"
+        raise TirelabError(f"{out} cannot be written, {there} {why}; name another folder with --out")
 
 
 def _named(verdict: Verdict, believed: TireModel, fitted: Sequence[Recording]) -> TireModel:

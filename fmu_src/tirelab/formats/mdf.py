@@ -19,7 +19,7 @@ from tirelab.formats.table import (
     sample_place,
 )
 
-LEAST_READS = 200_000
+LEAST_READS = 20_000
 """Reads allowed to any MDF file; a sound one takes a few for each of its blocks."""
 
 

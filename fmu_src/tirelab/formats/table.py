@@ -1,5 +1,6 @@
 """What every file format is turned into before anything is made of it: named columns of numbers."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,9 +93,10 @@ def sample_place(index: int) -> str:
 
 def not_a_number(path: Path, place: str, header: str, value: object) -> RecordingError:
     """The error for text in a column of numbers."""
+    clock = re.search(r"\d:\d\d|\d{4}-\d\d-\d\d", str(value))
+    advice = "write times as numbers of seconds" if clock else "correct it, or delete the row"
     return RecordingError(
-        f"{path.name}, {place}, column {quoted(header)}: {quoted(value)} is not a number; "
-        "correct it, or delete the row"
+        f"{path.name}, {place}, column {quoted(header)}: {quoted(value)} is not a number; {advice}"
     )
 
 

@@ -199,7 +199,7 @@ def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
             if name == "time":
                 axes.set_ylabel("time [s]")
             else:
-                at, _ = _means(m.rate, m.before, edges)
+                at = _row_rates(m.rate, edges)
                 ticks = np.unique(np.linspace(0, at.size - 1, 8).round().astype(int))
                 axes.set_yticks(ticks + 0.5, labels=[number(1e3 * at[t], 2) for t in ticks])
                 axes.set_ylabel("rate [mm/s]")
@@ -230,7 +230,7 @@ def _time_axis(axes: Axes, m: Misfit) -> None:
     for end in m.ends[:-1]:
         axes.axvline(m.time[end], color=INK, lw=0.8, ls=(0, (2, 2)))
     axes.set_xlabel("time, recordings one after another [s]" if len(m.ends) > 1 else "time [s]")
-    axes.margins(x=0.01)
+    axes.set_xlim(m.time[0] - 0.01 * m.time[-1], 1.01 * m.time[-1])
 
 
 def _noise_band(axes: Axes, noise: float) -> None:
@@ -259,6 +259,14 @@ def _cells(
     total = np.bincount(cell, residual, minlength=rows * columns)
     mean = np.where(count >= FEWEST, total / np.maximum(count, 1.0), np.nan)
     return mean.reshape(rows, columns), count.reshape(rows, columns)
+
+
+def _row_rates(rate: FloatArray, edges: FloatArray) -> FloatArray:
+    """Return the mean rate of the samples of every row; the middle where a row has none."""
+    row = np.clip(np.searchsorted(edges, rate, side="right") - 1, 0, edges.size - 2)
+    count = np.bincount(row, minlength=edges.size - 1)
+    total = np.bincount(row, rate, minlength=edges.size - 1)
+    return np.where(count > 0, total / np.maximum(count, 1), 0.5 * (edges[:-1] + edges[1:]))
 
 
 def _rate_edges(rate: FloatArray, count: int) -> FloatArray:

@@ -61,6 +61,7 @@ _SETTINGS: dict[Any, Any] = {
     "agg.path.chunksize": 0,
 }
 
+_path = re.compile(r' d="[^"]*"')
 _numbers = re.compile(r"(\d\.\d\d)\d+")
 _dropped = re.compile(
     r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>|<style.*?</style>| xmlns(?::\w+)?=\"[^\"]*\"",
@@ -91,7 +92,8 @@ def inline_svg(figure: Figure, alt: str, mark: str) -> Markup:
     text = _dropped.sub("", buffer.getvalue())
     for stand_in, variable in _VARIABLES.items():
         text = text.replace(stand_in, variable)
-    text = _numbers.sub(r"\1", text)
+    # Only in paths: the digits of a picture's scale are worth its whole width.
+    text = _path.sub(lambda path: _numbers.sub(r"\1", path[0]), text)
     used = {name for pair in _reference.findall(text) for name in pair if name}
     numbered = dict(zip(sorted(used), (f"{mark}{i}" for i in itertools.count()), strict=False))
     text = _identity.sub(lambda m: f' id="{numbered[m[1]]}"' if m[1] in numbered else "", text)

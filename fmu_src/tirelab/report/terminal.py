@@ -55,7 +55,9 @@ def print_diagnosis(
 
     for effect in verdict["effects"]:
         title = f"{words.effect_title(effect['name'])}, {words.percent(effect['share'])} of the error"
-        parameters = _table(title, "", "")
+        console.print(Text(title, style="dim"))
+        parameters = _table("", "", "")
+        parameters.show_header = False
         for name, e in effect["parameters"].items():
             value = words.estimate(e["value"], e["std"], e["unit"])
             parameters.add_row(words.effect_title(name), value, words.meaning(effect["name"], name))

@@ -31,19 +31,21 @@ _COORDINATES = {
 
 
 def effect_title(name: str) -> str:
-    """Return the name of an effect as a reader says it."""
+    """Return the name of an effect, or of one of its parameters, as a reader says it."""
+    if name == UNKNOWN:
+        return "something unknown"
     return (
-        "something unknown"
-        if name == UNKNOWN
-        else name.replace("_", " ")
-        .replace("rate independent", "rate-independent")
-        .replace("mullins", "Mullins")
+        name.replace("_", " ").replace("rate independent", "rate-independent").replace("mullins", "Mullins")
     )
 
 
 def set_title(names: Sequence[str]) -> str:
-    """Return the name of a set of effects."""
-    return listed([effect_title(name) for name in names]) or "nothing missing"
+    """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
+    known = {*CATALOGUE, RECALIBRATION, UNKNOWN}
+    return (
+        listed([effect_title(n) if n in known else f"something unknown over {n}" for n in names])
+        or "nothing missing"
+    )
 
 
 def listed(words: Sequence[str]) -> str:
