@@ -6,7 +6,7 @@ The tire is the file tire.json in the FMU's resources, so a corrected tire diffe
 from __future__ import annotations
 
 import math
-import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
@@ -15,11 +15,14 @@ from pythonfmu.default_experiment import DefaultExperiment
 from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Status, Fmi2Variability
 from pythonfmu.fmi2slave import Fmi2Slave
 from pythonfmu.variables import Boolean, Real
-from radialtire import check_inputs, parameters_of, read_tire, with_parameters
+from radialtire import check_inputs, parameters_of, power_law, read_tire, with_parameters
 from radialtire.model import DEFLECTION_HIGHEST, DEFLECTION_LOWEST, ModelState
 
 DEFLECTION, SURFACE_RADIUS, RADIAL_FORCE, RADIAL_STIFFNESS, IN_TESTED_RANGE, FIRST_PARAMETER = range(6)
 """Value references: a variable's place in the model description."""
+
+BOTH_INPUTS, FORCE_ALONE = (DEFLECTION, SURFACE_RADIUS), (RADIAL_FORCE,)
+"""What most hosts set and get at every step; the Linux binary passes tuples, the Windows one lists."""
 
 FLAT = 1e5
 """Start value of the surface radius [m]: flat, and unlike infinity read by every importer."""
@@ -33,6 +36,7 @@ BASE_UNITS: dict[str, dict[str, str]] = {
     "Pa": {"kg": "1", "m": "-1", "s": "-2"},
     "N/m": {"kg": "1", "s": "-2"},
     "N.s/m": {"kg": "1", "s": "-1"},
+    "N/s": {"kg": "1", "m": "1", "s": "-3"},
     "m/s": {"m": "1", "s": "-1"},
     "m3": {"m": "3"},
     "1/s": {"s": "-1"},
@@ -76,15 +80,14 @@ class BicycleTire(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        # The wrapper puts the resources on sys.path at every instantiation and never takes them off.
-        while sys.path.count(self.resources) > 1:
-            sys.path.remove(self.resources)
         self.modelName = "BicycleTire"
         self.default_experiment = DefaultExperiment(start_time=0.0, stop_time=30.0, step_size=0.2)
         self._tire = read_tire(Path(self.resources) / "tire.json")
         self._parameters = {name: value for name, (_, value) in parameters_of(self._tire).items()}
         self._pending: dict[str, float] = {}
-        self._inputs = [0.0, FLAT]
+        self._inputs: Sequence[float] = (0.0, FLAT)
+        self._surface = math.nan  # the surface of _elastic; NaN where every step takes the long way
+        self._elastic = power_law.on_surface(0.0, 1.0)
         self._state = self._tire.rest
         self._start_time = 0.0
         self._force = 0.0
@@ -132,28 +135,34 @@ class BicycleTire(Fmi2Slave):
 
     # Values, by value reference: pythonfmu's own accessors check types at every call, ours are on the hot path.
 
-    def set_real(self, vrs: list[int], values: list[float]) -> None:
+    def set_real(self, vrs: Sequence[int], values: Sequence[float]) -> None:
         """Take inputs and parameters; what is wrong with them is said by the step that would use them."""
+        self._current = False
+        if vrs == BOTH_INPUTS:
+            self._inputs = values
+            return
+        self._surface = math.nan
         for vr, value in zip(vrs, values, strict=True):
             if vr < RADIAL_FORCE:
-                self._inputs[vr] = value
+                self._inputs = (value, self._inputs[1]) if vr == DEFLECTION else (self._inputs[0], value)
             elif FIRST_PARAMETER <= vr < FIRST_PARAMETER + len(self._names):
                 self._pending[self._names[vr - FIRST_PARAMETER]] = value
             else:
                 name = self.vars[vr].name if vr in self.vars else f"value reference {vr}"
                 self._refused = f"{name} = {value:.17g} cannot be set; set inputs and parameters only"
-        self._current = False
 
-    def get_real(self, vrs: list[int]) -> list[float]:
+    def get_real(self, vrs: Sequence[int]) -> Sequence[float]:
         """Return values for the inputs as they are now, without a step's delay; NaN where there is none."""
         if not self._current:
             self._try(self._state.time)
+        if vrs == FORCE_ALONE:
+            return (self._force,)
         return [
             self._force if vr == RADIAL_FORCE else self._inputs[vr] if vr < RADIAL_FORCE else self._other(vr)
             for vr in vrs
         ]
 
-    def get_boolean(self, vrs: list[int]) -> list[bool]:
+    def get_boolean(self, vrs: Sequence[int]) -> list[bool]:
         """Return in_tested_range for the inputs as they are now; False where the inputs are not allowed."""
         if not self._current:
             self._try(self._state.time)
@@ -202,6 +211,11 @@ class BicycleTire(Fmi2Slave):
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Accept the inputs at the end of the step, or discard the step with one message and leave all as it was."""
+        x, R = self._inputs
+        if self._surface == R and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST and step_size >= 0.0:
+            self._force = self._elastic(x)
+            self._current = True
+            return True
         state, reason = self._try(current_time + step_size)
         if step_size < 0.0:
             reason = f"communicationStepSize = {step_size:.17g} s is not allowed; it must not be negative"
@@ -212,6 +226,8 @@ class BicycleTire(Fmi2Slave):
             self.log(reason, Fmi2Status.discard)
             return False
         self._state = state
+        if not self._tire.effects:
+            self._surface, self._elastic = R, power_law.on_surface(*self._tire.law.coefficients(R))
         return True
 
     def _get_fmu_state(self) -> dict[str, Any]:
@@ -223,7 +239,8 @@ class BicycleTire(Fmi2Slave):
         }
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        self._inputs = [float(value) for value in state["inputs"]]
+        self._inputs = tuple(state["inputs"])
+        self._surface = math.nan
         self._pending = dict(state["parameters"])
         self._state = ModelState.restored(state["history"])
         self._start_time = state["start_time"]

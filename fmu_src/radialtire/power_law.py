@@ -11,6 +11,7 @@ Laws that take their coefficients from here:
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -37,6 +38,15 @@ def stiffness(deflection: float, coefficient: float, exponent: float) -> float:
         return 0.0
     result: float = coefficient * exponent * (CM_PER_M * deflection) ** (exponent - 1.0) * CM_PER_M
     return result
+
+
+def on_surface(coefficient: float, exponent: float) -> Callable[[float], float]:
+    """Return `force` with A and B held, as a function of the deflection [m] alone: the quick way on one surface."""
+
+    def force_at(deflection: float) -> float:
+        return coefficient * (CM_PER_M * deflection) ** exponent if deflection > 0.0 else 0.0
+
+    return force_at
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
+from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
@@ -30,7 +31,9 @@ from .recalibrated import Recalibrated
 
 SCHEMA = 1
 
-LAWS: dict[str, type[Hull1996] | type[PowerLaw]] = {law.name: law for law in (Hull1996, PowerLaw)}
+LAWS: dict[str, type[Hull1996] | type[PowerLaw] | type[CurvatureLaw]] = {
+    law.name: law for law in (Hull1996, PowerLaw, CurvatureLaw)
+}
 
 
 class TireFileError(ValueError):

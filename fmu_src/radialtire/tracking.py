@@ -5,10 +5,10 @@ standard deviation s. Only their ratio matters, as the tracking time T:
 
     q / s^2 = T^-5
 
-T is the memory of the filter: readings much older than T hardly count. T = 0 takes the readings as exact and has the
-least delay; the likelihood of a recorded deflection tells its T. On a ride to 8 Hz and 5 mm, read at 400 Hz with
-8e-6 m of noise, the likeliest T is 2.3 ms and leaves errors of 4 mm/s and 1.3 m/s^2; plain differences leave 9 mm/s,
-most of it their delay of half an interval, and 3.2 m/s^2.
+T is the memory of the filter: readings much older than T hardly count. T = 0 is right for readings free of noise: the
+errors then fall with d^2 (rate) and d (acceleration). The likelihood of a recorded deflection tells its T. On a ride
+to 8 Hz and 5 mm, read at 400 Hz with 8e-6 m of noise, the likeliest T is 2.3 ms and leaves errors of 4 mm/s and
+1.3 m/s^2; plain differences leave 9 mm/s, most of it their delay of half an interval, and 3.2 m/s^2.
 
 Lengths of time are scaled by the last interval d: the filter holds x, d x', d^2 x''/2 and their covariance over s^2.
 
@@ -27,8 +27,8 @@ UNTRACKED: Track = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 UNKNOWN = 1e4
 """Variance over s^2 of the scaled acceleration at the second reading: large beside 1, so the third one decides."""
 
-JERK_MAX = 1e6
-"""Largest (d/T)^5: with it the readings count as exact to 1e-6, and the arithmetic keeps its digits."""
+JERK_MAX = 32.0
+"""Largest (d/T)^5: a T below d/2 counts as d/2. Shorter, it would overshoot at kinks and gain little elsewhere."""
 
 
 def begin(deflection: float) -> Track:

@@ -1,8 +1,9 @@
 """Compiles the physics of `radialtire` for whole recordings, and keeps what was compiled between runs.
 
-Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the user's
-cache folder (environment variable TIRELAB_CACHE, else XDG_CACHE_HOME or ~/.cache), in a folder named after the content
-of `radialtire`: numba itself looks only at the file of a loop, not at those of the functions it calls.
+Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the folder of
+the environment variable TIRELAB_CACHE, else in the virtual environment, else in the user's cache folder
+(XDG_CACHE_HOME or ~/.cache), in a folder named after the content of `radialtire`: numba itself looks only at the file
+of a loop, not at those of the functions it calls.
 """
 
 from __future__ import annotations
@@ -77,6 +78,8 @@ def _cache_folder() -> Path:
     own = os.environ.get("TIRELAB_CACHE")
     if own:
         return Path(own)
+    if sys.prefix != sys.base_prefix:  # a virtual environment keeps what belongs to it
+        return Path(sys.prefix) / "var" / "tirelab"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tirelab"
 
 

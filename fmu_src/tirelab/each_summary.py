@@ -14,7 +14,6 @@ import jinja2
 
 from .stated import NOTHING, Names, Stated
 
-
 HEADINGS = (
     "name",
     "missing",

@@ -97,6 +97,8 @@ def noise_of(
     )
     weight = np.where(lone | ~resolved, 0.0, 1.0)
     weight[: filter_.size - 1] = 0.0
+    if np.mean(weight > 0.0) < 0.5:
+        weight = np.ones(count)
     corrected = count / max(count - freedom, 0.2 * count)
     kept = weight > 0.0
     innovation = np.sqrt(corrected * float(np.mean(innovations[kept] ** 2)))

@@ -28,8 +28,9 @@ MOST_RIVALS = 4
 FORM_DOUBT = 0.5
 """Power to which odds between sets are taken: the forms of two sets err independently, each as allowed for."""
 
-SUREST = 0.95
-"""No verdict is surer than this: the chance that the recording's own trouble is none that was thought of."""
+SUREST = 0.85
+"""No verdict is surer than this: of 46 verdicts that nothing rivalled, on 60 trials of the independent rig, 39 were
+right (seeds 5100 to 5159)."""
 
 
 @dataclass(frozen=True)
@@ -238,7 +239,13 @@ def _adds_nothing(settled: Settled, best: Settled) -> bool:
     if not more or not set(named(best)) < set(named(settled)):
         return False
     own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
-    law = max(own.get("recalibration", 0.0), own.get("shape", 0.0))
+    law = (
+        settled.candidate.explained.together(
+            [i for i, n in enumerate(settled.names) if n in ("recalibration", "shape")]
+        )
+        if "recalibration" in settled.names
+        else 0.0
+    )
     return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
 
 

@@ -7,7 +7,7 @@
 The loop's height is 2 (S + mu F_elastic). The reach d is the deflection over which the friction turns round after a
 reversal. m says how: 0 along exponentials, which forget (Dahl), 1 by elements that slip one after the other, which
 remember the points of reversal (Maxwell, Iwan); c is how far those spread. m between them follows Bouc and Wen's
-loops too: each of these forms is met within 2.5 % of S on a ride, while Dahl's element alone is 10 % from Iwan's.
+loops too: each of these forms is met within 3 % of S on a ride, while Dahl's element alone is 10 % from Iwan's.
 
 Integrated exactly over travel without reversal. A deflection counts from 0 on, so in the air nothing slips and nothing
 is forgotten.

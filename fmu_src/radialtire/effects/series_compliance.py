@@ -32,18 +32,18 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         root = 0.01 * (force / A) ** (1.0 / B)
     # now root is above the solution, and force is F(root)
     if B >= 1.0:
-        step = root
+        step = (root + k * force - signal) / (1.0 + k * B * force / root)
         while step > NEAR * root:
+            root -= step
             force = A * (100.0 * root) ** B
             step = (root + k * force - signal) / (1.0 + k * B * force / root)
-            root -= step
-        return root, state
-    step = force
+        return root - step, state
+    step = (root + k * force - signal) / (k + root / (B * force))
     while step > NEAR * force:
+        force -= step
         root = 0.01 * (force / A) ** (1.0 / B)
         step = (root + k * force - signal) / (k + root / (B * force))
-        force -= step
-    return 0.01 * (force / A) ** (1.0 / B), state
+    return 0.01 * ((force - step) / A) ** (1.0 / B), state
 
 
 SERIES_COMPLIANCE = Effect(

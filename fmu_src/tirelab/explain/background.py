@@ -18,6 +18,9 @@ SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""
 
 MANY = 24
+SAMPLES_PER_COLUMN = 20
+"""Short recordings leave room for the smooth functions that fit in with this many samples to a column."""
+
 ROUNDS = 2
 
 
@@ -48,12 +51,18 @@ def _thinned(
     built: Sequence[Built], families: Sequence[Family], layout: Layout
 ) -> tuple[list[FloatArray], list[IndexArray]]:
     groups, chosen, at = [], [], 0
+    most, smooth = sum(b.residual.size for b in built) // SAMPLES_PER_COLUMN, 0
     for f in families:
         own = layout.whole(f.name)
         if len(layout.variants[f.name]) >= MANY or f.name in ("jump", "resonance"):
             own = own[::SPARSE]
+        if f.agnostic:
+            smooth += own.size
+            if smooth > most:
+                own = own[:0]
         chosen.append(own)
-        groups.append(np.arange(at, at + own.size))
+        if own.size:
+            groups.append(np.arange(at, at + own.size))
         at += own.size
     index = np.concatenate(chosen)
     whole = [np.concatenate([b.columns[f.name] for f in families], axis=1)[:, index] for b in built]

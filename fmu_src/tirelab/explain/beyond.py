@@ -137,6 +137,8 @@ def _periodic_way(p: Place) -> FloatArray:
 
 
 AGNOSTIC_FAMILIES: tuple[Family, ...] = (
+    Family("period, added", _periodic, agnostic=True, after_lag=True),
+    Family("period", _periodic_scale, agnostic=True),
     Family("deflection", _fine_deflection, agnostic=True),
     Family("direction", _branch, agnostic=True),
     Family("rate", _rate, agnostic=True),
@@ -147,7 +149,5 @@ AGNOSTIC_FAMILIES: tuple[Family, ...] = (
     Family("jump", _jump, one_each, agnostic=True),
     Family("history", _history, agnostic=True),
     Family("resonance", _resonance, pairs, agnostic=True, remembers=True),
-    Family("period, added", _periodic, agnostic=True, after_lag=True),
-    Family("period", _periodic_scale, agnostic=True),
     Family("way", _periodic_way, agnostic=True),
 )

@@ -12,8 +12,8 @@ the last percent, so that more samples than its own form's error is worth do not
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -53,7 +53,8 @@ class Explained:
     """A set of groups and how well it explains: log evidence, chi square per sample, coefficients and contributions.
 
     coefficients: of the columns as given; size: root mean square of each group's contribution in units of the noise
-    unique: the same of what no other group can stand for; freedom: effective number of coefficients
+    unique: the same of what no other group can stand for; together: that of several groups, by number, at once
+    freedom: effective number of coefficients
     """
 
     log_evidence: float
@@ -62,6 +63,7 @@ class Explained:
     size: tuple[float, ...]
     unique: tuple[float, ...]
     freedom: float
+    together: Callable[[Sequence[int]], float] = field(default=lambda numbers: 0.0, repr=False, compare=False)
 
 
 def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained:
@@ -98,7 +100,19 @@ def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained
         size.append(float(np.sqrt(max(mean[here] @ raw[here, here] @ mean[here], 0.0) / p.samples)))
         block = np.linalg.inv(covariance[here, here])
         unique.append(float(np.sqrt(max(mean[here] @ (block @ mean[here]), 0.0) / zeta / p.samples)))
+
+    def together(numbers: Sequence[int]) -> float:
+        own = np.concatenate([np.arange(starts[i], ends[i]) for i in numbers])
+        power = mean[own] @ np.linalg.solve(covariance[np.ix_(own, own)], mean[own])
+        return float(np.sqrt(max(power, 0.0) / zeta / p.samples))
+
     split = np.split(np.where(np.isfinite(p.scale[index]), mean / p.scale[index], 0.0), ends[:-1])
     return Explained(
-        float(log_evidence), chi_square, tuple(split), tuple(size), tuple(unique), float(np.sum(known))
+        float(log_evidence),
+        chi_square,
+        tuple(split),
+        tuple(size),
+        tuple(unique),
+        float(np.sum(known)),
+        together,
     )

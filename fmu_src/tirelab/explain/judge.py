@@ -32,7 +32,7 @@ percent: it is not named, whatever its significance."""
 FORM_ERROR = 0.03
 """What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
 
-MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time, added": 0.6}
+MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time": 0.5, "time, added": 0.6}
 """The same for what is beyond the catalogue: slow noise and hum of the amplifier, up to half the noise, are noise."""
 
 MATERIAL_SLOW = {
@@ -102,7 +102,8 @@ def _negligible(names: SetName, explained: Explained) -> list[str]:
     found = []
     sizes = dict(zip(names, explained.size, strict=True))
     own = dict(zip(names, explained.unique, strict=True))
-    law = float(np.hypot(own.get("recalibration", 0.0), own.get("shape", 0.0)))
+    of_law = [i for i, n in enumerate(names) if n in ("recalibration", "shape")]
+    law = explained.together(of_law) if of_law else 0.0
     for name in names:
         if name == "shape":
             continue

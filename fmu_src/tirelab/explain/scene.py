@@ -125,7 +125,9 @@ def strongest_lines(course: FloatArray, weight: FloatArray, values: FloatArray, 
             [weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1
         )
         fitted = waves @ np.linalg.lstsq(waves, values, rcond=None)[0]
-        lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / sigma))
+        # A fast line stands in the differences too: what it leaves then measures the noise better.
+        rest = min(sigma, float(np.std(values - fitted)) + 1e-12)
+        lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / rest))
         spectrum[max(at - 12, 0) : at + 13] = 0.0
     return np.array(lines)
 

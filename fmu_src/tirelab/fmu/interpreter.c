@@ -21,7 +21,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define OLDEST 9 /* Python 3.9: the first with all of PYTHON_API */
+#define OLDEST 9 /* Python 3.9: the first with all of PYTHON_API; said in words in open_python, too */
 #define NEWEST 15
 
 struct python python;
@@ -80,9 +80,10 @@ static int version(void *library)
 static int open_python(const char *path)
 {
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (library && version(library) && dlopen(path, RTLD_NOW | RTLD_GLOBAL))
+    int fit = library && version(library);
+    if (fit && dlopen(path, RTLD_NOW | RTLD_GLOBAL))
         return 1;
-    note(" (%s)", library ? "older than Python 3.9" : dlerror());
+    note(" (%s)", library && !fit ? "not Python 3.9 or newer" : dlerror());
     if (library)
         dlclose(library);
     return 0;
@@ -134,7 +135,7 @@ static int find_python(char program[PATH_MAX])
         note("%s of this process", loaded);
         return open_python(loaded);
     }
-    note("TIRELAB_LIBPYTHON=%s", chosen ? chosen : "");
+    note("TIRELAB_LIBPYTHON%s%s", chosen && *chosen ? "=" : " (not set)", chosen ? chosen : "");
     if (chosen && *chosen)
         return open_python(chosen);
     if (getenv("VIRTUAL_ENV") && ask_python("\"$VIRTUAL_ENV/bin/python\"", program))
@@ -144,8 +145,8 @@ static int find_python(char program[PATH_MAX])
     note(", the system's libpython3.%d to 3.%d", OLDEST, NEWEST);
     for (int minor = NEWEST; minor >= OLDEST; minor--) {
         snprintf(name, sizeof name, "libpython3.%d.so.1.0", minor);
-        if (dlopen(name, RTLD_LAZY | RTLD_LOCAL))
-            return open_python(name);
+        if (dlopen(name, RTLD_LAZY | RTLD_LOCAL) && open_python(name))
+            return 1;
     }
     return 0;
 }
@@ -281,8 +282,8 @@ int start_python(char *trouble, size_t size)
         ;
     else if (!dlsym(RTLD_DEFAULT, "Py_IsInitialized") && !find_python(program))
         snprintf(trouble, size, "no usable Python library among %s; install Python 3.%d or newer with its "
-                 "shared library (the package libpython3.x of Debian and Ubuntu, or a Python configured with --enable-shared), or "
-                 "set TIRELAB_LIBPYTHON to the path of a libpython3.x.so.1.0", tried, OLDEST);
+                 "shared library (the package libpython3.x of Debian and Ubuntu, or a Python configured with "
+                 "--enable-shared), or set TIRELAB_LIBPYTHON to the path of a libpython3.x.so.1.0", tried, OLDEST);
     else if (!version(RTLD_DEFAULT))
         snprintf(trouble, size, "the Python in this process is older than 3.%d, which is the least", OLDEST);
     else {

@@ -16,7 +16,6 @@ typedef struct Object Object; /* Python's PyObject, never looked into: any build
     F(void, PyEval_RestoreThread, (void *)) \
     F(int, PyGILState_Ensure, (void)) \
     F(void, PyGILState_Release, (int)) \
-    F(int, PyGILState_Check, (void)) \
     F(void *, PyGILState_GetThisThreadState, (void)) \
     F(void, PyThreadState_Clear, (void *)) \
     F(void, PyThreadState_DeleteCurrent, (void)) \

@@ -41,10 +41,7 @@ typedef struct {
 static Object *names; /* what make_slave.h defines */
 static Object *part(String name) { return python.PyDict_GetItemString(names, name); }
 
-/*
- * Hands a message to the host: '%' doubled, as the host reads a printf format; always with a category; and without
- * holding Python, as the host may wait there for another thread that needs it.
- */
+/* Hands a message to the host: '%' doubled, as the host reads a printf format, and always with a category. */
 static void tell(const Instance *self, Status status, String category, String message)
 {
     static const String categories[] = {"logAll", "logStatusWarning", "logStatusDiscard",
@@ -57,14 +54,18 @@ static void tell(const Instance *self, Status status, String category, String me
             *end++ = '%';
     *end = 0;
     status = status <= PENDING ? status : ERROR;
-    if (self->host.logger && (status != OK || self->verbose)) {
-        void *state = python.PyGILState_Check && python.PyGILState_Check() ? python.PyEval_SaveThread() : NULL;
+    if (self->host.logger && (status != OK || self->verbose))
         self->host.logger(self->host.environment, self->name, status,
                           category && *category ? category : categories[status], format);
-        if (state)
-            python.PyEval_RestoreThread(state);
-    }
     free(format);
+}
+
+/* The same while this thread holds Python: the host may wait in its logger for another thread, which may need it. */
+static void tell_outside(const Instance *self, Status status, String category, String message)
+{
+    void *state = python.PyEval_SaveThread();
+    tell(self, status, category, message);
+    python.PyEval_RestoreThread(state);
 }
 
 /* Tells the host of the exception that was raised. */
@@ -83,7 +84,7 @@ static Status fail(const Instance *self, String where)
     python.Py_DecRef(type);
     python.Py_DecRef(error);
     python.Py_DecRef(trace);
-    tell(self, ERROR, NULL, line);
+    tell_outside(self, ERROR, NULL, line);
     return ERROR;
 }
 
@@ -101,7 +102,7 @@ static Status conclude(const Instance *self, String where, Object *result)
         int grade;
         String category, text;
         if (message && python.PyArg_ParseTuple(message, "izy", &grade, &category, &text))
-            tell(self, (Status)grade, category, text);
+            tell_outside(self, (Status)grade, category, text);
         else
             status = fail(self, "message");
         python.Py_DecRef(message);

@@ -88,6 +88,25 @@ def test_dahls_element_forgets_where_it_turned() -> None:
     assert before - after > 1.0
 
 
+def test_four_elements_follow_iwans_continuum() -> None:
+    # a second formulation: 400 elements of one stiffness that slip at reaches evenly from 0 to 2 mm; documented 3 %
+    random = np.random.default_rng(6)
+    time = np.arange(0.0, 20.0, 0.005)
+    w = 2.0 * math.pi * np.linspace(0.3, 4.0, 15)[:, None]
+    x = 0.015 + 5e-3 * math.sqrt(2.0 / 15.0) * np.sum(
+        np.sin(w * time + random.uniform(0.0, 6.3, (15, 1))), axis=0
+    )
+    x = np.maximum(x, 2e-3)
+    reaches = (np.arange(400) + 0.5) / 400.0 * 2e-3
+    y = np.zeros(400)
+    iwan = np.zeros_like(x)
+    for i in range(1, x.size):
+        y = np.clip(y + (x[i] - x[i - 1]) / reaches, -1.0, 1.0)
+        iwan[i] = float(reaches @ y) / float(reaches.sum())
+    force = drive(only(NAME, law=LINEAR, slip_force=1.0, reach=1.01e-3, memory=1.0, spread=0.64), time, x)
+    assert np.sqrt(np.mean((force - STIFFNESS * x - iwan) ** 2)) < 0.03
+
+
 def test_in_the_air_nothing_slips_and_nothing_is_forgotten() -> None:
     tire = only(NAME, law=LINEAR, slip_force=50.0, reach=1e-3)
     down = np.linspace(0.02, 0.0, 100)

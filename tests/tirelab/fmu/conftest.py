@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import platform
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,8 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from loader_bench import HERE, Bench, unpacked
 from radialtire import TireModel
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.loader import NO_COMPILER, Compiler, compile_loader, find_compiler
 
 HOSTS = Path(__file__).parent / "hosts"
 
@@ -56,3 +60,26 @@ def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) ->
     )
     assert result.returncode == 0, f"{script} exited with {result.returncode}:\n{result.stderr}"
     return result.stdout
+
+
+@pytest.fixture(scope="session")
+def compiler() -> Compiler:
+    """The machine's own compiler, if it has one: ziglang takes more time."""
+    if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
+        pytest.skip("the loader is for Linux on x86-64")
+    found = Compiler("cc", ("cc",), None) if shutil.which("cc") else find_compiler()
+    if found is None:
+        pytest.skip(NO_COMPILER)
+    return found
+
+
+@pytest.fixture(scope="session")
+def bench(compiler: Compiler, tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    """The C host, the native FMU and the FMU under test."""
+    folder = tmp_path_factory.mktemp("loader")
+    host, native, loader = folder / "host", folder / "native.so", folder / "loader.so"
+    strict = [*compiler.command, "-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", "-pthread"]
+    subprocess.run([*strict, "-o", host, HERE / "host.c", "-ldl", "-lm"], check=True)
+    subprocess.run([*strict, "-shared", "-fPIC", "-o", native, HERE / "native.c", "-lm"], check=True)
+    compile_loader(loader, compiler)
+    return Bench(host, native, loader, unpacked(folder / "fmu", loader))

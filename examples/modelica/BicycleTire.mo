@@ -1,0 +1,65 @@
+within ;
+block BicycleTire "Radial force of an off-road bicycle tire on curved ground: BicycleTire.fmu with checked units"
+  Modelica.Blocks.Interfaces.RealInput deflection(
+    final quantity="Length",
+    final unit="m",
+    displayUnit="mm",
+    min=-1000,
+    max=0.33) "Radial compression of the tire; 0 or less in the air"
+    annotation (Placement(transformation(extent={{-140,40},{-100,80}})));
+  Modelica.Blocks.Interfaces.RealInput surface_radius(
+    final quantity="Length",
+    final unit="m",
+    displayUnit="cm",
+    start=1e5) "Radius of curvature of the ground: convex > 0, concave < 0, flat from 1e5 on; not 0"
+    annotation (Placement(transformation(extent={{-140,-80},{-100,-40}})));
+  Modelica.Blocks.Interfaces.RealOutput radial_force(
+    final quantity="Force",
+    final unit="N") "Compressive force between tire and ground, along the line from the ground to the hub"
+    annotation (Placement(transformation(extent={{100,50},{120,70}})));
+  Modelica.Blocks.Interfaces.RealOutput radial_stiffness(
+    final quantity="TranslationalSpringConstant",
+    final unit="N/m",
+    displayUnit="N/mm") "Slope of the force over the deflection"
+    annotation (Placement(transformation(extent={{100,-10},{120,10}})));
+  Modelica.Blocks.Interfaces.BooleanOutput in_tested_range
+    "Whether curvature, deflection and force are within those that were measured"
+    annotation (Placement(transformation(extent={{100,-70},{120,-50}})));
+protected
+  BicycleTire_fmu fmu "The class that your tool made when it imported BicycleTire.fmu: put its name here"
+    annotation (Placement(transformation(extent={{-30,-30},{30,30}})));
+equation
+  connect(deflection, fmu.deflection);
+  connect(surface_radius, fmu.surface_radius);
+  connect(fmu.radial_force, radial_force);
+  connect(fmu.radial_stiffness, radial_stiffness);
+  connect(fmu.in_tested_range, in_tested_range);
+  annotation (
+    Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={
+      Ellipse(extent={{-70,-70},{70,70}}, lineThickness=1),
+      Line(points={{-100,-70},{100,-70}}),
+      Text(extent={{-100,100},{100,70}}, textString="%name")}),
+    Documentation(info="<html>
+<p>The tire of M. L. Hull, E. L. Wang and D. F. Moore, <em>An empirical model for determining the radial
+force-deflection behavior of off-road bicycle tires</em>, Cycling Science, Spring 1996:
+<code>F = A x^B</code>, A and B functions of the ground's radius of curvature.</p>
+<h4>Import</h4>
+<ol>
+<li>Build the FMU: <code>python build_fmu.py</code> writes <code>dist/BicycleTire.fmu</code> (FMI 2.0, Co-Simulation).</li>
+<li>Import it in your tool as a co-simulation FMU. The tool makes a class for it, <code>BicycleTire_fmu</code> or
+similar; where the name is another, change it in the one line of this block that declares <code>fmu</code>.
+The Modelica compiler of OpenModelica imports FMUs for model exchange only; its OMSimulator takes this one.</li>
+<li>Choose the FMU's communication step. With 3.5 kg on the wheel, held inputs and a master that runs its units one
+after the other 1 ms gives the force within about 1 % over a log.</li>
+</ol>
+<h4>Connect</h4>
+<p><code>deflection</code> is the wheel's unloaded radius (0.33 m for the tire measured) less the distance from the hub to
+the ground; <code>surface_radius</code> is the inverse of the ground's mean curvature over the contact, with 1e5 m for
+flat ground. Apply <code>radial_force</code> to the hub along the line from the ground, and its opposite to the ground.
+A tire that is not pressed gives no force.</p>
+<h4>Limits</h4>
+<p>Sharp edges, ground whose radius jumps or changes quickly within the contact, concave ground near the wheel's own
+radius, and several contacts at once are outside of what was measured; <code>in_tested_range</code> tells of curvature,
+deflection and force. The ten constants of the law are the FMU's parameters <code>law.*</code>.</p>
+</html>"));
+end BicycleTire;

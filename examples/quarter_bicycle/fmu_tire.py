@@ -1,0 +1,51 @@
+"""The tire FMU as a function that is asked once per step, driven with fmpy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from coupled import SteppedTire
+from fmpy.fmi1 import FMICallException
+from tirelab.errors import TirelabError
+from tirelab.replay import OpenFmu, opened
+
+FLAT = 1e5
+"""Surface radius [m] that the FMU takes for flat, as it does infinity."""
+
+
+@contextmanager
+def fmu_tire(fmu: Path) -> Iterator[SteppedTire]:
+    """Open the tire FMU at `fmu` and yield it as a function of time [s], deflection [m] and surface radius [m].
+
+    Every question is a communication step that ends at its time, the inputs set first. An FMU is native code: open
+    only those that you trust.
+    """
+    with opened(fmu) as unit:
+        yield _asked(unit)
+
+
+def _asked(unit: OpenFmu) -> SteppedTire:
+    instance = unit.instance
+    inputs = [unit.references[name] for name in ("deflection", "surface_radius")]
+    output = [unit.references["radial_force"]]
+    last: list[float] = []
+
+    def tire(time: float, deflection: float, surface_radius: float) -> float:
+        if not last:
+            instance.setupExperiment(startTime=time)
+            instance.enterInitializationMode()
+        instance.setReal(inputs, [deflection, min(max(surface_radius, -FLAT), FLAT)])
+        try:
+            if last:
+                instance.doStep(last[0], time - last[0])
+            else:
+                instance.exitInitializationMode()
+        except FMICallException:
+            reason = unit.messages[-1] if unit.messages else "it logged no reason"
+            raise TirelabError(f"the tire FMU refused t = {time:g} s: {reason}") from None
+        last[:] = [time]
+        return float(instance.getReal(output)[0])
+
+    return tire

@@ -1,0 +1,55 @@
+"""Terrain to tire: a ground profile becomes deflection and average surface radius at every moment of a ride.
+
+    Profile -> ground_from -> Ground -> ride (or rolling_path, contact) -> Ride with its limits -> draw_ride
+
+A profile comes from a file (`read_profile`), from ISO 8608 (`iso8608`), from functions (`flat`, `sine`,
+`from_function`), with obstacles put on it (`place`).
+"""
+
+from .contact import WHEEL_RADIUS, Contact, contact, hub_positions, reach, rolling_path
+from .curvature import Ground, ground_from
+from .iso8608 import iso8608
+from .limits import DOUBTS, Limit, LimitReport
+from .obstacles import OBSTACLES, Obstacle, kerb, log, place, root, rut, stick, whoops
+from .picture import animate_ride, draw_ride
+from .profile import Profile, flat, from_function, sine
+from .profile_file import add_roughness, read_gpx, read_profile, read_profile_csv
+from .ride import Ride, TireForce, constant_load_path, ride
+
+__all__ = [
+    "DOUBTS",
+    "OBSTACLES",
+    "WHEEL_RADIUS",
+    "Contact",
+    "Ground",
+    "Limit",
+    "LimitReport",
+    "Obstacle",
+    "Profile",
+    "Ride",
+    "TireForce",
+    "add_roughness",
+    "animate_ride",
+    "constant_load_path",
+    "contact",
+    "draw_ride",
+    "flat",
+    "from_function",
+    "ground_from",
+    "hub_positions",
+    "iso8608",
+    "kerb",
+    "log",
+    "place",
+    "reach",
+    "read_gpx",
+    "read_profile",
+    "read_profile_csv",
+    "ride",
+    "rolling_path",
+    "root",
+    "rut",
+    "sine",
+    "stick",
+    "whoops",
+]

@@ -1,0 +1,187 @@
+"""A ride: a wheel led over the ground, and the tire's force at every moment of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tirelab.errors import TirelabError
+
+from .contact import WHEEL_RADIUS, Contact, contact, hub_positions, rolling_path
+from .curvature import Ground
+from .limits import Limit, LimitReport, limit_report, limits
+from .profile import Floats
+
+TireForce: TypeAlias = Callable[[Floats, Floats], Floats]
+"""(deflection [m] > 0, surface radius [m]) -> radial force [N]; arrays of one shape, in the order of time."""
+
+FORCE_TOLERANCE = 1e-6
+LOAD_TOLERANCE = 1e-9
+"""The path under a constant load is found to this share of the load, or where the force jumps to this height [m]."""
+
+MOST_STEPS = 60
+"""Regula falsi needs about 6 steps, and 30 where the force jumps."""
+
+DEEPEST_DROP = 0.5
+"""Share of the wheel's radius by which the hub may sink under a load before the load counts as too high."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ride:
+    """What a wheel met on its way; arrays of shape (n,), one value per position of the hub.
+
+    time [s] at the constant speed [m/s]; rolling_height: the hub's height without deflection [m];
+    radial_force: compressive, along the line from hub to ground [N]; limits: bits of `Limit`.
+    """
+
+    ground: Ground
+    speed: float
+    wheel_radius: float
+    time: Floats
+    contact: Contact
+    rolling_height: Floats
+    radial_force: Floats
+    limits: NDArray[np.uint16]
+
+    @property
+    def vertical_force(self) -> Floats:
+        """Upward part of the force on the wheel [N]."""
+        up: Floats = self.radial_force * np.cos(self.contact.inclination)
+        return up
+
+    @property
+    def horizontal_force(self) -> Floats:
+        """Forward part of the force on the wheel [N], negative where the ground holds the wheel back."""
+        forward: Floats = self.radial_force * np.sin(self.contact.inclination)
+        return forward
+
+    @cached_property
+    def report(self) -> LimitReport:
+        """How much of the ride lay beyond the article's limits."""
+        length = float(self.contact.position[-1] - self.contact.position[0])
+        return limit_report(self.limits, length)
+
+
+def ride(
+    ground: Ground,
+    tire_force: TireForce,
+    *,
+    speed: float,
+    load: float | None = None,
+    position: Floats | None = None,
+    hub_height: Floats | None = None,
+    wheel_radius: float = WHEEL_RADIUS,
+) -> Ride:
+    """Return the ride of a wheel over `ground` at a constant `speed` [m/s] > 0.
+
+    The hub follows `hub_height` [m] at `position` [m], both of shape (n,) and the position growing, from a multibody
+    tool or a measurement; or, where `load` [N] is given instead, the path on which the tire carries that load upwards
+    at every position: a ride so slow that nothing bounces. tire_force: see TireForce; it is asked only where the wheel
+    is on the ground.
+
+    Raises TirelabError for paths that are not over the ground, and for loads that the tire cannot carry.
+    """
+    if not (np.isfinite(speed) and speed > 0.0):
+        raise TirelabError(f"speed {speed:g} m/s; give a speed above 0 m/s")
+    if (load is None) == (hub_height is None):
+        raise TirelabError("a ride follows either a load or a path of the hub; give one of the two")
+    place = (
+        hub_positions(ground, wheel_radius) if position is None else np.asarray(position, dtype=np.float64)
+    )
+    if np.any(np.diff(place) <= 0.0):
+        i = int(np.flatnonzero(np.diff(place) <= 0.0)[0])
+        raise TirelabError(f"the hub goes backwards after s = {place[i]:g} m; give positions that only grow")
+    rolling = rolling_path(ground, place, wheel_radius)
+    if load is not None:
+        hub_height = constant_load_path(ground, tire_force, load, place, wheel_radius, rolling)
+    assert hub_height is not None
+    touch = contact(ground, place, hub_height, wheel_radius)
+    force = _force(tire_force, touch)
+    return Ride(
+        ground,
+        speed,
+        wheel_radius,
+        (place - place[0]) / speed,
+        touch,
+        rolling,
+        force,
+        limits(touch, force, wheel_radius),
+    )
+
+
+def constant_load_path(
+    ground: Ground,
+    tire_force: TireForce,
+    load: float,
+    position: Floats,
+    wheel_radius: float = WHEEL_RADIUS,
+    rolling_height: Floats | None = None,
+) -> Floats:
+    """Return the hub's height [m] at which the tire carries `load` [N] > 0 upwards, at every `position` [m].
+
+    Found by regula falsi (Illinois) between the rolling path, where the force is zero, and a drop with more force than
+    the load. Where the contact leaps from one place of the ground to another, the force of a tire with one contact
+    jumps, and no height may carry the load: there the hub stays at the jump, and the ride is flagged for it.
+    """
+    if not (np.isfinite(load) and load > 0.0):
+        raise TirelabError(f"load {load:g} N; give a load above 0 N")
+    rolling = rolling_path(ground, position, wheel_radius) if rolling_height is None else rolling_height
+
+    def excess(drop: Floats, which: NDArray[np.int64]) -> Floats:
+        touch = contact(ground, position[which], rolling[which] - drop, wheel_radius)
+        upward: Floats = _force(tire_force, touch) * np.cos(touch.inclination) - load
+        return upward
+
+    everywhere = np.arange(position.size)
+    low, below = np.zeros(position.size), np.full(position.size, -float(load))
+    high = np.full(position.size, 0.01)
+    above = excess(high, everywhere)
+    while (short := np.flatnonzero(above < 0.0)).size:
+        low[short], below[short] = high[short], above[short]
+        high[short] *= 1.5
+        if np.max(high) > DEEPEST_DROP * wheel_radius:
+            i = int(short[np.argmax(high[short])])
+            raise TirelabError(
+                f"the tire cannot carry {load:g} N at s = {position[i]:g} m with less than {low[i]:.3g} m of "
+                "deflection; give a smaller load"
+            )
+        above[short] = excess(high[short], short)
+    drop, kept, open_ = high.copy(), np.zeros(position.size), everywhere
+    for _ in range(MOST_STEPS):
+        drop[open_] = (low[open_] * above[open_] - high[open_] * below[open_]) / (above[open_] - below[open_])
+        value = excess(drop[open_], open_)
+        side = np.sign(value)
+        up, down = open_[value >= 0.0], open_[value < 0.0]
+        high[up], above[up] = drop[up], value[value >= 0.0]
+        low[down], below[down] = drop[down], value[value < 0.0]
+        stuck = kept[open_] == side
+        below[open_[stuck & (side > 0.0)]] *= 0.5
+        above[open_[stuck & (side < 0.0)]] *= 0.5
+        kept[open_] = side
+        open_ = open_[(np.abs(value) > FORCE_TOLERANCE * load) & (high[open_] - low[open_] > LOAD_TOLERANCE)]
+        if not open_.size:
+            break
+    path: Floats = rolling - drop
+    return path
+
+
+def _force(tire_force: TireForce, touch: Contact) -> Floats:
+    force = np.zeros(touch.deflection.size)
+    loaded = touch.deflection > 0.0
+    if np.any(loaded):
+        force[loaded] = tire_force(touch.deflection[loaded], touch.surface_radius[loaded])
+    if not np.all(np.isfinite(force)):
+        i = int(np.flatnonzero(~np.isfinite(force))[0])
+        raise TirelabError(
+            f"the tire's force is not a number at s = {touch.position[i]:g} m (deflection {touch.deflection[i]:g} m, "
+            f"radius {touch.surface_radius[i]:g} m); check the tire's parameters"
+        )
+    return force
+
+
+__all__ = ["Limit", "Ride", "TireForce", "constant_load_path", "ride"]

@@ -1,0 +1,363 @@
+"""The quarter bicycle on the tire FMU, in three masters, against the ride integrated as one system."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import json
+import math
+import os
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from xml.etree import ElementTree
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.ssp.ssd import read_ssd
+from radialtire import TireModel
+from tirelab.errors import TirelabError
+from tirelab.terrain import Ground, contact, flat, ground_from, iso8608, log, place, sine
+
+MODULES = (
+    "bicycle",
+    "wheel",
+    "model",
+    "coupled",
+    "account",
+    "rides",
+    "fmu_tire",
+    "quarter_bicycle_fmu",
+    "pack",
+)
+LATER = ("cosimulate", "ride_with_fmu")
+SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
+SSC = "{http://ssp-standard.org/SSP1/SystemStructureCommon}"
+SPEED, DURATION = 4.0, 0.3
+
+
+@pytest.fixture(scope="module")
+def example(repository: Path) -> Iterator[dict[str, ModuleType]]:
+    """The example's modules, which import each other by their plain names."""
+    folder = str(repository / "examples" / "quarter_bicycle")
+    sys.path.insert(0, folder)
+    yield {name: importlib.import_module(name) for name in (*MODULES, *LATER)}
+    sys.path.remove(folder)
+    for name in (*MODULES, *LATER):
+        del sys.modules[name]
+
+
+@pytest.fixture(scope="module")
+def wavy(example: dict[str, ModuleType]) -> Any:
+    """A ride over waves of 2 cm and 1.5 m, where the wheel keeps one contact and everything is smooth."""
+    return _ride(example, ground_from(sine(8.0, (0.01, 1.5), spacing=0.002), 0.002))
+
+
+@pytest.fixture(scope="module")
+def bumpy(example: dict[str, ModuleType]) -> Any:
+    """A ride over a log 4 cm tall, on which the contact leaps and the wheel leaves the ground."""
+    return _ride(example, ground_from(place(flat(5.0, 0.005), log(0.02), 1.5), 0.002))
+
+
+@pytest.fixture(scope="module")
+def truth(example: dict[str, ModuleType], wavy: Any) -> Any:
+    """The wavy ride as one system, a sample every quarter of a millisecond."""
+    return wavy.integrated(example["rides"].elastic(TireModel()), 1201)
+
+
+def _ride(example: dict[str, ModuleType], ground: Ground) -> Any:
+    bicycle, tire = example["bicycle"].QuarterBicycle(), example["rides"].elastic(TireModel())
+    state = example["model"].at_rest(bicycle, ground, tire, 1.0)
+    return example["rides"].RideOnGround(ground.name, bicycle, ground, SPEED, 1.0, DURATION, state)
+
+
+def _run(example: dict[str, ModuleType], ride: Any, **options: Any) -> Any:
+    """Return the ride stepped in plain Python, the tire's law being the article's."""
+    law = example["rides"].elastic(TireModel())
+
+    def tire(time: float, deflection: float, surface_radius: float) -> float:
+        return float(law(deflection, surface_radius)) if deflection > 0.0 else 0.0
+
+    return example["coupled"].run(
+        ride.bicycle,
+        ride.ground,
+        tire,
+        speed=SPEED,
+        start=ride.start,
+        duration=DURATION,
+        state=ride.state,
+        **options,
+    )
+
+
+def _system(
+    example: dict[str, ModuleType], ride: Any, folder: Path, step: float, look_ahead: float | None
+) -> Path:
+    path = example["pack"].pack_system(
+        ride, TireModel(), folder, step=step, look_ahead=look_ahead, with_loader=False
+    )
+    assert isinstance(path, Path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def master(repository: Path) -> Callable[..., Any]:
+    """Runs a system in somebody else's master, in a fresh process without the project, and returns its table."""
+
+    def run(name: str, package: str, ssp: Path, step: float) -> Any:
+        if importlib.util.find_spec(package) is None:
+            pytest.skip(f"{package} is not installed")
+        environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+        # The oneTBB that ecospy needs is installed beside the interpreter, where the linker does not look.
+        environment["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
+        script, out = (
+            repository / "examples" / "quarter_bicycle" / f"ride_with_{name}.py",
+            ssp.parent / f"{name}.csv",
+        )
+        options = ["--step", f"{1e3 * step:g}", "--duration", f"{DURATION:g}", "--out", str(out)]
+        result = subprocess.run(
+            [sys.executable, "-I", str(script), str(ssp), *options],
+            capture_output=True,
+            text=True,
+            env=environment,
+            cwd=ssp.parent,
+            timeout=120,
+            check=False,
+        )
+        assert result.returncode == 0, result.stdout + result.stderr
+        return np.genfromtxt(out, delimiter=",", names=True)
+
+    return run
+
+
+MASTERS = [("libcosim", "libcosimpy"), ("ecos", "ecospy")]
+
+
+def test_one_wheel_and_many_meet_the_ground_alike(example: dict[str, ModuleType]) -> None:
+    """The scalar contact of the FMU against the vectorised one: the same formulas, so the same to a few last digits."""
+    for ground in (
+        ground_from(iso8608("E", 12.0, 3), 0.005),
+        ground_from(place(flat(6.0), log(0.05), 3.0), 0.002),
+    ):
+        random = np.random.default_rng(7)
+        position = random.uniform(1.0, 5.0, 400)
+        below = np.interp(position, ground.s, ground.z)
+        height = below + 0.33 + random.uniform(-0.06, 0.06, position.size)
+        touch = contact(ground, position, height)
+        track = example["model"].track_of(ground, 1.0, 5.0)
+        met = [example["wheel"].meet(track, s, h, 0.33) for s, h in zip(position, height, strict=True)]
+        assert {bool(m.deflection > 0.0) for m in met} == {True, False}
+        np.testing.assert_allclose([m.deflection for m in met], touch.deflection, atol=1e-12)
+        np.testing.assert_allclose([m.inclination for m in met], touch.inclination, atol=1e-11)
+        # The curvature is a quotient of differences over a section of at least a centimetre.
+        np.testing.assert_allclose(
+            [1.0 / m.surface_radius for m in met], 1.0 / touch.surface_radius, atol=1e-9
+        )
+
+
+def test_archive_is_the_same_for_the_same_ride(
+    example: dict[str, ModuleType], wavy: Any, tmp_path: Path
+) -> None:
+    first, second = (_system(example, wavy, tmp_path / name, 1e-3, None).read_bytes() for name in "ab")
+    assert first == second
+
+
+def test_structure_is_ssp_with_units(example: dict[str, ModuleType], wavy: Any, tmp_path: Path) -> None:
+    """fmpy reads it against the standard's schema; every connector's unit is its FMU's and its partner's."""
+    path = _system(example, wavy, tmp_path, 1e-3, None)
+    assert read_ssd(str(path)).name == "QuarterBicycle"
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(tmp_path)
+    root = ElementTree.parse(tmp_path / "SystemStructure.ssd").getroot()
+    assert root.get("version") == "1.0"
+    units = {}
+    for component in root.iter(f"{SSD}Component"):
+        description = fmpy.read_model_description(str(tmp_path / component.get("source", "")))
+        variables = {v.name: v for v in description.modelVariables}
+        for connector in component.iter(f"{SSD}Connector"):
+            variable, real = variables[connector.get("name", "")], connector.find(f"{SSC}Real")
+            assert real is not None
+            assert (variable.causality, variable.unit) == (connector.get("kind"), real.get("unit"))
+            units[component.get("name"), connector.get("name")] = real.get("unit")
+    connections = list(root.iter(f"{SSD}Connection"))
+    assert len(connections) == 3
+    for c in connections:
+        start, end = (
+            (c.get("startElement"), c.get("startConnector")),
+            (c.get("endElement"), c.get("endConnector")),
+        )
+        assert units[start] == units[end]
+    assert {u.get("name") for u in root.iter(f"{SSC}Unit")} >= set(units.values())
+    (step,) = root.iter("{http://opensimulationplatform.com/SSP/OSPAnnotations}FixedStepAlgorithm")
+    assert step.get("baseStepSize") == "0.001"
+
+
+@pytest.mark.parametrize("one_after_the_other", [True, False])
+def test_fmpy_rides_the_system(
+    example: dict[str, ModuleType], bumpy: Any, tmp_path: Path, one_after_the_other: bool
+) -> None:
+    """Two FMUs and a master say what one process says, but for the last digits."""
+    late = not one_after_the_other
+    look_ahead = example["coupled"].lag(1e-3, late)
+    path = _system(example, bumpy, tmp_path, 1e-3, look_ahead)
+    table = example["cosimulate"].cosimulate(
+        path, step=1e-3, duration=DURATION, one_after_the_other=one_after_the_other
+    )
+    expected = _run(example, bumpy, step=1e-3, late=late)
+    assert (expected.deflection < 0.0).any()
+    np.testing.assert_allclose(table["QuarterBicycle.hub_height"], expected.hub_height, atol=1e-12)
+    np.testing.assert_allclose(table["QuarterBicycle.mass_velocity"], expected.states[:, 1], atol=1e-10)
+    np.testing.assert_allclose(table["BicycleTire.radial_force"], expected.radial_force, atol=1e-7)
+
+
+@pytest.mark.parametrize(("name", "package"), MASTERS)
+def test_masters_run_the_two_side_by_side(
+    example: dict[str, ModuleType],
+    bumpy: Any,
+    master: Callable[..., Any],
+    tmp_path: Path,
+    name: str,
+    package: str,
+) -> None:
+    """libcosim and ecos hand over at the end of each step: the force acts one step late, from a first one at rest."""
+    found = master(name, package, _system(example, bumpy, tmp_path, 1e-3, 0.0), 1e-3)
+    expected = _run(example, bumpy, step=1e-3, late=True, look_ahead=0.0)
+    np.testing.assert_allclose(found["time"], expected.time[1:], atol=1e-12)
+    np.testing.assert_allclose(found["hub_height"], expected.hub_height[1:], atol=1e-12)
+    np.testing.assert_allclose(found["deflection"], expected.deflection[1:], atol=1e-12)
+    # What they show of the tire is its answer to what it was told before the step, or after it.
+    shown = expected.radial_force[:-1] if name == "libcosim" else expected.radial_force[1:]
+    np.testing.assert_allclose(found["radial_force"], shown, atol=1e-7)
+
+
+@pytest.mark.parametrize(("ahead", "order"), [(0.0, 1.0), (1.5, 2.0)])
+@pytest.mark.parametrize(("name", "package"), MASTERS)
+def test_error_of_a_master_falls_with_its_step(
+    example: dict[str, ModuleType],
+    wavy: Any,
+    truth: Any,
+    master: Callable[..., Any],
+    tmp_path: Path,
+    name: str,
+    package: str,
+    ahead: float,
+    order: float,
+) -> None:
+    """A lag of 1.5 steps is of first order; told 1.5 steps ahead, what is left is the acceleration: of second."""
+    errors = []
+    for step in (0.001, 0.0005):
+        found = master(name, package, _system(example, wavy, tmp_path, step, ahead * step), step)
+        expected = np.interp(found["time"], truth.time, truth.hub_height)
+        errors.append(math.sqrt(np.mean((found["hub_height"] - expected) ** 2)))
+    # The next order's share: at 1 ms and 1.5 steps the wheel turns by 0.3 rad of its own oscillation.
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), order, atol=0.3)
+    assert errors[-1] < (1e-3 if order == 1.0 else 2e-5)
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_energy_of_a_stepped_ride(example: dict[str, ModuleType], bumpy: Any, wavy: Any, late: bool) -> None:
+    """The bicycle's own balance closes; what a lag makes is the lag times the force's rate times the hub's."""
+    law = example["rides"].elastic_array(TireModel())
+    for ride, step in ((bumpy, 1e-3), (wavy, 1.25e-4)):
+        held, told_ahead = (
+            example["account"].account(
+                ride.bicycle,
+                ride.ground,
+                law,
+                _run(example, ride, step=step, late=late, look_ahead=ahead),
+                speed=SPEED,
+                start=ride.start,
+            )
+            for ahead in (0.0, None)
+        )
+        for energies in (held, told_ahead):
+            # Rounding of the ground's and the masses' energies, some 100 J.
+            assert abs(energies.imbalance) < 1e-9
+        assert abs(told_ahead.made) < 0.2 * held.made
+    # To first order in the step: a lag of 0.2 ms in the wheel's oscillation of 200 rad/s leaves 4 %.
+    predicted = example["coupled"].lag(1.25e-4, late) * held.lag_power
+    assert held.made == pytest.approx(predicted, rel=0.05)
+
+
+def test_tire_fmu_in_the_loop(example: dict[str, ModuleType], bumpy: Any, tmp_path: Path) -> None:
+    fmu = (
+        importlib.import_module("tirelab.fmu.build").build_fmu(TireModel(), tmp_path, with_loader=False).path
+    )
+    with example["fmu_tire"].fmu_tire(fmu) as tire:
+        found = example["ride_with_fmu"].stepped(bumpy, tire, 1e-3, "one after the other, told ahead")
+    np.testing.assert_allclose(found.hub_height, _run(example, bumpy, step=1e-3).hub_height, atol=1e-12)
+    with example["fmu_tire"].fmu_tire(fmu) as tire:
+        tire(0.0, 0.01, math.inf)
+        with pytest.raises(TirelabError, match=r"the tire FMU refused t = 0\.001 s: deflection = 22"):
+            tire(0.001, 22.0, math.inf)
+
+
+def test_refusals_of_the_bicycle_fmu(example: dict[str, ModuleType], wavy: Any, tmp_path: Path) -> None:
+    """One message that says why, the state as before, and on with the next good value."""
+    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3, with_loader=False)
+    replay = importlib.import_module("tirelab.replay")
+    with replay.opened(path) as unit:
+        instance, force, hub = (
+            unit.instance,
+            [unit.references["radial_force"]],
+            [unit.references["hub_height"]],
+        )
+        instance.setupExperiment(startTime=5.0)
+        instance.enterInitializationMode()
+        instance.exitInitializationMode()
+        before = instance.getReal(hub)
+        instance.setReal(force, [math.nan])
+        with pytest.raises(fmpy.fmi1.FMICallException):
+            instance.doStep(5.0, 1e-3)
+        assert unit.messages == ["radial_force = nan is not allowed; it must be a finite number"]
+        assert instance.getReal(hub) == before
+        instance.setReal(force, [0.0])
+        instance.doStep(5.0, 1e-3)
+        with pytest.raises(fmpy.fmi1.FMICallException):
+            instance.doStep(8.0, 1e-3)
+        assert "has not the whole wheel over the ground" in unit.messages[-1]
+        # Let go of the wheel: in 1 ms the fork and gravity move it by (S / m_u + g) t^2 / 2, S carrying 32 kg.
+        fallen = before[0] - instance.getReal(hub)[0]
+        assert fallen == pytest.approx(0.5 * 9.80665 * (1.0 + 32.0 / 3.5) * 1e-6, rel=0.05)
+
+
+def test_ride_beyond_the_ground(example: dict[str, ModuleType], wavy: Any) -> None:
+    with pytest.raises(
+        TirelabError, match=r"a ride from s = 1 m to 9 m on .*its wheel has ground beneath it"
+    ):
+        example["model"].integrate(
+            wavy.bicycle, wavy.ground, lambda x, r: 0.0, speed=4.0, start=1.0, duration=2.0, state=wavy.state
+        )
+
+
+def test_diverging_ride_says_when(example: dict[str, ModuleType], bumpy: Any) -> None:
+    """Side by side, 1 cm steps of a stiff tire throw the wheel into the ground or out of the tire's range."""
+    with pytest.raises(TirelabError, match="the ride ends at 0"):
+        example["coupled"].run(
+            bumpy.bicycle,
+            bumpy.ground,
+            lambda t, x, r: 1e6 * x,
+            speed=SPEED,
+            start=1.0,
+            duration=DURATION,
+            step=0.01,
+            state=bumpy.state,
+            late=True,
+            look_ahead=0.0,
+        )
+
+
+def test_parameters_of_the_ride_are_in_the_fmu(
+    example: dict[str, ModuleType], wavy: Any, tmp_path: Path
+) -> None:
+    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3, with_loader=False)
+    variables = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
+    assert float(variables["sprung_mass"].start) == 32.0
+    assert variables["fork_stiffness"].unit == "N/m"
+    with zipfile.ZipFile(path) as archive:
+        assert json.loads(archive.read("resources/ride.json"))["state"] == wavy.state.tolist()
