@@ -114,4 +114,4 @@ def run(
         states[i], told[i] = here, (meeting.deflection, meeting.surface_radius, answer)
         here = moving.advance(here, float(upward[i]))
     moments: Floats = step * np.arange(count, dtype=np.float64)
-    return SteppedMotion(moments, moments + told_ahead, states, *told.T, upward)
+    return SteppedMotion(moments, moments + told_ahead, states, told[:, 0], told[:, 1], told[:, 2], upward)

@@ -162,7 +162,7 @@ def integrate(
         meeting = met(time, y)
         force = pressed(tire, meeting)
         upward, forward = force * math.cos(meeting.inclination), force * math.sin(meeting.inclination)
-        sprung, unsprung = bicycle.accelerations(y, upward)
+        sprung, unsprung = bicycle.accelerations(y.tolist(), upward)
         damped = bicycle.fork_damping * (y[3] - y[1]) ** 2
         return [y[1], sprung, y[3], unsprung, damped, -forward * speed - upward * y[3], -forward * speed]
 

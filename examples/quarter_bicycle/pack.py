@@ -215,7 +215,8 @@ def _packed(ride: str, work: Path) -> dict[str, bytes]:
 
 def _text(root: ElementTree.Element) -> bytes:
     ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+    text: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return text + b"\n"
 
 
 def _write(members: dict[str, bytes], path: Path) -> Path:

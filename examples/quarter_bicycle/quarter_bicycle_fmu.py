@@ -76,8 +76,8 @@ class QuarterBicycleFmu(Fmi2Slave):
             columns["spacing"],
             *(tuple(columns[name]) for name in ("s", "z", "direction", "arc", "curvature")),
         )
-        self._start = ride["start"]
-        self._wheel_radius = ride["wheel_radius"]
+        self._start: float = ride["start"]
+        self._wheel_radius: float = ride["wheel_radius"]
         self._values: dict[str, float] = {name: ride["parameters"][name] for name in PARAMETERS}
         self._state: State = tuple(ride["state"])
         self._start_time = self._elapsed = 0.0

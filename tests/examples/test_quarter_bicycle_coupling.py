@@ -7,6 +7,7 @@ import importlib.util
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -361,3 +362,52 @@ def test_parameters_of_the_ride_are_in_the_fmu(
     assert variables["fork_stiffness"].unit == "N/m"
     with zipfile.ZipFile(path) as archive:
         assert json.loads(archive.read("resources/ride.json"))["state"] == wavy.state.tolist()
+
+
+def test_the_readmes_example_runs(
+    example: dict[str, ModuleType], repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (repository / "examples" / "quarter_bicycle" / "README.md").read_text()
+    (code,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    assert (tmp_path / "log.png").is_file()
+
+
+def _command(repository: Path, folder: Path, *words: str) -> str:
+    """Run a script of the example as the README does, and return what it printed."""
+    script = repository / "examples" / "quarter_bicycle" / words[0]
+    environment = {**os.environ, "PYTHONPATH": str(repository / "fmu_src")}
+    done = subprocess.run(
+        [sys.executable, script, *words[1:]],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_readmes_table_is_what_its_command_prints(repository: Path, tmp_path: Path) -> None:
+    output = _command(
+        repository, tmp_path, "ride_with_fmu.py", "--ground", "root", "--speed", "8", "--step", "1"
+    )
+    shown = [float(value) for value in re.findall(r"^ +1 +([\d.]+)%", output, flags=re.MULTILINE)]
+    table = (repository / "examples" / "quarter_bicycle" / "README.md").read_text()
+    printed = re.findall(r"^\|[^|]*\| 1 ms \|[^|]*\|[^|]*\|[^|]*\| ([\d.]+) \|", table, flags=re.MULTILINE)
+    # The README lists side by side first, to one or two digits.
+    assert [*shown[2:], *shown[:2]] == pytest.approx([float(value) for value in printed], rel=0.15)
+
+
+@pytest.mark.slow
+def test_the_readmes_archive_rides(repository: Path, master: Callable[..., Any], tmp_path: Path) -> None:
+    """As packed by the command, with the compiled binaries, in all masters."""
+    _command(repository, tmp_path, "pack.py", "--ground", "root", "--step", "1", "--out", ".")
+    archive = tmp_path / "QuarterBicycle.ssp"
+    _command(repository, tmp_path, "cosimulate.py", str(archive), "--step", "1", "--duration", "0.3")
+    rows = np.genfromtxt(tmp_path / "ride.csv", delimiter=",", names=True)
+    for name, package in MASTERS:
+        found = master(name, package, archive, 1e-3)
+        np.testing.assert_allclose(found["hub_height"], rows["QuarterBicyclehub_height"][1:], atol=1e-12)
