@@ -212,7 +212,7 @@ class BicycleTire(Fmi2Slave):
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Accept the inputs at the end of the step, or discard the step with one message and leave all as it was."""
         x, R = self._inputs
-        if R == self._surface and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST and step_size >= 0.0:
+        if self._surface == R and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST and step_size >= 0.0:
             self._force = self._elastic(x)
             self._current = True
             return True

@@ -20,16 +20,20 @@ from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
+from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
 from .model import Law, TestedRange, TireModel
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
+from .recalibrated import Recalibrated
 
 SCHEMA = 1
 
-LAWS: dict[str, type[Hull1996] | type[PowerLaw]] = {law.name: law for law in (Hull1996, PowerLaw)}
+LAWS: dict[str, type[Hull1996] | type[PowerLaw] | type[CurvatureLaw]] = {
+    law.name: law for law in (Hull1996, PowerLaw, CurvatureLaw)
+}
 
 
 class TireFileError(ValueError):
@@ -57,7 +61,6 @@ def write_tire(tire: TireModel, path: str | Path) -> None:
 
 def to_text(tire: TireModel) -> str:
     """Return `tire` as the text of a tire file."""
-    law = {p.name: getattr(tire.law, p.name) for p in tire.law.parameters}
     effects = [
         {
             "name": effect.name,
@@ -69,7 +72,7 @@ def to_text(tire: TireModel) -> str:
         "schema": SCHEMA,
         "name": tire.name,
         "source": tire.source,
-        "law": {"name": tire.law.name, "parameters": law},
+        "law": _law_entry(tire.law),
         "effects": effects,
         "tracking_time": tire.tracking_time,
         "tested_range": None if tire.tested_range is None else asdict(tire.tested_range),
@@ -162,7 +165,41 @@ def _text(entry: dict[str, Any], key: str) -> str:
     return value
 
 
+def _law_entry(law: Law) -> dict[str, Any]:
+    if isinstance(law, Recalibrated):
+        surfaces = [
+            {
+                "radius": radius if math.isfinite(radius) else "inf",
+                "change": change,
+                "exponent_change": exponent,
+            }
+            for radius, change, exponent in law.surfaces
+        ]
+        return {"name": law.name, "base": _law_entry(law.base), "surfaces": surfaces}
+    return {"name": law.name, "parameters": {p.name: getattr(law, p.name) for p in law.parameters}}
+
+
+def _recalibrated(value: Any) -> Recalibrated:
+    entry = _entry(value, "the law", {"name", "base", "surfaces"}, {"name", "base", "surfaces"})
+    if not isinstance(entry["surfaces"], list):
+        raise TireFileError(f"surfaces must be a list, not {entry['surfaces']!r}")
+    known = {"radius", "change", "exponent_change"}
+    rows = []
+    for item in entry["surfaces"]:
+        row = dict(_entry(item, "a surface", known, known))
+        row["radius"] = math.inf if row["radius"] == "inf" else row["radius"]
+        for name, number in row.items():
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or number != number:
+                raise TireFileError(f"{name} = {number!r} of a surface is not a number")
+        if row["radius"] == 0:
+            raise TireFileError("radius = 0 of a surface is not allowed; flat ground is inf")
+        rows.append((float(row["radius"]), float(row["change"]), float(row["exponent_change"])))
+    return Recalibrated(_law(entry["base"]), tuple(rows))
+
+
 def _law(value: Any) -> Law:
+    if isinstance(value, dict) and value.get("name") == Recalibrated.name:
+        return _recalibrated(value)
     entry = _entry(value, "the law", {"name", "parameters"}, {"name"})
     if not isinstance(entry["name"], str) or entry["name"] not in LAWS:
         raise TireFileError(f"unknown law {entry['name']!r}; known are {', '.join(LAWS)}")

@@ -173,6 +173,11 @@ def unit_of_column(header: Header, channel: str) -> str | None:
     return tail if fits else None
 
 
+def says_absolute(header: Header) -> bool:
+    """Whether the name of a pressure column says that it is absolute."""
+    return bool({"abs", "absolute"} & set(_words(header.name).split()))
+
+
 def _named(path: Path, headers: Sequence[Header], channel: str, text: str) -> Match:
     exact = _finds(headers, text)
     if exact:
@@ -228,13 +233,13 @@ def _all(headers: Sequence[Header]) -> str:
 
 
 def _missing(path: Path, headers: Sequence[Header], missing: Sequence[str]) -> RecordingError:
-    if all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
+    if headers and all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
         return RecordingError(
             f"{path.name}: has no header row; put one above the numbers, such as time [s],deflection [mm],"
             "force [N], or name columns by number: --columns time=#1,deflection=#2,force=#3 "
             "--units time=s,deflection=mm,force=N"
         )
     return RecordingError(
-        f"{path.name}: no column for {' and '.join(missing)}; its columns are {_all(headers)}; "
+        f"{path.name}: no column for {', '.join(missing)}; its columns are {_all(headers)}; "
         f"name it with --columns {','.join(f'{name}=NAME' for name in missing)}"
     )

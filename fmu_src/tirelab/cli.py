@@ -8,12 +8,11 @@ from pathlib import Path
 
 import click
 
-if (
-    sys.prefix != sys.base_prefix
-):  # matplotlib keeps its font cache in the user's home if it is not told otherwise
+# matplotlib keeps its font cache in the user's home if it is not told otherwise
+if sys.prefix != sys.base_prefix:
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
-from .commands import build, compare, ride
+from .commands import article, build, compare, diagnose, identify, prove, ride, rig
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -22,5 +21,5 @@ def main() -> None:
     """Off-road bicycle tires: from recordings to a tire, an FMU, and the physics that a simulation left out."""
 
 
-for module in (build, compare, ride):
+for module in (diagnose, compare, identify, rig, article, build, ride, prove):
     main.add_command(module.command)

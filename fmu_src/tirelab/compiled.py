@@ -2,7 +2,8 @@
 
 Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the folder of
 the environment variable TIRELAB_CACHE, else in the virtual environment, else in the user's cache folder
-(XDG_CACHE_HOME or ~/.cache), in a folder named after the content of `radialtire`: numba itself looks only at the file of a loop, not at those of the functions it calls.
+(XDG_CACHE_HOME or ~/.cache), in a folder named after the content of `radialtire`: numba itself looks only at the file
+of a loop, not at those of the functions it calls.
 """
 
 from __future__ import annotations

@@ -9,7 +9,14 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from tirelab.channels import UNIT_OF, Match, match_channels, unit_of_column
+from tirelab.channels import (
+    UNIT_OF,
+    Match,
+    known_channel,
+    match_channels,
+    says_absolute,
+    unit_of_column,
+)
 from tirelab.formats import Header, RecordingError, Table, Wanted, open_table
 from tirelab.formats.table import quoted
 from tirelab.memory import memory_available, readable_size
@@ -147,8 +154,8 @@ def read_recording(
     table = open_table(path)
     sidecar = read_sidecar(path)
     matches = match_channels(path, table.headers, table.time_axis, {**sidecar.columns, **(columns or {})})
-    flat_out, notes = _given_radius(path, table, matches, sidecar, radius)
-    if flat_out is not None:
+    single_radius, notes = _given_radius(path, table, matches, sidecar, radius)
+    if single_radius is not None:
         matches.pop("radius", None)
     headers = {name: table.headers[match.index] for name, match in matches.items()}
     conversions = _conversions(path, headers, {**sidecar.units, **(units or {})})
@@ -156,16 +163,16 @@ def read_recording(
     read = table.read([Wanted(match.index, name) for name, match in matches.items()])
     rows = complete_rows(path, headers, read)
     values = {name: _in_si(column, conversions[name]) for name, column in rows.values.items()}
-    if flat_out is not None:
-        values["radius"] = np.full(len(values["time"]), flat_out)
+    if single_radius is not None:
+        values["radius"] = np.full(len(values["time"]), single_radius)
     notes = [*read.notes, *rows.notes, *notes]
     notes += [f"settings read from {source}" for source in sidecar.sources]
-    notes += _absolute_notes(conversions)
+    notes += _unit_notes(conversions, headers)
     doubt = _turn_signs(values, matches, notes)
     notes += gap_notes(values["time"])
     try:
         recording = Recording(
-            name=sidecar.name or path.stem,
+            name=path.stem,
             time=values["time"],
             deflection=values["deflection"],
             surface_radius=values["radius"],
@@ -234,6 +241,8 @@ def _conversions(
     path: Path, headers: Mapping[str, Header], units: Mapping[str, str]
 ) -> dict[str, Conversion]:
     found = {}
+    for name in units:
+        known_channel(name, f"{path.name}, units")
     for name, header in headers.items():
         place = f"{path.name}, column {quoted(header.text)}"
         unit = units.get(name) or unit_of_column(header, name)
@@ -242,10 +251,10 @@ def _conversions(
                 f"{place}: has no unit; write it into the header, such as {name} [{_EXAMPLE_UNITS[name]}], "
                 f"or give it: --units {name}={_EXAMPLE_UNITS[name]}"
             )
-        if name == "pressure" and "abs" in header.text.lower() and "abs" not in unit.lower():
-            unit = f"{unit} abs"
         try:
             found[name] = conversion(unit, UNIT_OF[name])
+            if name == "pressure" and not found[name].absolute_pressure and says_absolute(header):
+                found[name] = conversion(f"{unit} abs", UNIT_OF[name])
         except UnitError as error:
             raise RecordingError(f"{place}: {error} (or give it: --units {name}=UNIT)") from None
     return found
@@ -267,10 +276,17 @@ def _in_si(values: FloatArray, convert: Conversion) -> FloatArray:
         return convert.to_si(values)
 
 
-def _absolute_notes(conversions: Mapping[str, Conversion]) -> list[str]:
-    if not any(convert.absolute_pressure for convert in conversions.values()):
-        return []
-    return [f"pressure is absolute: the standard atmosphere ({STANDARD_ATMOSPHERE:.0f} Pa) taken off"]
+def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Header]) -> list[str]:
+    notes = []
+    for name, convert in conversions.items():
+        stated = headers[name].unit
+        if stated and stated not in (convert.unit, convert.unit.removesuffix(" abs")):
+            notes.append(f"{name} read in {convert.unit} as given, not in {stated}")
+        if convert.absolute_pressure:
+            notes.append(
+                f"pressure is absolute: the standard atmosphere, {STANDARD_ATMOSPHERE:.0f} Pa, taken off"
+            )
+    return notes
 
 
 def _turn_signs(values: dict[str, FloatArray], matches: Mapping[str, Match], notes: list[str]) -> str:
@@ -315,7 +331,8 @@ def _check_loading(rows: Rows, recording: Recording, doubt: str) -> None:
 
 def _rounded(values: FloatArray) -> FloatArray:
     """The values to 12 significant digits, so that 2.54 is not written as 2.5400000000000005."""
-    sized = np.isfinite(values) & (values != 0.0)
+    # Beyond these magnitudes the scale itself would overflow, and no measurement is that small.
+    sized = np.isfinite(values) & (np.abs(values) > 1e-250)
     digits = np.zeros(values.shape)
     np.log10(np.abs(values), out=digits, where=sized)
     scale = 10.0 ** (_SIGNIFICANT_DIGITS - 1 - np.floor(digits))

@@ -71,17 +71,11 @@ def check_time(time: FloatArray) -> None:
 
 def check_values(name: str, values: FloatArray) -> None:
     """Refuse what is not finite or beyond belief, by its least and greatest value."""
-    low, high = float(values.min()), float(values.max())
-    if (
-        -BEYOND_BELIEF[name] < low
-        and high < BEYOND_BELIEF[name]
-        and not (name == "temperature" and low < 0.0)
-    ):
+    most = BEYOND_BELIEF[name]
+    least = 0.0 if name == "temperature" else -most
+    if least <= float(values.min()) and float(values.max()) <= most:
         return
-    wrong = ~(np.abs(values) < BEYOND_BELIEF[name])
-    if name == "temperature":
-        wrong |= values < 0.0
-    index = int(np.argmax(wrong))
+    index = int(np.argmin((least <= values) & (values <= most)))
     value = float(values[index])
     if not np.isfinite(value):
         raise SampleFault(index, name, f"{value} is no {name}; correct the value, or delete the row")

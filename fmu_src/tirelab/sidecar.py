@@ -17,14 +17,13 @@ else:
 FOLDER_SIDECAR = "recording.toml"
 """The sidecar of every recording in its folder."""
 
-_KEYS = ("name", "radius", "columns", "units")
+_KEYS = ("radius", "columns", "units")
 
 
 @dataclass(frozen=True)
 class Sidecar:
     """The radius, the columns and the units that sidecars state, and where each came from."""
 
-    name: str | None = None
     radius: str | None = None
     radius_source: str = ""
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -35,9 +34,8 @@ class Sidecar:
 def read_sidecar(path: Path) -> Sidecar:
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
-    For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `name`, and the tables
-    `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say. Without a sidecar,
-    an empty one.
+    For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), and the tables `[columns]`
+    and `[units]`, which say per channel what `--columns` and `--units` say. Without a sidecar, an empty one.
 
     Errors: RecordingError for TOML that does not parse, an unknown key, or a value that is not text.
     """
@@ -50,7 +48,6 @@ def read_sidecar(path: Path) -> Sidecar:
         content = _content(file)
         radius = content.get("radius")
         found = Sidecar(
-            name=content.get("name") if file.name != FOLDER_SIDECAR else None,
             radius=radius or found.radius,
             radius_source=file.name if radius else found.radius_source,
             columns={**found.columns, **content.get("columns", {})},

@@ -19,7 +19,7 @@ import polars as pl
 from tirelab.recording import read_recording
 
 ROWS = 1_000_000
-ROUNDS = 15
+ROUNDS = 25
 SLOWEST = 2.0
 LARGEST = 4.0
 

@@ -56,7 +56,7 @@ def test_a_recording_of_the_very_tire_leaves_its_noise(shared: Path, tmp_path: P
 
 
 def test_compare_with_a_tire_file_and_with_an_fmu_agree(repository: Path, tmp_path: Path) -> None:
-    recorded = repository / "examples" / "recordings" / "press.csv"
+    recorded = repository / "examples" / "recordings" / "press" / "slow.csv"
     tire = repository / "examples" / "tires" / "wang_hull_off_road.json"
     assert run("build", "--tire", tire, "--out", tmp_path)[0] == 0
     with_tire = run("compare", recorded, "--tire", tire, "--out", tmp_path)
@@ -69,10 +69,10 @@ def test_compare_with_a_tire_file_and_with_an_fmu_agree(repository: Path, tmp_pa
     ("arguments", "sentence"),
     [
         (["nothing.csv"], "nothing.csv"),
-        (["press.csv", "--fmu", "nothing.fmu"], "nothing.fmu does not exist; build it"),
-        (["press.csv", "--tire", "nothing.json"], "nothing.json: No such file"),
-        (["press.csv", "--fmu", "a.fmu", "--tire", "b.json"], "--fmu and --tire both name a tire"),
-        (["press.csv", "--out", "press.csv"], "cannot be written"),
+        (["press/slow.csv", "--fmu", "nothing.fmu"], "nothing.fmu does not exist; build it"),
+        (["press/slow.csv", "--tire", "nothing.json"], "nothing.json: No such file"),
+        (["press/slow.csv", "--fmu", "a.fmu", "--tire", "b.json"], "--fmu and --tire both name a tire"),
+        (["press/slow.csv", "--out", "press/slow.csv"], "cannot be written"),
     ],
 )
 def test_bad_input_gets_one_sentence(

@@ -6,6 +6,7 @@ from ..effect import Effect
 from .bottoming import BOTTOMING
 from .deflection_lag import DEFLECTION_LAG
 from .deflection_offset import DEFLECTION_OFFSET
+from .elastic_shape import ELASTIC_SHAPE
 from .force_drift import FORCE_DRIFT
 from .force_lag import FORCE_LAG
 from .force_offset import FORCE_OFFSET
@@ -26,6 +27,7 @@ CATALOGUE: dict[str, Effect] = {
         DEFLECTION_OFFSET,
         DEFLECTION_LAG,
         SERIES_COMPLIANCE,
+        ELASTIC_SHAPE,
         GAS_COMPRESSION,
         MULLINS_SOFTENING,
         PRESSURE_LEAK,

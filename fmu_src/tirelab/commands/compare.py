@@ -8,13 +8,11 @@ from pathlib import Path
 import click
 from radialtire import TireModel, read_tire
 
-from ..channels import parse_columns
 from ..compare import compare, plot
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
-from ..recording import read_recording
 from ..replay import replay
-from .options import FILE, SentenceCommand, out, reading
+from .options import FILE, Reading, SentenceCommand, out, reading
 
 
 @click.command("compare", cls=SentenceCommand)
@@ -25,13 +23,11 @@ from .options import FILE, SentenceCommand, out, reading
 )
 @out("out")
 @reading
-def command(
-    recording: Path, fmu: Path | None, tire: Path | None, out: Path, columns: str | None, radius: str | None
-) -> None:
+def command(recording: Path, fmu: Path | None, tire: Path | None, out: Path, reading: Reading) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
     if fmu is not None and tire is not None:
         raise TirelabError("--fmu and --tire both name a tire; give one of them")
-    recorded = read_recording(recording, columns=parse_columns(columns) if columns else None, radius=radius)
+    recorded = reading(recording)
     for note in recorded.notes:
         click.echo(f"note: {note}")
     with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:

@@ -11,7 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tirelab.formats.layout import DECIMAL_COMMA, MAYBE_THOUSANDS, Layout
-from tirelab.formats.table import BLANK_WORDS, FloatArray, RecordingError, Wanted, not_a_number, quoted
+from tirelab.formats.table import (
+    BLANK_WORDS,
+    FloatArray,
+    RecordingError,
+    Wanted,
+    is_comment,
+    not_a_number,
+    quoted,
+)
 from tirelab.units import FLAT_WORDS
 
 LONGEST_LINE = 1_048_576
@@ -56,7 +64,7 @@ class RowReader:
         try:
             for row in rows:
                 start, line = line, first_line + rows.line_num
-                if row and row[0].lstrip().startswith("#"):
+                if row and is_comment(row[0]):
                     self.comments.append(start)
                     continue
                 if len(row) > expected:

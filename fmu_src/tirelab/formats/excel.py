@@ -55,11 +55,12 @@ class ExcelTable:
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
-        book = self.library.load_workbook(self.path, read_only=True, data_only=True)
-        try:
-            yield book
-        finally:
-            book.close()
+        with self.path.open("rb") as stream:
+            book = self.library.load_workbook(stream, read_only=True, data_only=True)
+            try:
+                yield book
+            finally:
+                book.close()
 
     def bytes_needed(self, columns: int) -> int:
         """The rows of a full sheet."""

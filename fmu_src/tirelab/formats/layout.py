@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tirelab.formats.table import BLANK_WORDS, Header, RecordingError, quoted
+from tirelab.formats.table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
 from tirelab.units import QUANTITIES, measures, split_header
 
 HEAD = 65_536
@@ -64,7 +64,7 @@ def find_layout(path: Path) -> Layout:
     try:
         header = next(rows)
         data_line = rows.line_num
-        body = [row for row in rows if row and not row[0].startswith("#")]
+        body = [row for row in rows if row and not is_comment(row[0])]
     except csv.Error as error:
         raise RecordingError(
             f"{path.name}, row {start + 1}: {error}; mend the quotes of the header"
@@ -74,8 +74,13 @@ def find_layout(path: Path) -> Layout:
     cells = [cell for row in (header, *body) for cell in row]
     decimal_comma = separator != "," and any(map(_is_decimal_comma, cells))
     if _is_numeric(header):
-        notes = (*notes, "the file has no header row: its columns are told by number")
-        headers = tuple(Header(f"#{i + 1}", None, f"#{i + 1}") for i in range(len(header)))
+        names = _commented_names(lines[:start], separator)
+        if len(names) == len(header):
+            notes = (*notes, f"column names taken from the comment in row {start}")
+        else:
+            names = [""] * len(header)
+            notes = (*notes, "the file has no header row: its columns are told by number")
+        headers = tuple(_header(cell, number) for number, cell in enumerate(names, 1))
         return Layout(encoding, separator, headers, start, decimal_comma, bytes_per_row, plain, notes)
     headers = tuple(_header(cell, number) for number, cell in enumerate(header, 1))
     if body and _is_units(body[0], len(header)):
@@ -119,11 +124,10 @@ def _whole_lines(path: Path, raw: bytes, encoding: str) -> list[str]:
 def _preamble(lines: Sequence[str]) -> tuple[int, str | None]:
     separator = None
     for number, line in enumerate(lines):
-        text = line.strip(" \r\n")
-        declared = re.fullmatch(r"sep=([\t;,])", text)
+        declared = re.fullmatch(r"sep=([\t;,])", line.strip("\r\n"))
         if declared:
             separator = declared[1]
-        elif text and not text.startswith("#"):
+        elif line.strip() and not is_comment(line):
             return number, separator
     return len(lines), separator
 
@@ -153,6 +157,14 @@ def _separator(path: Path, lines: Sequence[str]) -> str:
     return next((mark for agreed, _, mark in likely if agreed), max(likely, key=lambda found: found[1])[2])
 
 
+def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
+    """The cells of a comment right above the numbers, where some programs put the header."""
+    if not preamble or not is_comment(preamble[-1]):
+        return []
+    text = preamble[-1].strip().lstrip("# ")
+    return next(csv.reader([text], delimiter=separator), [])
+
+
 def _is_numeric(cells: Sequence[str]) -> bool:
     values = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS]
     return bool(values) and all(_reads_as_number(cell) for cell in values)
@@ -178,7 +190,9 @@ def _is_units(cells: Sequence[str], columns: int) -> bool:
 
 
 def _bare_unit(cell: str) -> str:
-    return cell.strip(" []()-")
+    text = cell.strip()
+    bare = text[1:-1].strip() if text[:1] + text[-1:] in ("[]", "()") else text
+    return bare.strip("-")
 
 
 def _header(cell: str, number: int) -> Header:

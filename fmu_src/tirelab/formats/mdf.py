@@ -1,5 +1,6 @@
 """MDF4 files (ASAM), read with asammdf; units and the time axis come from the file."""
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +19,25 @@ from tirelab.formats.table import (
     sample_place,
 )
 
+LEAST_READS = 20_000
+"""Reads allowed to any MDF file; a sound one takes a few for each of its blocks."""
+
+
+class _Stream(io.BufferedReader):
+    """A file whose blocks, once damaged, may lead in a circle: read as often as it has bytes, it gives up."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(io.FileIO(path))
+        self.name_told = path.name
+        self.reads_left = LEAST_READS + path.stat().st_size
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """The next bytes, while there is patience."""
+        self.reads_left -= 1
+        if self.reads_left < 0:
+            raise RecordingError(f"{self.name_told}: is damaged: its blocks lead in a circle; save it anew")
+        return super().read(size)
+
 
 class MdfTable:
     """The channels of an MDF file; the same name in two groups is told apart as "0/Force" and "1/Force"."""
@@ -30,7 +50,11 @@ class MdfTable:
         self.channels: list[tuple[int, int]] = [(-1, -1)]
         self.headers: list[Header] = [Header("time", "s", "time")]
         self.samples = 0
-        with told_by(path, "MDF"), path.open("rb") as file, self.library.MDF(file) as mdf:
+        with (
+            told_by(path, "MDF", "asammdf") as self.said,
+            _Stream(path) as file,
+            self.library.MDF(file) as mdf,
+        ):
             found: list[tuple[int, int, str, str]] = []
             for group, content in enumerate(mdf.groups):
                 for index, channel in enumerate(content.channels):
@@ -55,7 +79,11 @@ class MdfTable:
         """
         read: dict[int, FloatArray] = {}
         clock: FloatArray | None = None
-        with told_by(self.path, "MDF"), self.path.open("rb") as file, self.library.MDF(file) as mdf:
+        with (
+            told_by(self.path, "MDF", "asammdf"),
+            _Stream(self.path) as file,
+            self.library.MDF(file) as mdf,
+        ):
             for want in wanted:
                 if want.index == self.time_axis:
                     continue
@@ -78,4 +106,6 @@ class MdfTable:
                     )
         if clock is None:
             raise RecordingError(f"{self.path.name}: holds no channel but time; name channels with --columns")
-        return Columns([clock if w.index == self.time_axis else read[w.index] for w in wanted], sample_place)
+        columns = [clock if want.index == self.time_axis else read[want.index] for want in wanted]
+        notes = tuple(f"asammdf warns: {message}" for message in dict.fromkeys(self.said))
+        return Columns(columns, sample_place, notes)

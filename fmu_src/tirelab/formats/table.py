@@ -1,5 +1,6 @@
 """What every file format is turned into before anything is made of it: named columns of numbers."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,9 @@ FloatArray = NDArray[np.float64]
 
 BLANK_WORDS = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none"})
 """What a cell may hold, in lower case, to say that nothing was measured."""
+
+
+_EXCEL_ERRORS = ("#n/a", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!")
 
 
 class RecordingError(TirelabError):
@@ -64,6 +68,12 @@ class Table(Protocol):
         """The numbers of the columns wanted, in that order."""
 
 
+def is_comment(cell: str) -> bool:
+    """Whether a row that starts with this cell is a comment, and not with #N/A or another Excel error."""
+    start = cell.lstrip().lower()
+    return start.startswith("#") and not start.startswith(_EXCEL_ERRORS)
+
+
 def quoted(text: object) -> str:
     """A text of the file as it may stand in a message: on one line, between quotes, not too long."""
     shown = str(text)
@@ -83,9 +93,10 @@ def sample_place(index: int) -> str:
 
 def not_a_number(path: Path, place: str, header: str, value: object) -> RecordingError:
     """The error for text in a column of numbers."""
+    clock = re.search(r"\d:\d\d|\d{4}-\d\d-\d\d", str(value))
+    advice = "write times as numbers of seconds" if clock else "correct it, or delete the row"
     return RecordingError(
-        f"{path.name}, {place}, column {quoted(header)}: {quoted(value)} is not a number; "
-        "correct it, or delete the row"
+        f"{path.name}, {place}, column {quoted(header)}: {quoted(value)} is not a number; {advice}"
     )
 
 

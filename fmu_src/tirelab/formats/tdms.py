@@ -31,7 +31,8 @@ class TdmsTable:
         self.headers: list[Header] = []
         self.samples = 0
         waveform = False
-        with told_by(path, "TDMS"), self.library.TdmsFile.open(str(path)) as file:
+        with told_by(path, "TDMS", "nptdms") as self.said, path.open("rb") as stream:
+            file = self.library.TdmsFile.open(stream)
             found = [channel for group in file.groups() for channel in group.channels()]
             names = [channel.name for channel in found]
             for channel in found:
@@ -55,7 +56,8 @@ class TdmsTable:
         columns: dict[int, FloatArray] = {}
         clocks: dict[str, tuple[object, ...]] = {}
         time: FloatArray | None = None
-        with told_by(self.path, "TDMS"), self.library.TdmsFile.open(str(self.path)) as file:
+        with told_by(self.path, "TDMS", "nptdms"), self.path.open("rb") as stream:
+            file = self.library.TdmsFile.open(stream)
             for want in wanted:
                 place = self.channels[want.index]
                 if place is None:
@@ -66,7 +68,7 @@ class TdmsTable:
                 columns[want.index] = numbers(self.path, header, channel[:], want.channel)
                 if want.index != self.time_axis and "wf_increment" in channel.properties:
                     clocks[header.text] = _clock(channel)
-                    time = np.asarray(channel.time_track(), dtype=np.float64) if time is None else time
+                    time = _waveform_time(channel) if time is None else time
         of_one_length(self.path, headers, list(columns.values()))
         if self.time_axis in {want.index for want in wanted}:
             if time is None:
@@ -79,7 +81,7 @@ class TdmsTable:
                     f"{self.path.name}: {told} start or step differently in time; resample them to one time"
                 )
             columns[self.time_axis or 0] = time
-        return Columns([columns[want.index] for want in wanted], sample_place)
+        return Columns([columns[want.index] for want in wanted], sample_place, _notes(self.said))
 
 
 def _header(channel: Any, repeated: bool) -> Header:
@@ -88,6 +90,16 @@ def _header(channel: Any, repeated: bool) -> Header:
     stated = str(channel.properties.get("unit_string", "") or "").strip()
     dated = channel.dtype is not None and np.dtype(channel.dtype).kind == "M"
     return Header(name, "s" if dated else (stated or unit), text)
+
+
+def _waveform_time(channel: Any) -> FloatArray:
+    start = float(channel.properties.get("wf_start_offset", 0.0))
+    return start + float(channel.properties["wf_increment"]) * np.arange(len(channel), dtype=np.float64)
+
+
+def _notes(said: Sequence[str]) -> tuple[str, ...]:
+    # npTDMS reads a file that was cut short as far as it goes, and only logs it.
+    return tuple(f"npTDMS warns: {message}" for message in dict.fromkeys(said))
 
 
 def _clock(channel: Any) -> tuple[object, ...]:

@@ -1,0 +1,366 @@
+"""What the diagnosis says of recordings that others made: python examples/real_recordings.py [DIR]
+
+DIR (default ../shared/recordings/real beside this repository) holds the folders below. The data are not part of this
+repository; they come from public ones:
+
+afm_creep_brain_gel/
+    github.com/AFM-analysis/afmformats, tests/data, commit b55004fa2a5a092c7ed64bba2971e75fe42b6075, and
+    example1_creep.txt at commit 85676d0271dec3df10c56a82aef9938bf97125b8; MIT, (c) 2019 Paul Mueller
+nanoindent_series_compliance_drift/
+    github.com/micromechanics/micromechanics, examples/Hysitron, commit d15824d929d9cb64c35aa70ecb182a20fe9c57bf;
+    MIT, (c) 2020 Steffen Brinckmann
+mr_damper_sine/
+    github.com/labcontrol-data/mr-damper, data, commit e42439f08b227bb08e9923ee2736bedf2f4fe59a
+    (Zenodo 10.5281/zenodo.4445334); MIT, (c) 2021 Labcontrol
+pneumatic_cylinder_pressure_friction/
+    github.com/EvaZillen/3D-printed-pneumatic-actuator, results_pneumatic-actuator/data/friction, commit
+    6e0bcb4633bd53b2a8544cdbd497c4c06539afc7; CC0, E. Zillen, H. Vallery, G. Smit
+
+None of them is a tire. A sphere pressed into tissue follows the tire's own law with B = 1.5; the indenter's does with
+B = 2. Their lengths and forces are multiplied up to those of a tire, time is left as it is, and every figure is printed
+in the unit of its recording. The damper and the piston have next to no stiffness, and the tool looks for what departs
+from a law that has one: a spring K of our own is laid beside them, K x added to the force recorded and K to the law
+believed. That is exact and hides nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
+from numpy.typing import NDArray
+from radialtire import PowerLaw, TireModel
+from tirelab.diagnose import diagnose
+from tirelab.recording import Recording, read_recording
+from tirelab.simulate import simulate
+from tirelab.verdict import Verdict
+
+FloatArray = NDArray[np.float64]
+
+HERE = Path(__file__).resolve().parents[1]
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Effects that these recordings cannot show for certain, and why."""
+
+    names: tuple[str, ...]
+    why: str
+
+    def told(self, verdict: Verdict) -> str:
+        """Whether the tool claims one of them in every explanation that it offers."""
+        sets = [set(verdict.names), *(set(rival.names) for rival in verdict.rivals)]
+        claimed = [name for name in self.names if all(name in names for names in sets)]
+        if claimed:
+            return f"CLAIMS {' and '.join(claimed)}, though {self.why}".replace("_", " ")
+        return f"does not claim {' or '.join(self.names)}: {self.why}".replace("_", " ")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found in one recording: RMSE on `unseen` samples in `unit`, before and after the correction."""
+
+    title: str
+    believed: str
+    verdict: Verdict
+    unseen: str
+    before: float
+    after: float
+    noise: float
+    unit: str
+    evidence: tuple[str, ...]
+    refusals: tuple[Refusal, ...] = ()
+
+    def told(self) -> str:
+        """The finding in words."""
+        v = self.verdict
+        found = ", ".join(v.names) or "nothing is missing"
+        rivals = "; or ".join(" + ".join(rival.names) or "nothing" for rival in v.rivals)
+        lines = [
+            f"believed   {self.believed}",
+            f"found      {found} (confidence {100 * v.confidence:.0f} %)".replace("_", " "),
+            *([f"           could also be {rivals}".replace("_", " ")] if rivals else []),
+            *([f"           unknown depends on {', '.join(v.unexplained_by)}"] if v.unexplained else []),
+            f"RMSE       {self.before:.3g} -> {self.after:.3g} {self.unit} on {self.unseen}; "
+            f"noise {self.noise:.2g} {self.unit}",
+            *(f"evidence   {line}" for line in self.evidence),
+            *(f"the tool   {refusal.told(v)}" for refusal in self.refusals),
+        ]
+        wrapped = (
+            textwrap.fill(line, 110, initial_indent="  ", subsequent_indent=13 * " ") for line in lines
+        )
+        return "\n".join([self.title, *wrapped])
+
+
+def part(recording: Recording, samples: slice) -> Recording:
+    """Some samples of a recording on the flat."""
+    return recorded(
+        recording.name, recording.time[samples], recording.deflection[samples], recording.force[samples]
+    )
+
+
+def believed_law(coefficient: float, exponent: float) -> TireModel:
+    """A law F = A x^B with A [N/cm^B] whose tested range is not known."""
+    return TireModel(PowerLaw(coefficient, exponent), tested_range=None)
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def errors(verdict: Verdict, tire: TireModel, whole: Recording, unseen: slice) -> tuple[float, float]:
+    """RMSE [N] of the believed and of the corrected tire on some samples of a recording, simulated from its start."""
+    before, after = (rms((whole.force - simulate(t, whole))[unseen]) for t in (tire, verdict.tire))
+    return before, after
+
+
+def brain(folder: Path) -> Finding:
+    """Approach, hold and the first half of the withdrawal fitted; the rest of the withdrawal is not."""
+    found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
+    r, tire = found.recording, believed_law(found.coefficient, 1.5)
+    fitted = (found.turned + len(r)) // 2
+    verdict = diagnose([part(r, slice(0, fitted))], tire)
+    before, after = errors(verdict, tire, r, slice(fitted, None))
+    return Finding(
+        "Sphere in brain tissue (atomic force microscope)",
+        "Hertz's law fitted to the approach, B = 1.5",
+        verdict,
+        "the second half of the withdrawal",
+        before / PER_NANONEWTON,
+        after / PER_NANONEWTON,
+        verdict.fit.noise / PER_NANONEWTON,
+        "nN",
+        (f"held at constant force for 3 s, the indentation grows by {found.creep:.2f} um: it creeps",),
+        (Refusal(("pressure_leak",), "there is no pressure; a law that fades with time is relaxation here"),),
+    )
+
+
+def gel(folder: Path) -> Finding:
+    """One curve fitted, another of the same day and cantilever not."""
+    first = indentation(folder / "force-save-2021.06.30-13.48.08.425.txt")
+    other = indentation(folder / "example1_creep.txt")
+    tire = believed_law(first.coefficient, 1.5)
+    verdict = diagnose([first.recording], tire)
+    before, after = errors(verdict, tire, other.recording, slice(None))
+    return Finding(
+        "Sphere in a polymer gel (atomic force microscope)",
+        "Hertz's law fitted to the approach, B = 1.5",
+        verdict,
+        "another curve (example1_creep), whole",
+        before / PER_NANONEWTON,
+        after / PER_NANONEWTON,
+        verdict.fit.noise / PER_NANONEWTON,
+        "nN",
+        (
+            f"held at constant force for 3 s, the indentation grows by {first.creep:.2f} um in this curve and by "
+            f"{other.creep:.2f} um in the other",
+        ),
+    )
+
+
+PER_NANOMETRE, PER_MICRONEWTON = 5e-5, 4e-2
+"""The indenter as a tire: 1 nm is 0.05 mm, 1 uN is 0.04 N; its compliance of 0.00664 nm/uN is then 8.3e-6 m/N."""
+
+
+def indenter(folder: Path) -> Finding:
+    """Loading with every other sample fitted by the exponent it seems to have; the samples between are not."""
+    columns, compliance = read_hysitron(folder / "Exp-50mN_0000.hld")
+    force, depth, time = columns["Force_µN"], columns["Disp_nm"], columns["Time_s"]
+    peak = int(np.argmax(force))
+    start = int(np.flatnonzero(force[:peak] < 300.0)[-1])
+    loading = slice(start, peak)
+    raw = power_law_fit(depth[loading] - depth[start], force[loading])
+    own = (depth - compliance * force)[loading]
+    corrected = power_law_fit(own - own[0], force[loading])
+    a, b, zero = raw
+    x = (depth[loading] - depth[start] - zero) * PER_NANOMETRE
+    tire = believed_law(a * PER_MICRONEWTON / (100.0 * PER_NANOMETRE) ** b, b)
+    r = recorded("loading", time[loading], x, force[loading] * PER_MICRONEWTON)
+    verdict = diagnose([part(r, slice(0, None, 2))], tire)
+    before, after = errors(verdict, tire, r, slice(1, None, 2))
+    return Finding(
+        "Pyramid in an unnamed specimen (nanoindenter), loading to 50 mN",
+        f"the power law that fits the loading, B = {b:.2f}: {100 * before / r.force.max():.2f} % off",
+        verdict,
+        "the samples between those fitted",
+        before / PER_MICRONEWTON,
+        after / PER_MICRONEWTON,
+        verdict.fit.noise / PER_MICRONEWTON,
+        "uN",
+        (
+            f"the file's header gives the machine {compliance:.5f} nm/uN, {compliance * force[peak]:.0f} nm of the "
+            f"{depth[peak]:.0f} nm at the peak",
+            f"with that taken off, the exponent is {corrected[1]:.2f}; theory has 2 for a pyramid",
+        ),
+        (
+            Refusal(
+                ("series_compliance",),
+                "a power law of another exponent follows the loading as well, so no RMSE shows it; the header does",
+            ),
+        ),
+    )
+
+
+DAMPER_SPRING = 1e5
+"""Stiffness laid beside the damper [N/m]: 2.5 kN at its full stroke, as a tire has."""
+
+
+def damper(folder: Path, name: str, *, preload_believed: bool) -> Finding:
+    """The first half of the strokes fitted, the second half not.
+
+    preload_believed: the law holds the straight line through the first half; else nothing but our own spring
+    """
+    columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
+    units = {"time": "s", "deflection": "mm", "force": "N"}
+    own = read_recording(folder / f"{name}.mat", columns=columns, units=units, radius="flat")
+    half = len(own) // 2
+    x = own.deflection - own.deflection.min() + 1e-4  # in contact throughout
+    slope, preload = np.polyfit(x[:half], own.force[:half], 1).tolist() if preload_believed else (0.0, 0.0)
+    stiffness = DAMPER_SPRING + slope
+    r = recorded(name, own.time, x + preload / stiffness, own.force + DAMPER_SPRING * x)
+    tire = believed_law(stiffness / 100.0, 1.0)
+    verdict = diagnose([part(r, slice(0, half))], tire)
+    before, after = errors(verdict, tire, r, slice(half, None))
+    still = int(np.flatnonzero(np.abs(np.diff(own.deflection)) > 1e-6)[0])
+    at_rest = own.force[:still].mean()
+    return Finding(
+        f"Magnetorheological damper ({name})",
+        f"a spring of {slope:.0f} N/m with a preload of {preload:.0f} N"
+        if preload_believed
+        else "no force at all",
+        verdict,
+        "the second half of the strokes",
+        before,
+        after,
+        verdict.fit.noise,
+        "N",
+        (
+            f"at rest before the first stroke it already presses with {at_rest:.0f} N: a preload",
+            f"in the middle of the stroke the ways in and out are {2 * half_loop(own, 0.45):.0f} N apart: a loop",
+        ),
+        tuple(
+            Refusal(
+                (name,), "with a linear law the zero of the force and that of the deflection are one preload"
+            )
+            for name in ("force_offset", "deflection_offset")
+            if not preload_believed
+        ),
+    )
+
+
+PISTON_LEVER = 0.02
+"""Deflection [m] at which the spring laid beside the piston carries the piston's mean force."""
+
+
+def piston(folder: Path, bar: int) -> Finding:
+    """The first half of the strokes fitted, the second half not; the mean force is believed, friction is left out."""
+    channels = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
+    units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
+
+    def read(p: int) -> Recording:
+        return read_recording(folder / f"O-ring_{p}bar.csv", columns=channels, units=units, radius="flat")
+
+    files = {p: read(p) for p in (1, 3, 7)}
+    own = files[bar]
+    half = len(own) // 2
+    mean = float(own.force[:half].mean())
+    spring = mean / PISTON_LEVER
+    x = own.deflection - own.deflection.min()
+    r = recorded(f"O-ring_{bar}bar", own.time, x + PISTON_LEVER, own.force + spring * x)
+    tire = believed_law(spring / 100.0, 1.0)
+    verdict = diagnose([part(r, slice(0, half))], tire)
+    before, after = errors(verdict, tire, r, slice(half, None))
+    alone, together = slope_per_bar([own]), slope_per_bar(list(files.values()))
+    loops = {p: half_loop(f, 0.15) for p, f in files.items()}
+    rate = 1e3 * smooth_rate(own)
+    speeds = [float(np.median(np.abs(rate[sign * rate > 3.0]))) for sign in (1.0, -1.0)]
+    return Finding(
+        f"Pneumatic piston at {bar} bar",
+        f"the mean force, {mean:.1f} N",
+        verdict,
+        "the second half of the strokes",
+        before,
+        after,
+        verdict.fit.noise,
+        "N",
+        (
+            "half the gap between the ways out and in is "
+            + ", ".join(f"{loop:.1f} N at {p} bar" for p, loop in loops.items())
+            + ": friction that grows with pressure",
+            f"the pressure measured swings with the stroke; read as the cause it has {alone:.0f} N/bar in this file, "
+            f"and {together:.1f} N/bar over all files: the swing does not make the loop",
+        ),
+        (
+            Refusal(
+                ("rate_independent_hysteresis", "viscous_damping"),
+                f"each way has one speed, {speeds[0]:.0f} and {speeds[1]:.0f} mm/s: friction looks like viscosity",
+            ),
+        ),
+    )
+
+
+def slope_per_bar(files: list[Recording]) -> float:
+    """Slope of force over pressure [N/bar] by least squares; with several files over their means."""
+    pairs = [(f.pressure, f.force) for f in files if f.pressure is not None]
+    if len(pairs) > 1:
+        pairs = [(np.array([p.mean() for p, _ in pairs]), np.array([f.mean() for _, f in pairs]))]
+    pressure, force = pairs[0]
+    return float(np.polyfit(pressure / 1e5, force, 1)[0])
+
+
+def half_loop(file: Recording, margin: float) -> float:
+    """Half the difference of the mean forces of the two ways [N], off the ends by a `margin` (part of the stroke)."""
+    rate = smooth_rate(file)
+    x = (file.deflection - file.deflection.min()) / np.ptp(file.deflection)
+    inside = (x > margin) & (x < 1.0 - margin)
+    ways = [file.force[inside & (sign * rate > 3e-3)].mean() for sign in (1.0, -1.0)]
+    return float(abs(ways[0] - ways[1]) / 2.0)
+
+
+def smooth_rate(file: Recording) -> FloatArray:
+    """Rate of the deflection [m/s], smoothed over 15 samples of a coarsely digitised gauge."""
+    return np.convolve(np.gradient(file.deflection, file.time), np.ones(15) / 15.0, "same")
+
+
+def findings(folder: Path) -> Iterator[Finding]:
+    """What is found in every recording of the folder."""
+    afm, indent, mr, air = (
+        folder / name
+        for name in (
+            "afm_creep_brain_gel",
+            "nanoindent_series_compliance_drift",
+            "mr_damper_sine",
+            "pneumatic_cylinder_pressure_friction",
+        )
+    )
+    cases: list[Callable[[], Finding]] = [lambda: brain(afm), lambda: gel(afm), lambda: indenter(indent)]
+    cases += [
+        lambda: damper(mr, "ensaio1", preload_believed=False),
+        lambda: damper(mr, "ensaio4a", preload_believed=True),
+    ]
+    cases += [lambda: piston(air, 1), lambda: piston(air, 7)]
+    return (case() for case in cases)
+
+
+def main() -> int:
+    """Print what is found in the recordings of the folder given."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE.parent / "shared" / "recordings" / "real"
+    if not folder.is_dir():
+        print(
+            f"{folder}: there is no such folder; get the recordings as told at the top of this file",
+            file=sys.stderr,
+        )
+        return 2
+    for finding in findings(folder):
+        print(finding.told(), end="\n\n", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,139 @@
+"""What a trial is: recordings, what was believed of the tire, and the sealed answer."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from concealed.bench import Bench
+from concealed.measurement import Instrument
+from concealed.motion import FINEST_STEP, FloatArray, Motion, even_grid, rounded
+from concealed.sizing import Size
+from concealed.tires import PowerTire
+
+Parameters = Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Record:
+    """One recording as the rig wrote it down.
+
+    time [s], deflection [m], radius [m] (convex > 0, concave < 0, flat = inf), force [N]; of one shape.
+    """
+
+    name: str
+    excitation: str
+    time: FloatArray
+    deflection: FloatArray
+    radius: FloatArray
+    force: FloatArray
+
+
+@dataclass(frozen=True)
+class FileTruth:
+    """What is known of one recording: samples, excitation, RMSE [N] of the believed tire and of the truth.
+
+    The floor is what the true tire with all its effects would still miss when fed with the recorded
+    deflection.
+    """
+
+    samples: int
+    excitation: str
+    baseline_rmse: float
+    floor_rmse: float
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is hidden in a trial.
+
+    effects: parameters of every named effect (`recalibration` included); hidden: those of an effect that no
+    catalogue names; right: the sets of names that count as right, the true one first; margins: by how much
+    log-likelihood each other right set falls short; sizes over the noise; where: places of confined effects;
+    noise [N]; files: truth by file name; rule: why sets beyond the exact one count as right, or ""; tire and
+    instrument: their constants.
+    """
+
+    kind: str
+    effects: Mapping[str, Parameters]
+    hidden: Mapping[str, Parameters]
+    right: tuple[tuple[str, ...], ...]
+    margins: Mapping[str, float]
+    rule: str
+    sizes: Mapping[str, Size]
+    where: tuple[Parameters, ...]
+    noise: float
+    files: Mapping[str, FileTruth]
+    tire: Parameters
+    instrument: Parameters
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Recordings to diagnose, recordings to show the improvement on, and the answer.
+
+    believed: the tire that the user believes in; believed_source: "hull1996" where it is the article's,
+    "table" where A and B were identified surface by surface. bench and instrument can make further
+    recordings.
+    """
+
+    seed: int
+    train: tuple[Record, ...]
+    heldout: tuple[Record, ...]
+    answer: Answer
+    believed: PowerTire
+    believed_source: str
+    noise: float
+    bench: Bench
+    instrument: Instrument
+
+
+def recorded(
+    bench: Bench, instrument: Instrument, motion: Motion, name: str, rng: np.random.Generator
+) -> tuple[Record, float]:
+    """A recording of a motion, and the RMSE [N] that the truth itself would have on it."""
+    clean = bench.force(motion)
+    time, true = motion.recorded(motion.time), motion.recorded(motion.deflection)
+    radius = motion.recorded(motion.radius)
+    shown = true + instrument.gauge * rng.standard_normal(true.size)
+    force = instrument.converted(
+        motion.recorded(clean) + instrument.force_error(rng, time.size, motion.sample_step)
+    )
+    ones = np.ones_like(true)
+    misled = bench.tire.force(shown, radius, ones) - bench.tire.force(true, radius, ones)
+    floor = float(np.sqrt(np.mean((force - motion.recorded(clean) - misled) ** 2)))
+    return Record(name, motion.name, time, shown, radius, force), floor
+
+
+def rerun(
+    trial: Trial,
+    time: FloatArray,
+    deflection: FloatArray,
+    radius: FloatArray,
+    *,
+    seed: int,
+    name: str = "test",
+) -> Record:
+    """Run another test on the rig of a trial, for instance one that is to tell rivals apart.
+
+    time [s] on an even grid, deflection [m], radius [m] (convex > 0, concave < 0, flat = inf); one shape
+    (n,), n >= 8. Between the samples the actuator goes straight on; it rounds corners over one step.
+    Errors: ValueError for a grid that is not even, or too few samples.
+    """
+    if time.size < 8:
+        raise ValueError(f"a test needs at least 8 samples, this one has {time.size}")
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    if step <= 0.0 or float(np.max(np.abs(steps - step))) > 1e-3 * step:
+        worst = int(np.argmax(np.abs(steps - step)))
+        raise ValueError(
+            f"the rig drives an even time grid, but sample {worst + 1} comes {steps[worst]:g} s after "
+            f"the one before and the others {step:g} s: resample the test"
+        )
+    stride = max(1, int(np.ceil(step / FINEST_STEP - 1e-9)))
+    fine = time[0] + even_grid((time.size - 1) * stride + 1, step / stride)
+    mounted = radius[np.minimum((np.arange(fine.size) + stride - 1) // stride, time.size - 1)]
+    path = rounded(np.interp(fine, time, deflection), step / stride, step)
+    motion = Motion("test", fine, path, mounted, stride)
+    rng = np.random.default_rng(np.random.SeedSequence([trial.seed, seed]))
+    return recorded(trial.bench, trial.instrument, motion, name, rng)[0]

@@ -1,0 +1,348 @@
+"""The one way through a diagnosis: recordings and a believed tire in, a verdict out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+from radialtire import TireModel
+
+from .errors import TirelabError
+from .explain.background import background
+from .explain.beyond import AGNOSTIC_FAMILIES
+from .explain.columns import build, layout_of, lifted_from_force, measure
+from .explain.evidence import explain
+from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family
+from .explain.motion import FloatArray
+from .explain.place import Point
+from .explain.scene import Scene, scene_of
+from .explain.search import Settled, search
+from .learn import learned
+from .locate import locate
+from .noise import Noise
+from .refit import Case, Refit, refit
+from .separate import Limits, SeparatingTest, separate
+from .simulate import simulate
+from .tracking_time import likeliest_tracking
+from .verdict import (
+    BEYOND,
+    UNKNOWN,
+    Estimate,
+    Evidence,
+    Fit,
+    NamedEffect,
+    Rival,
+    Verdict,
+    confidence_of,
+    named,
+    rivals_of,
+    summarise,
+)
+
+CATALOGUE_NAMES: tuple[str, ...] = ("recalibration", *(f.name for f in CATALOGUE_FAMILIES))
+"""Every effect that a verdict may name."""
+
+FEWEST_SAMPLES = 100
+"""Fewer samples cannot tell fifteen effects and the noise apart."""
+
+FEWEST_STEPS = 8
+"""Fewest distinct deflections: a cycle seen in fewer has no shape."""
+
+FORM_ERROR = 0.007
+LEAST_ERROR = 0.05
+"""Errors of form that every family may have: part of its effect's size, and of the noise (see `coarsening`)."""
+
+
+class PoorRecording(TirelabError):
+    """The recordings are too short or too poor to say anything."""
+
+
+class Recorded(Protocol):
+    """What is diagnosed: name, and arrays of one length in SI (see `tirelab.recording.Recording`)."""
+
+    @property
+    def name(self) -> str:
+        """What the recording is called."""
+        ...
+
+    @property
+    def time(self) -> FloatArray:
+        """[s], rising."""
+        ...
+
+    @property
+    def deflection(self) -> FloatArray:
+        """[m], compressed > 0."""
+        ...
+
+    @property
+    def surface_radius(self) -> FloatArray:
+        """[m], convex > 0, concave < 0, flat infinite."""
+        ...
+
+    @property
+    def force(self) -> FloatArray:
+        """[N], compressive > 0."""
+        ...
+
+
+def diagnose(
+    recordings: Sequence[Recorded],
+    tire: TireModel = TireModel(),  # noqa: B008
+    *,
+    held_out: Sequence[Recorded] = (),
+    catalogue: Sequence[str] = CATALOGUE_NAMES,
+    limits: Limits | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Verdict:
+    """Return what the believed `tire` leaves out of the recordings.
+
+    held_out: recordings on which the correction is only judged; catalogue: names of the effects that may be found
+    (CATALOGUE_NAMES; without one of them what it does is something unknown); limits: of the rig that would drive a
+    further test; progress: called with a sentence now and then
+
+    Raises PoorRecording where the recordings are too short or too poor, ValueError for an unknown name in `catalogue`.
+    """
+    unknown = set(catalogue) - set(CATALOGUE_NAMES)
+    if unknown:
+        raise ValueError(
+            f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}"
+        )
+    _check(recordings)
+    tell = progress or (lambda sentence: None)
+    scene = scene_of([(r.time, r.deflection, r.surface_radius, r.force) for r in recordings], tire)
+    families = _families(catalogue)
+    zero = Point(np.zeros((len(scene.radii), 4)), lifted=lifted_from_force(scene))
+    tell("finding the noise")
+    noises = background(scene, families, zero)
+    _check_signal(scene, noises)
+    found = search(scene, noises, families, coarsening(scene, noises, families, zero), tell)
+    best = found.settled[0]
+
+    tell("fitting the parameters")
+    believed = replace(tire, tracking_time=likeliest_tracking(recordings).tracking_time)
+    cases = [
+        Case(recording, recording.force, noise, record.rows, np.zeros(record.rows.size))
+        for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
+    ]
+    fitted = _refit(best, believed, cases, scene, families)
+    before = [r.force - simulate(tire, r) for r in recordings]
+    beyond = tuple(n for n in best.names if n in BEYOND)
+    corrections = learned(beyond, scene, fitted.residuals, noises)
+    fit = _figures(before, fitted, noises, recordings, held_out, tire, believed)
+    effects = _effects(best, fitted)
+    rivals = tuple(r for r in rivals_of(found.settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
+    confidence = confidence_of(found.settled) / (1.0 + sum(r.log_odds >= 6.0 for r in rivals))
+    test = None
+    if rivals:
+        tell("looking for the test that would tell")
+        test = _separating(
+            best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits
+        )
+    return Verdict(
+        effects,
+        confidence,
+        rivals,
+        bool(beyond),
+        beyond,
+        corrections,
+        summarise(effects, rivals, beyond, confidence, fit),
+        locate(scene, before, noises),
+        fit,
+        fitted.tire,
+        _table(found.settled),
+        test,
+        found.compared,
+        fitted.evaluations,
+    )
+
+
+def coarsening(scene: Scene, noises: Sequence[Noise], families: Sequence[Family], point: Point) -> float:
+    """Return the power of the coarsened evidence: n samples count as 1 / (1/n + 1/c).
+
+    c = 6 / d^2, where d is the root mean square error in units of the noise that a family's form may have: with it a
+    wrong second effect gains less than three in log evidence.
+    """
+    built = build(scene, point, families)
+    layout = layout_of(built, families)
+    p = measure(built, noises, families, point)
+    law = [layout.whole(f.name) for f in families if f.name in ("recalibration", "shape")]
+    left = min(explain(p, law, 1.0).chi_square, p.power / p.samples)
+    size = np.sqrt(max(left - 1.0, 0.0))
+    worth = 6.0 / (LEAST_ERROR**2 + (FORM_ERROR * size) ** 2)
+    return float(worth / (worth + p.samples))
+
+
+def _families(catalogue: Sequence[str]) -> tuple[Family, ...]:
+    known = [f for f in CATALOGUE_FAMILIES if f.name in catalogue]
+    law = LAW_FAMILIES if "recalibration" in catalogue else ()
+    return (*law, *known, *AGNOSTIC_FAMILIES)
+
+
+def _check(recordings: Sequence[Recorded]) -> None:
+    if not recordings:
+        raise PoorRecording("no recording was given; name at least one to diagnose")
+    for r in recordings:
+        where = f"recording {r.name}"
+        if r.time.size < FEWEST_SAMPLES:
+            raise PoorRecording(
+                f"{where} has {r.time.size} samples; at least {FEWEST_SAMPLES} are needed to tell anything"
+            )
+        if np.ptp(r.deflection) <= 0.0:
+            raise PoorRecording(f"{where} holds one constant deflection; record at least one full cycle")
+        if np.ptp(r.force) <= 0.0:
+            raise PoorRecording(f"{where} holds one constant force; check that the load cell was connected")
+        if float(r.deflection.max()) <= 0.0:
+            raise PoorRecording(f"{where} never loads the tire: its deflection stays at or below 0 m")
+        distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
+        if distinct < FEWEST_STEPS:
+            raise PoorRecording(
+                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points"
+            )
+
+
+def _check_signal(scene: Scene, noises: Sequence[Noise]) -> None:
+    for number, (record, noise) in enumerate(zip(scene.records, noises, strict=True), start=1):
+        motion = record.motion
+        travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
+        if motion.noise > 0.3 * float(np.std(motion.deflection)):
+            raise PoorRecording(
+                f"the deflection of recording {number} is noise: no motion of the tire can be seen in it"
+            )
+        if travel > 0.7 * float(np.std(motion.deflection)):
+            raise PoorRecording(
+                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points"
+            )
+        related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
+        if not np.isfinite(related) or abs(related) < 0.2 or noise.level > 0.9 * float(np.std(record.force)):
+            raise PoorRecording(
+                f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "
+                "check channels and units"
+            )
+
+
+def _parts(settled: Settled, scene: Scene, families: Sequence[Family]) -> dict[str, list[FloatArray]]:
+    """Return what each family of a settled set adds [N], for each recording."""
+    by_name = {f.name: f for f in families}
+    built = build(scene, settled.point, [by_name[n] for n in settled.names])
+    parts: dict[str, list[FloatArray]] = {}
+    for name, group, values in zip(
+        settled.names, settled.candidate.groups, settled.candidate.explained.coefficients, strict=True
+    ):
+        own = group - settled.layout.start[name]
+        parts[name] = [b.columns[name][:, own] @ values for b in built]
+    return parts
+
+
+def _refit(
+    settled: Settled, believed: TireModel, cases: Sequence[Case], scene: Scene, families: Sequence[Family]
+) -> Refit:
+    names = [n for n in settled.names if n not in BEYOND and n != "shape"]
+    parts = _parts(settled, scene, families)
+    beyond = [n for n in settled.names if n in BEYOND]
+    # What is beyond the catalogue is taken out first: no effect is bent to follow it.
+    cleared = [
+        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
+    ]
+    middle = np.log(50.0 * scene.deepest)
+    shape = settled.point.shape
+    law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
+    return refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
+
+
+def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
+    sizes = dict(zip(settled.names, settled.candidate.explained.size, strict=True))
+    powers = {n: sizes[n] ** 2 for n in settled.names}
+    whole = sum(powers.values()) or 1.0
+    found = []
+    for name in named(settled):
+        if name == UNKNOWN:
+            continue
+        owners = ("law", "elastic_shape") if name == "recalibration" else (name,)
+        parameters = {
+            k.label: Estimate(float(v), float(d), k.unit)
+            for k, v, d in zip(fitted.knobs, fitted.values, fitted.deviations, strict=True)
+            if k.owner in owners
+        }
+        power = powers[name] + (powers.get("shape", 0.0) if name == "recalibration" else 0.0)
+        found.append(NamedEffect(name, parameters, float(power / whole)))
+    return tuple(sorted(found, key=lambda e: -e.share))
+
+
+def _rmse(parts: Sequence[FloatArray]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def _figures(
+    before: Sequence[FloatArray],
+    fitted: Refit,
+    noises: Sequence[Noise],
+    recordings: Sequence[Recorded],
+    held_out: Sequence[Recorded],
+    tire: TireModel,
+    believed: TireModel,
+) -> Fit:
+    sizes = np.array([b.size for b in before], dtype=float)
+    level = float(np.sqrt(np.sum(sizes * np.array([n.level for n in noises]) ** 2) / sizes.sum()))
+    kept_before = kept_after = float("nan")
+    if held_out:
+        kept_before = _rmse([r.force - simulate(tire, r) for r in held_out])
+        kept_after = _rmse([r.force - simulate(fitted.tire, r) for r in held_out])
+    return Fit(level, _rmse(before), _rmse(fitted.residuals), kept_before, kept_after)
+
+
+def _separating(
+    best: Settled,
+    fitted: Refit,
+    rivals: Sequence[Rival],
+    settled: Sequence[Settled],
+    believed: TireModel,
+    cases: Sequence[Case],
+    scene: Scene,
+    families: Sequence[Family],
+    noise: float,
+    limits: Limits | None,
+) -> SeparatingTest | None:
+    for rival in rivals:
+        if UNKNOWN in rival.names:
+            continue
+        other = next((s for s in settled if named(s) == rival.names), None)
+        if other is None:
+            continue
+        second = _refit(other, believed, cases, scene, families)
+        reach = limits or Limits(
+            deepest=scene.deepest,
+            fastest=max(0.1, 2.0 * max(float(np.abs(r.motion.rate).max()) for r in scene.records)),
+        )
+        return separate(
+            (fitted.tire, named(best)),
+            (second.tire, rival.names),
+            believed,
+            second.knobs,
+            second.values,
+            scene.radii,
+            noise,
+            reach,
+        )
+    return None
+
+
+def _table(settled: Sequence[Settled]) -> tuple[Evidence, ...]:
+    rows = []
+    for s in settled:
+        kept = [i for i, n in enumerate(s.names) if n != "shape"]
+        rows.append(
+            Evidence(
+                tuple(s.names[i] for i in kept),
+                s.log_evidence - settled[0].log_evidence,
+                float(s.candidate.explained.chi_square),
+                tuple(s.candidate.explained.size[i] for i in kept),
+                tuple(s.candidate.explained.unique[i] for i in kept),
+            )
+        )
+    return tuple(rows)
+
+
+__all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose"]

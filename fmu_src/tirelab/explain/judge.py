@@ -1,0 +1,190 @@
+"""Whether a set of explanations is believed: its evidence with the price of each, its signs, and what is material."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .beyond import AGNOSTIC_FAMILIES
+from .columns import Layout
+from .evidence import Explained, Products, explain
+from .families import STATIC, Family
+from .motion import IndexArray
+
+EFFECT_PRIOR = -4.0
+"""Log prior odds of one more effect: one in fifty, the choice among fifteen and one in three that there is one more."""
+
+LAW_PRIOR = -1.0
+"""Log prior odds that the believed law is another tire's: the article's own is wrong by up to 13.5 %."""
+
+AGNOSTIC_PRIOR = -8.0
+"""Log prior odds that something beyond the catalogue acts in one given coordinate: one in three thousand."""
+
+HIDDEN_PRIOR = -7.0
+"""Log prior odds of an effect of the deflection alone beside a law whose shape is free: it explains what that can."""
+
+MATERIAL = 0.1
+"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by half a
+percent: it is not named, whatever its significance."""
+
+FORM_ERROR = 0.03
+"""What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
+
+MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time": 0.5, "time, added": 0.6}
+"""The same for what is beyond the catalogue: slow noise and hum of the amplifier, up to half the noise, are noise."""
+
+MATERIAL_SLOW = {
+    "pressure_leak": 0.25,
+    "warm_up": 0.25,
+    "force_drift": 0.25,
+    "force_offset": 0.15,
+    "recalibration": 0.15,
+}
+"""The same for what changes slowly or not at all with the motion, as slow noise does."""
+
+UNKNOWN_FORM = 0.08
+"""The same for what is beyond the catalogue, whose form is anybody's."""
+
+FEW_VARIANTS = 8
+"""Up to so many variants of a family are compared as wholes, more by what their leading columns explain."""
+
+
+SetName = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A set of families with its evidence; groups are the columns in use."""
+
+    names: SetName
+    log_evidence: float
+    groups: tuple[IndexArray, ...]
+    explained: Explained
+
+
+def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate:
+    """Return the candidate of the families `names`: best variants, evidence with priors, signs checked."""
+    choice = {n: layout.variants[n][0] for n in names}
+    many = [n for n in names if len(layout.variants[n]) > 1]
+    static = [n for n in names if n in STATIC]
+    prior = sum(_prior(layout.families[n], "recalibration" in names or n in static[1:]) for n in names)
+    for turn in range(2 if len(many) > 1 else 1):
+        for n in many:
+            others = [choice[m] for m in names if m != n and (turn or m not in many[many.index(n) :])]
+            choice[n] = _best_variant(p, layout, others, n)
+    prior -= sum(float(np.log(len(layout.variants[n]))) for n in many)
+    groups = tuple(choice[n] for n in names)
+    explained = explain(p, groups, zeta)
+    if "force_lag" in names and not _lag_is_one(names, groups, explained):
+        number = names.index("force_lag")
+        groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
+        explained = explain(p, groups, zeta)
+    evidence = explained.log_evidence + prior
+    immaterial = _negligible(names, explained)
+    if immaterial or not np.isfinite(evidence) or not _signs_hold(p, layout, names, groups, explained):
+        evidence = -np.inf
+    return Candidate(names, evidence, groups, explained)
+
+
+def _lag_is_one(names: SetName, groups: Sequence[IndexArray], explained: Explained) -> bool:
+    """Return whether slope and bend of the force belong to one lag: a bend of at most about half its square."""
+    number = names.index("force_lag")
+    if groups[number].size < 2:
+        return True
+    slope, bend = explained.coefficients[number]
+    return bool(abs(bend) <= 0.6 * slope**2)
+
+
+def _negligible(names: SetName, explained: Explained) -> list[str]:
+    """Return the families of a set whose own part is not material, or less than the form of another one may err."""
+    found = []
+    sizes = dict(zip(names, explained.size, strict=True))
+    own = dict(zip(names, explained.unique, strict=True))
+    of_law = [i for i, n in enumerate(names) if n in ("recalibration", "shape")]
+    law = explained.together(of_law) if of_law else 0.0
+    for name in names:
+        if name == "shape":
+            continue
+        doubt = max(
+            (
+                (UNKNOWN_FORM if n in MATERIAL_BEYOND else FORM_ERROR) * size
+                for n, size in sizes.items()
+                if n not in (name, "shape", "recalibration")
+            ),
+            default=0.0,
+        )
+        unique = law if name == "recalibration" else own[name]
+        if unique < max(MATERIAL_BEYOND.get(name, MATERIAL_SLOW.get(name, MATERIAL)), doubt):
+            found.append(name)
+    return found
+
+
+def _prior(family: Family, recalibrated: bool) -> float:
+    if family.name == "shape":
+        return 0.0
+    if family.name == "recalibration":
+        return LAW_PRIOR
+    if family.agnostic:
+        return AGNOSTIC_PRIOR
+    return HIDDEN_PRIOR if recalibrated and family.name in STATIC else EFFECT_PRIOR
+
+
+def _best_variant(p: Products, layout: Layout, others: Sequence[IndexArray], name: str) -> IndexArray:
+    """Return the variant whose leading column explains most on top of the others."""
+    variants = layout.variants[name]
+    if len(variants) <= FEW_VARIANTS:
+        return max(variants, key=lambda v: explain(p, [*others, v], 1.0).log_evidence)
+    leads = np.array([v[0] for v in variants])
+    moment, square = p.moment[leads], np.diag(p.gram)[leads]
+    if others:
+        fixed = np.concatenate(others)
+        inner = np.linalg.inv(p.gram[np.ix_(fixed, fixed)] + 1e-5 * p.samples * np.eye(fixed.size))
+        cross = p.gram[np.ix_(leads, fixed)]
+        moment = moment - cross @ (inner @ p.moment[fixed])
+        square = square - np.einsum("ij,jk,ik->i", cross, inner, cross)
+    gain = moment**2 / np.maximum(square, 1e-5 * p.samples)
+    sign = layout.families[name].sign
+    if sign:
+        gain = np.where(sign * moment > 0.0, gain, 0.0)
+    return variants[int(np.argmax(gain))]
+
+
+def _signs_hold(
+    p: Products, layout: Layout, names: SetName, groups: Sequence[IndexArray], explained: Explained
+) -> bool:
+    for name, group, coefficients in zip(names, groups, explained.coefficients, strict=True):
+        sign = layout.families[name].sign
+        if not sign:
+            continue
+        lead = (
+            group
+            if name
+            in (
+                "rate_independent_hysteresis",
+                "viscoelastic_relaxation",
+                "viscous_damping",
+                "pressure_leak",
+                "warm_up",
+                "mullins_softening",
+            )
+            else group[:1]
+        )
+        scale = np.where(np.isfinite(p.scale[group]), p.scale[group], 0.0)
+        projection = float(np.sum(p.gram[np.ix_(lead, group)] @ (coefficients * scale)))
+        if sign * projection < 0.0:
+            return False
+    return True
+
+
+def law_whole(names: Iterable[str]) -> SetName:
+    """Return the set in order, with the law's shape beside its coefficients and never alone."""
+    distinct = set(names) - {"shape"}
+    return tuple(sorted(distinct | {"shape"} if "recalibration" in distinct else distinct))
+
+
+def material(candidate: Candidate) -> SetName:
+    """Return the set without the families that are not material in it."""
+    negligible = _negligible(candidate.names, candidate.explained)
+    return law_whole(n for n in candidate.names if n not in negligible)

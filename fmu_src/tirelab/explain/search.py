@@ -1,0 +1,262 @@
+"""The search for the set of explanations with the most evidence.
+
+A screening compares thousands of sets on one matrix of products, linear around the believed law or around the best set
+so far. The sets at its top are settled: the law's shape, offset, compliance and lag, in which the force is not linear,
+are carried along until they stand still. Screening around the best settled set goes on until no neighbour beats it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..noise import Noise
+from .columns import Layout, build, layout_of, lifted_at, lifted_from_force, measure, moved, nothing
+from .evidence import Products
+from .families import STATIC, Family
+from .judge import Candidate, SetName, judge, law_whole, material
+from .place import Point
+from .scene import Scene
+
+POOR = 1.15
+"""Where no settled set comes nearer to the noise than this chi square per sample, every effect is settled alone too."""
+
+BEAM = 6
+DEEPEST_SET = 6
+
+
+CLOSE = 30.0
+"""Sets within this log evidence of the best one in the screening are settled."""
+
+LAG_STAGES = (0, 1, 2)
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A candidate with the point carried along until it stands still."""
+
+    candidate: Candidate
+    point: Point
+    products: Products
+    layout: Layout
+
+    @property
+    def log_evidence(self) -> float:
+        """Log evidence of the set at its own point."""
+        return self.candidate.log_evidence
+
+    @property
+    def names(self) -> SetName:
+        """The families of the set."""
+        return self.candidate.names
+
+
+def settle(
+    scene: Scene,
+    noises: Sequence[Noise],
+    families: dict[str, Family],
+    names: SetName,
+    zeta: float,
+    start: Point,
+) -> Settled:
+    """Return the set `names` at the point where it stands still."""
+    stages = LAG_STAGES if "force_lag" in names else (0,)
+    found = [_settle(scene, noises, families, names, zeta, replace(start, stages=s)) for s in stages]
+    return max(found, key=lambda s: s.log_evidence)
+
+
+def _settle(
+    scene: Scene,
+    noises: Sequence[Noise],
+    families: dict[str, Family],
+    names: SetName,
+    zeta: float,
+    start: Point,
+) -> Settled:
+    chosen = [families[n] for n in names]
+    point = _only(start, names)
+    best: Settled | None = None
+    for turn in range(6):
+        built = build(scene, point, chosen)
+        layout = layout_of(built, chosen)
+        p = measure(built, noises, chosen, point) if chosen else nothing(built, noises)
+        candidate = judge(p, layout, names, zeta)
+        settled = Settled(candidate, point, p, layout)
+        gained = candidate.log_evidence - best.log_evidence if best else np.inf
+        # The first guess of lift-off follows the noise and flatters: the model's own replaces it at once.
+        if best is None or turn == 1 or gained > 0.0:
+            best = settled
+        starts = np.cumsum([0, *(layout.count[n] for n in names)])
+        own = [g - start for g, start in zip(candidate.groups, starts, strict=False)]
+        lifted = lifted_at(built, point, chosen, candidate.explained.coefficients, own)
+        following = replace(point, lifted=lifted)
+        for name, values, group in zip(names, candidate.explained.coefficients, own, strict=True):
+            following = moved(following, name, values, group)
+        if _same(point, following) or (turn > 1 and abs(gained) < 0.05):
+            break
+        point = following
+    assert best is not None
+    return best
+
+
+def _only(point: Point, names: SetName) -> Point:
+    shape = point.shape.copy()
+    if "recalibration" not in names:
+        shape[:, :2] = 0.0
+    if "shape" not in names:
+        shape[:, 2:] = 0.0
+    return Point(
+        shape,
+        point.offset if "deflection_offset" in names else 0.0,
+        point.compliance if "series_compliance" in names else 0.0,
+        point.lag if "force_lag" in names else 0.0,
+        point.stages,
+        point.lifted,
+    )
+
+
+def _same(a: Point, b: Point) -> bool:
+    return (
+        _same_ground(a, b)
+        and np.allclose(a.shape, b.shape, atol=1e-4)
+        and abs(a.offset - b.offset) < 1e-7
+        and abs(a.compliance - b.compliance) < 1e-9
+        and abs(a.lag - b.lag) < 1e-6
+    )
+
+
+def _same_ground(a: Point, b: Point) -> bool:
+    if a.lifted is None or b.lifted is None:
+        return a.lifted is b.lifted
+    return all(np.array_equal(m, n) for m, n in zip(a.lifted, b.lifted, strict=True))
+
+
+@dataclass(frozen=True)
+class Found:
+    """The settled sets, best first, and how many sets were compared."""
+
+    settled: tuple[Settled, ...]
+    compared: int
+
+
+class Screen:
+    """Candidates compared around one point, each judged once."""
+
+    def __init__(self, products: Products, layout: Layout, zeta: float) -> None:
+        self.products, self.layout, self.zeta = products, layout, zeta
+        self.seen: dict[SetName, Candidate] = {}
+
+    def judged(self, names: SetName) -> Candidate:
+        """Return the candidate of `names`, judged now or before."""
+        key = law_whole(names)
+        if key not in self.seen:
+            self.seen[key] = judge(self.products, self.layout, key, self.zeta)
+        return self.seen[key]
+
+    def allowed(self, names: SetName, name: str) -> bool:
+        """Return whether `name` may be added: not twice, and the law's shape only beside its coefficients."""
+        return name not in names and name != "shape"
+
+    def beam(self) -> None:
+        """Grow sets one family at a time, keeping the best of each size."""
+        level: list[SetName] = [()]
+        best = self.judged(()).log_evidence
+        for _ in range(DEEPEST_SET):
+            grown = {
+                self.judged((*s, n)).names for s in level for n in self.layout.families if self.allowed(s, n)
+            }
+            level = sorted(grown, key=lambda s: -self.judged(s).log_evidence)[:BEAM]
+            top = self.judged(level[0]).log_evidence
+            if top < best - 3.0:
+                return
+            best = max(best, top)
+
+    def neighbours(self, names: SetName) -> None:
+        """Judge every set that differs from `names` by one family more, less or other."""
+        for gone in ("", *names):
+            left = tuple(n for n in names if n not in (gone, "shape"))
+            self.judged(left)
+            for n in self.layout.families:
+                if self.allowed(left, n):
+                    self.judged((*left, n))
+        self.judged((*(n for n in names if n not in STATIC), "recalibration"))
+
+    def seeds(self) -> list[SetName]:
+        """Return every family of the catalogue alone and beside a free law."""
+        known = [
+            n
+            for n, f in self.layout.families.items()
+            if not f.agnostic and n not in ("shape", "recalibration")
+        ]
+        return [law_whole(s) for n in known for s in ((n,), (n, "recalibration"))]
+
+    def instead_of_unknown(self, names: SetName) -> list[SetName]:
+        """Return, for what is beyond the catalogue in a set, the three effects that do best in its place."""
+        found: list[SetName] = []
+        for gone in (n for n in names if self.layout.families[n].agnostic):
+            left = tuple(n for n in names if n != gone)
+            known = [n for n, f in self.layout.families.items() if not f.agnostic and self.allowed(left, n)]
+            found += sorted(
+                (law_whole((*left, n)) for n in known), key=lambda s: -self.judged(s).log_evidence
+            )[:3]
+        if any(self.layout.families[n].agnostic for n in names) or any(n in STATIC for n in names):
+            found.append(law_whole((*(n for n in names if n not in STATIC), "recalibration")))
+        return found
+
+    def best(self, count: int) -> list[Candidate]:
+        """Return the `count` best candidates within CLOSE of the best."""
+        order = sorted(self.seen.values(), key=lambda c: -c.log_evidence)
+        return [c for c in order[:count] if c.log_evidence > order[0].log_evidence - CLOSE]
+
+
+def search(
+    scene: Scene,
+    noises: Sequence[Noise],
+    families: Sequence[Family],
+    zeta: float,
+    progress: Callable[[str], None] | None = None,
+) -> Found:
+    """Return the settled sets of families, best first."""
+    by_name = {f.name: f for f in families}
+    zero = Point(np.zeros((len(scene.radii), 4)), lifted=lifted_from_force(scene))
+    settled: dict[SetName, Settled] = {}
+    compared = 0
+
+    def settle_all(wanted: Sequence[SetName], start: Point) -> None:
+        waiting = list(wanted)
+        while waiting:
+            names = waiting.pop()
+            if names in settled:
+                continue
+            settled[names] = settle(scene, noises, by_name, names, zeta, start)
+            needed = material(settled[names].candidate)
+            if needed != names:
+                waiting.append(needed)
+
+    point = zero
+    for turn in range(5):
+        built = build(scene, point, families, quick=True)
+        screen = Screen(measure(built, noises, families, point), layout_of(built, families), zeta)
+        if turn == 0:
+            screen.beam()
+        before = max(settled.values(), key=lambda s: s.log_evidence) if settled else None
+        top = before.names if before else screen.best(1)[0].names
+        screen.neighbours(top)
+        compared += len(screen.seen)
+        settle_all([c.names for c in screen.best(8)], point)
+        settle_all(screen.instead_of_unknown(top), point)
+        if turn == 0 and min(s.candidate.explained.chi_square for s in settled.values()) > POOR:
+            settle_all(screen.seeds(), point)
+        best = max(settled.values(), key=lambda s: s.log_evidence)
+        if progress is not None:
+            progress(f"{compared} sets compared; best so far: {', '.join(best.names) or 'nothing'}")
+        if before is not None and best.names == before.names:
+            break
+        point = best.point
+    settle_all(
+        [law_whole(n for n in best.names if n != gone) for gone in best.names if gone != "shape"], point
+    )
+    order = sorted(settled.values(), key=lambda s: -s.log_evidence)
+    return Found(tuple(order), compared)

@@ -1,0 +1,84 @@
+"""The tables that an identification prints: the article's Table 1, and the constants."""
+
+from __future__ import annotations
+
+import math
+
+from radialtire import Hull1996
+from rich import box
+from rich.markup import escape
+from rich.table import Table
+
+from .result import Identification, SurfaceFit, digits
+from .surfaces import CM_PER_M, describe
+
+
+def surface_table(identification: Identification) -> Table:
+    """Return Table 1 of Hull, Wang & Moore (1996): for each surface A, B, RMSE and the largest errors."""
+    table = _table(
+        "A and B of each surface",
+        "A [N/cm^B] and B with standard uncertainties; RMSE of each surface's own A and B, and of the law; the law's "
+        "largest error, the deflection where it is, and its part of the largest force on that surface",
+    )
+    table.add_column("surface", no_wrap=True)
+    for head in ("A", "B", "RMSE\n[N]", "law's\n[N]", "largest\n[N]", "at\n[cm]", "\n[%]"):
+        table.add_column(escape(head), justify="right", no_wrap=True)
+    for row in identification.surfaces:
+        table.add_row(describe(row.surface_radius), *_cells(row))
+    return table
+
+
+def constant_table(identification: Identification) -> Table:
+    """Return the constants of the law with their intervals."""
+    two_stages = identification.tire.law.name == Hull1996.name
+    table = _table(
+        f"Constants of the law {identification.tire.law.name}",
+        "joint fit of all samples with its standard uncertainty; the interval of three standard uncertainties on "
+        "either side, within which the recordings do not object"
+        + ("; the same constants by the article's two stages" if two_stages else ""),
+    )
+    table.add_column("constant", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for head in ("joint fit", "interval", *(["two stages"] if two_stages else [])):
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_column("standing")
+    for constant in identification.constants:
+        table.add_row(
+            constant.symbol,
+            constant.unit,
+            with_uncertainty(constant.value, constant.uncertainty),
+            f"{digits(constant.low, 4)} to {digits(constant.high, 4)}",
+            *([digits(constant.two_stage, 4)] if two_stages else []),
+            constant.standing,
+        )
+    return table
+
+
+def with_uncertainty(value: float, uncertainty: float) -> str:
+    """Return "value ± uncertainty", the uncertainty with two digits and the value to the same place."""
+    if not math.isfinite(uncertainty):
+        return f"{digits(value, 4)} ± ?"
+    if uncertainty < 1e-9 * abs(value):
+        return f"{digits(value, 9)} ± {uncertainty:.0e}"
+    places = 1 - math.floor(math.log10(uncertainty))
+    if places <= 0:
+        return f"{round(value, places):.0f} ± {round(uncertainty, places):.0f}"
+    return f"{value:.{places}f} ± {uncertainty:.{places}f}"
+
+
+def _table(title: str, caption: str) -> Table:
+    return Table(
+        title=title, caption=caption, box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left"
+    )
+
+
+def _cells(row: SurfaceFit) -> tuple[str, ...]:
+    return (
+        with_uncertainty(row.coefficient, row.coefficient_uncertainty),
+        with_uncertainty(row.exponent, row.exponent_uncertainty),
+        f"{row.rmse:.3g}",
+        f"{row.law_rmse:.3g}",
+        f"{row.largest_error:.3g}",
+        f"{CM_PER_M * row.at:.2f}",
+        f"{100.0 * row.relative_error:.2g}",
+    )

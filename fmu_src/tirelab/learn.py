@@ -1,0 +1,70 @@
+"""What can be learned of something beyond the catalogue: the force over one coordinate, and whether it repeats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from .explain.motion import FloatArray
+from .explain.scene import Record, Scene
+from .noise import Noise
+from .verdict import Correction
+
+KNOTS = 40
+"""Points of a learned curve: a ripple of a fifteenth of the range is still followed."""
+
+FOLDS = 5
+"""Parts into which time is cut; each is foretold from the others."""
+
+Coordinate = Callable[[Record], FloatArray]
+
+COORDINATES: dict[str, tuple[str, Coordinate]] = {
+    "deflection": ("m", lambda r: r.motion.deflection),
+    "direction": ("m", lambda r: r.motion.deflection * r.motion.direction),
+    "rate": ("m/s", lambda r: r.motion.rate),
+    "rate and deflection": ("m/s", lambda r: r.motion.rate),
+    "acceleration": ("m/s^2", lambda r: r.motion.acceleration),
+    "resonance": ("m/s^2", lambda r: r.motion.acceleration),
+    "history": ("m", lambda r: r.motion.turned * r.motion.direction),
+    "way": ("m", lambda r: np.cumsum(np.abs(np.diff(r.motion.deflection, prepend=r.motion.deflection[0])))),
+}
+"""The coordinate over which each kind of misfit is learned; what is not here is learned over time."""
+
+
+def learned(
+    beyond: Sequence[str], scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]
+) -> tuple[Correction, ...]:
+    """Return a correction for each coordinate in `beyond`, from what is left of each recording [N]."""
+    return tuple(_learned(by, scene, residuals) for by in beyond)
+
+
+def _learned(by: str, scene: Scene, residuals: Sequence[FloatArray]) -> Correction:
+    unit, coordinate = COORDINATES.get(by, ("s", lambda r: r.time))
+    at = np.concatenate([coordinate(r) for r in scene.records])
+    force = np.concatenate(residuals)
+    part = np.concatenate(
+        [np.minimum((FOLDS * r.time / (r.time[-1] + 1e-9)).astype(int), FOLDS - 1) for r in scene.records]
+    )
+    knots = np.unique(np.quantile(at, np.linspace(0.0, 1.0, KNOTS)))
+    foretold = np.zeros_like(force)
+    for fold in range(FOLDS):
+        foretold[part == fold] = _curve(at[part != fold], force[part != fold], knots, at[part == fold])
+    gain = 1.0 - float(np.sum((force - foretold) ** 2) / np.sum(force**2))
+    return Correction(by, unit, knots, _curve(at, force, knots, knots), gain)
+
+
+def _curve(at: FloatArray, force: FloatArray, knots: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return the broken line through `knots` that fits force over `at` best, lightly smoothed, at `wanted`."""
+    place = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, knots.size - 2)
+    width = knots[place + 1] - knots[place]
+    share = np.clip((at - knots[place]) / width, 0.0, 1.0)
+    gram = np.zeros((knots.size, knots.size))
+    moment = np.zeros(knots.size)
+    for first, a in ((0, 1.0 - share), (1, share)):
+        np.add.at(moment, place + first, a * force)
+        for second, b in ((0, 1.0 - share), (1, share)):
+            np.add.at(gram, (place + first, place + second), a * b)
+    bend = np.diff(np.eye(knots.size), 2, axis=0)
+    gram += 1e-3 * at.size / knots.size * (bend.T @ bend) + 1e-9 * at.size * np.eye(knots.size)
+    return np.asarray(np.interp(wanted, knots, np.linalg.solve(gram, moment)))

@@ -1,0 +1,307 @@
+"""The chosen explanation as a tire: parameters of the catalogue's own effects fitted through the simulation itself.
+
+The search speaks in columns. Here each effect's part is first matched by its catalogue form alone, then all parameters
+are fitted together on whitened residuals, with the changes of the law's coefficients on each measured surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from radialtire import CATALOGUE, Effect, Parameter, Recalibrated, State, TireModel
+from radialtire.effect import PLACES
+from scipy.optimize import least_squares
+
+from .explain.motion import FloatArray, IndexArray
+from .noise import Noise
+from .simulate import Sampled, simulate
+
+LOOSE = 1.0
+"""Standard deviation of the weak prior on a parameter, as a part of its scale: it only holds what no sample moves."""
+
+MOST_ROUNDS = 40
+STEP = 1e-4
+"""Step of the difference quotients, as a part of a parameter's scale."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One recording with its noise, the samples that are compared, and what of their force is not to be followed."""
+
+    recording: Sampled
+    force: FloatArray
+    noise: Noise
+    rows: IndexArray
+    beyond: FloatArray
+
+
+@dataclass(frozen=True)
+class Knob:
+    """One number that is fitted: the effect or "law" it belongs to, its index there, scale, bounds and start."""
+
+    owner: str
+    index: int
+    label: str
+    unit: str
+    scale: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A fitted tire: values and standard deviations of its knobs, and RMSE [N] of each recording."""
+
+    tire: TireModel
+    knobs: tuple[Knob, ...]
+    values: FloatArray
+    deviations: FloatArray
+    residuals: tuple[FloatArray, ...]
+    jacobian: FloatArray
+    evaluations: int
+
+
+def assemble(
+    believed: TireModel, knobs: Sequence[Knob], values: FloatArray, radii: Sequence[float]
+) -> TireModel:
+    """Return the believed tire with the knobs' values: effects in catalogue order, the law changed on `radii` [m]."""
+    chosen: dict[str, list[float]] = {}
+    law = np.zeros((len(radii), 2))
+    changed = False
+    for knob, value in zip(knobs, values, strict=True):
+        bounded = float(min(max(value, knob.low), knob.high))
+        if knob.owner == "law":
+            law[knob.index // 2, knob.index % 2] = bounded
+            changed = True
+        else:
+            effect = CATALOGUE[knob.owner]
+            chosen.setdefault(knob.owner, list(effect.typical))[knob.index] = bounded
+    effects = {e.name: (e, v) for e, v in believed.effects} | {
+        name: (CATALOGUE[name], tuple(v)) for name, v in chosen.items()
+    }
+    order = sorted(
+        effects.values(), key=lambda e: (PLACES.index(e[0].place), list(CATALOGUE).index(e[0].name))
+    )
+    new_law = believed.law
+    if changed:
+        rows = tuple((float(r), float(a), float(b)) for r, (a, b) in zip(radii, law, strict=True))
+        new_law = Recalibrated(believed.law, rows)
+    return replace(believed, law=new_law, effects=tuple(order))
+
+
+def knobs_of(names: Sequence[str], radii: Sequence[float], extras: bool, deepest: float) -> tuple[Knob, ...]:
+    """Return what is fitted for the effects `names` and, with "recalibration", the law on `radii` [m]."""
+    knobs: list[Knob] = []
+    for name in names:
+        if name == "recalibration":
+            for i, radius in enumerate(radii):
+                where = "flat" if np.isinf(radius) else f"{100.0 * radius:.4g} cm"
+                knobs.append(Knob("law", 2 * i, f"log factor on A, {where}", "1", 0.05, -3.0, 3.0))
+                knobs.append(Knob("law", 2 * i + 1, f"change of B, {where}", "1", 0.02, -1.0, 1.0))
+            shape = CATALOGUE["elastic_shape"]
+            knobs += [_knob(shape, 0, 0.02), _knob(shape, 1, 0.02)]
+            continue
+        effect = CATALOGUE[name]
+        for index, parameter in enumerate(effect.parameters):
+            if parameter.extra and not extras:
+                continue
+            knobs.append(_knob(effect, index, _scale(parameter)))
+    return tuple(knobs)
+
+
+def _knob(effect: Effect, index: int, scale: float) -> Knob:
+    p = effect.parameters[index]
+    return Knob(effect.name, index, p.name, p.unit, scale, p.minimum, p.maximum)
+
+
+def _scale(parameter: Parameter) -> float:
+    if parameter.name == "limit":
+        return 100.0
+    everyday = abs(parameter.everyday)
+    return everyday if everyday > 0.0 else min(0.3, 0.1 * (parameter.maximum - parameter.minimum))
+
+
+GRIDS: dict[str, dict[str, tuple[float, ...]]] = {
+    "rate_independent_hysteresis": {"reach": (3e-4, 1e-3, 3e-3)},
+    "viscoelastic_relaxation": {"relaxation_time_1": (0.02, 0.1, 0.5, 2.0, 10.0, 50.0)},
+    "mullins_softening": {"width": (1e-3, 3e-3, 1e-2)},
+    "warm_up": {"time_constant": (3.0, 10.0, 30.0, 100.0)},
+}
+"""Starting values of what an effect is not linear in, where everyday ones are not enough."""
+
+
+def starts_of(effect: Effect, deepest: float, strongest: float) -> list[State]:
+    """Return values of an effect from which its fit may begin; the largest deflection [m] and force [N] scale them."""
+    grids = dict(GRIDS.get(effect.name, {}))
+    if effect.name == "bottoming":
+        grids = {"onset": tuple(deepest * q for q in (0.5, 0.65, 0.75, 0.85, 0.92, 0.97))}
+    if effect.name == "saturation":
+        grids = {
+            "limit": tuple(strongest * q for q in (0.4, 0.55, 0.7, 0.8, 0.9, 0.96)),
+            "knee": (0.0, 0.1 * strongest),
+        }
+    if effect.name == "force_lag":
+        return [
+            (a, b) for a, b in ((4e-3, 0.0), (0.0, 4e-3), (2e-2, 0.0), (0.0, 2e-2), (1e-3, 0.0), (0.0, 1e-3))
+        ]
+    names = [p.name for p in effect.parameters]
+    found = []
+    for combination in product(*grids.values()):
+        values = list(effect.typical)
+        for name, value in zip(grids, combination, strict=True):
+            values[names.index(name)] = value
+        found.append(tuple(values))
+    if effect.name in ("deflection_offset", "force_offset", "force_drift"):
+        found.append(tuple(-v for v in found[0]))
+    return found
+
+
+def _matched(
+    effect: Effect,
+    target: Sequence[FloatArray],
+    cases: Sequence[Case],
+    tire: TireModel,
+    deepest: float,
+    strongest: float,
+) -> State:
+    """Return the effect's values whose response comes nearest to its part in the search [N]."""
+    best: tuple[float, State] = (np.inf, effect.typical)
+    amplitudes = [
+        i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"
+    ]
+    wanted = np.concatenate(target)
+    bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
+    for values in starts_of(effect, deepest, strongest):
+        trial = values
+        for _ in range(3 if amplitudes else 1):
+            with_it = _with(tire, effect, trial)
+            response = np.concatenate([simulate(with_it, c.recording)[c.rows] for c in cases]) - bare
+            miss = float(np.sum((response - wanted) ** 2))
+            if miss < best[0]:
+                best = (miss, trial)
+            power = float(response @ response)
+            if power <= 0.0 or not amplitudes:
+                break
+            factor = float(np.clip(response @ wanted / power, 0.02, 50.0))
+            scaled = list(trial)
+            for i in amplitudes:
+                p = effect.parameters[i]
+                scaled[i] = float(np.clip(trial[i] * factor, p.minimum, p.maximum))
+            trial = tuple(scaled)
+    return best[1]
+
+
+def _with(tire: TireModel, effect: Effect, values: State) -> TireModel:
+    others = [(e, v) for e, v in tire.effects if e.name != effect.name]
+    order = sorted(
+        [*others, (effect, values)],
+        key=lambda e: (PLACES.index(e[0].place), list(CATALOGUE).index(e[0].name)),
+    )
+    return replace(tire, effects=tuple(order))
+
+
+def refit(
+    believed: TireModel,
+    names: Sequence[str],
+    parts: dict[str, list[FloatArray]],
+    law: FloatArray,
+    cases: Sequence[Case],
+    radii: Sequence[float],
+    deepest: float,
+    strongest: float,
+) -> Refit:
+    """Return the believed tire with the effects `names` fitted to the cases.
+
+    parts: what each effect adds in the search [N], at the rows of each case; law (surfaces, 2): guess of the law's
+    changes on `radii` [m]; deepest [m], strongest [N]: largest deflection and force
+    """
+    law_knobs = [k for k in knobs_of(names, radii, False, deepest) if k.owner == "law"]
+    tire = assemble(believed, law_knobs, law.ravel()[: len(law_knobs)], radii)
+    starts: dict[str, State] = {}
+    for name in names:
+        if name != "recalibration":
+            starts[name] = _matched(CATALOGUE[name], parts[name], cases, tire, deepest, strongest)
+            tire = _with(tire, CATALOGUE[name], starts[name])
+    fitted = None
+    for extras in (False, True):
+        knobs = knobs_of(names, radii, extras, deepest)
+        if fitted is not None and len(knobs) == len(fitted.knobs):
+            break
+        start = np.array([_start(k, starts, law, fitted) for k in knobs])
+        fitted = _fit(believed, knobs, start, cases, radii)
+    assert fitted is not None
+    return fitted
+
+
+def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit | None) -> float:
+    if before is not None:
+        for k, v in zip(before.knobs, before.values, strict=True):
+            if (k.owner, k.index) == (knob.owner, knob.index):
+                return float(v)
+    if knob.owner == "law":
+        return float(law.ravel()[knob.index])
+    if knob.owner in starts:
+        return float(starts[knob.owner][knob.index])
+    return float(CATALOGUE[knob.owner].parameters[knob.index].start)
+
+
+def _fit(
+    believed: TireModel,
+    knobs: tuple[Knob, ...],
+    start: FloatArray,
+    cases: Sequence[Case],
+    radii: Sequence[float],
+) -> Refit:
+    scale = np.array([k.scale for k in knobs])
+    low, high = np.array([k.low for k in knobs]) / scale, np.array([k.high for k in knobs]) / scale
+    evaluations = 0
+
+    def residual(scaled: FloatArray) -> FloatArray:
+        nonlocal evaluations
+        evaluations += 1
+        tire = assemble(believed, knobs, scaled * scale, radii)
+        parts = [c.noise.whitened((c.force - simulate(tire, c.recording))[c.rows] - c.beyond) for c in cases]
+        return np.concatenate(parts)
+
+    centre = np.clip(start / scale, low, high)
+    if not knobs:
+        plain = tuple(c.force - simulate(believed, c.recording) for c in cases)
+        return Refit(believed, (), np.zeros(0), np.zeros(0), plain, np.zeros((0, 0)), 1)
+    weight = 1e-2 / LOOSE
+
+    def penalised(scaled: FloatArray) -> FloatArray:
+        return np.concatenate([residual(scaled), weight * (scaled - centre)])
+
+    inside = np.clip(
+        centre, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high))
+    )
+    answer = least_squares(
+        penalised,
+        inside,
+        bounds=(low, high),
+        x_scale="jac",
+        diff_step=_steps(inside),
+        loss="soft_l1",
+        f_scale=3.0,
+        max_nfev=MOST_ROUNDS,
+        method="trf",
+    )
+    values = answer.x * scale
+    tire = assemble(believed, knobs, values, radii)
+    jacobian = np.asarray(answer.jac)[: -len(knobs)]
+    total = sum(c.force.size for c in cases)
+    information = jacobian.T @ jacobian * total / max(jacobian.shape[0], 1) + weight**2 * np.eye(len(knobs))
+    spread = np.sqrt(np.diag(np.linalg.inv(information))) * scale
+    residuals = tuple(c.force - simulate(tire, c.recording) for c in cases)
+    return Refit(tire, knobs, values, spread, residuals, jacobian, evaluations)
+
+
+def _steps(at: FloatArray) -> FloatArray:
+    """Return relative steps that are STEP of a scale in themselves."""
+    return np.asarray(STEP / np.maximum(np.abs(at), 1e-3))
+
+
+Progress = Callable[[str], None]

@@ -1,0 +1,294 @@
+"""A diagnosis -> one HTML file that needs nothing else: no script, no font, no request."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import math
+import platform
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import NDArray
+from radialtire import CATALOGUE
+
+from ..errors import TirelabError
+from ..recording import Recording
+from . import words
+from .loops import Case, draw_difference, draw_loops
+from .residuals import (
+    draw_maps,
+    draw_over_deflection,
+    draw_over_rate,
+    draw_over_time,
+    draw_slow_changes,
+    misfit_of,
+)
+from .sketches import draw_correction, draw_waveform
+
+FloatArray = NDArray[np.float64]
+
+Simulated = tuple[Sequence[Recording], Sequence[FloatArray], Sequence[FloatArray]]
+"""Recordings, and their simulated forces [N] before and after the correction."""
+
+MOST_LOOPS = 4
+"""Recordings whose loops are drawn, those with the largest misfit first."""
+
+MOST_PLACES = 12
+"""Rows of the table of places."""
+
+MOST_SETS = 15
+"""Rows of the table of sets that were compared."""
+
+BESIDE = ("tire_before", "tire_after", "evidence", "reasons", "correction", "waveform", "warnings", "command")
+"""What a diagnosis may have besides the contract."""
+
+VERSIONS_OF = ("tirelab", "numpy", "scipy", "matplotlib")
+
+
+def write_report(
+    path: Path,
+    diagnosis: Mapping[str, Any],
+    recordings: Sequence[Recording],
+    before: Sequence[FloatArray],
+    after: Sequence[FloatArray],
+    *,
+    held_out: Simulated | None = None,
+) -> None:
+    """Write the report of a diagnosis to `path`.
+
+    diagnosis: the content of diagnosis.json; it may have besides
+        tire_before, tire_after   names of the tires
+        evidence      [{"effects": [name], "log_evidence": 0 for the best, "rmse" [N], "held_out_rmse" [N] or None,
+                      "misfit" in noises, "remark"}]; columns that no row has are left out
+        where         as in the contract; an entry's "label" is told in place of its span
+        reasons       one sentence for each of the verdict's alternatives
+        correction    what was learned of the unknown, one or a list of {"by", "unit", "x", "force" [N], "std" [N] or
+                      None, "repeats": sentence}
+        waveform      {"time" [s], "deflection" [m]} of the separating test
+        warnings      sentences that belong to the top
+        command       the command line
+    before, after: simulated forces [N], one array for each recording; held_out: the same for the recordings that the
+    correction has not seen
+
+    Raises TirelabError where an array does not fit its recording, or the file cannot be written.
+    """
+    text = render(diagnosis, _cases(recordings, before, after), _cases(*held_out) if held_out else [])
+    try:
+        path.write_text(text, encoding="utf-8", errors="backslashreplace")
+    except OSError as error:
+        raise TirelabError(f"{path} cannot be written ({error.strerror}); name another folder") from None
+
+
+def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Sequence[Case]) -> str:
+    """Return the text of the report."""
+    diagnosis = {**dict.fromkeys(BESIDE), **diagnosis}
+    verdict = diagnosis["verdict"]
+    here = resources.files(__package__)
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.globals["words"] = words
+    environment.filters |= {"number": words.number, "percent": words.percent}
+    page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
+    reasons = list(diagnosis["reasons"] or [])
+    alternatives = verdict["alternatives"]
+    return page.render(
+        style=Markup((here / "report.css").read_text(encoding="utf-8")),
+        diagnosis=diagnosis,
+        verdict=verdict,
+        effects=[_effect(effect) for effect in verdict["effects"]],
+        rivals=list(zip(alternatives, reasons + [""] * (len(alternatives) - len(reasons)), strict=False)),
+        fit=_fit(diagnosis["fit"], fitted, held_out),
+        loops=_loops(fitted, held_out),
+        maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
+        places=(places := words.foremost(diagnosis["where"], MOST_PLACES)),
+        more_places=len(diagnosis["where"]) - len(places),
+        evidence=_evidence(diagnosis["evidence"] or []),
+        test=_test(verdict["separating_test"], diagnosis["waveform"]),
+        corrections=_corrections(diagnosis["correction"]),
+        sources=[("fitted", c.recording) for c in fitted] + [("held out", c.recording) for c in held_out],
+        versions=_versions(),
+    )
+
+
+def _cases(
+    recordings: Sequence[Recording], before: Sequence[FloatArray], after: Sequence[FloatArray]
+) -> list[Case]:
+    if not len(recordings) == len(before) == len(after):
+        raise TirelabError(
+            f"{len(recordings)} recordings have {len(before)} and {len(after)} simulated forces; give one of each"
+        )
+    for recording, *forces in zip(recordings, before, after, strict=True):
+        for force in forces:
+            if force.shape != recording.force.shape or not np.all(np.isfinite(force)):
+                raise TirelabError(
+                    f"the simulated force of {recording.name} must be one finite value for each of its "
+                    f"{len(recording)} samples; simulate it again"
+                )
+    return [Case(r, b, a) for r, b, a in zip(recordings, before, after, strict=True)]
+
+
+def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:
+    name = effect["name"]
+    known = CATALOGUE.get(name)
+    return {
+        "title": words.effect_title(name),
+        "statement": words.statement(name),
+        "tell_tale": known.tell_tale if known else "",
+        "imitators": words.listed([words.effect_title(n) for n in known.imitators]) if known else "",
+        "source": known.source if known else "",
+        "share": effect["share"],
+        "parameters": [
+            (
+                words.effect_title(parameter),
+                words.estimate(e["value"], e["std"], e["unit"]),
+                words.meaning(name, parameter),
+            )
+            for parameter, e in effect["parameters"].items()
+        ],
+    }
+
+
+def _rmse(cases: Sequence[Case], which: str) -> float:
+    squares = [np.square(c.recording.force - getattr(c, which)) for c in cases]
+    return float(np.sqrt(np.mean(np.concatenate(squares))))
+
+
+def _fit(fit: Mapping[str, Any], fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
+    """The rows of the table of errors [N], and the scale of its bars."""
+    rows: list[tuple[str, str | None, float, float]] = [("Fitted", None, fit["before"], fit["after"])]
+    if fit["held_out_before"] is not None:
+        rows.append(("Not seen by the fit", None, fit["held_out_before"], fit["held_out_after"]))
+    for kind, cases in (("fitted", fitted), ("not seen", held_out)):
+        if len(cases) > 1:
+            rows += [(kind, c.recording.name, _rmse([c], "before"), _rmse([c], "after")) for c in cases]
+    finite = [v for *_, before, after in rows for v in (before, after) if math.isfinite(v)]
+    return {"rows": rows, "noise": fit["noise"], "full": 1.08 * max([*finite, fit["noise"], 1e-9])}
+
+
+def _loops(fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
+    """The pictures of the loops: of the recording with the largest misfit a pair, of the others one each."""
+    order = sorted(fitted, key=lambda c: -c.excess)
+    worst = order[0]
+    pair = [
+        draw_loops(worst, which, f"p{which[0]}", f"Force over deflection, recorded and simulated, {which}.")
+        for which in (("before",) if worst.alike else ("before", "after"))
+    ]
+    chosen = [("fitted", c) for c in order[1:]] + [("not seen by the fit", c) for c in held_out]
+    alt = "Force over deflection, recorded and simulated before and after the correction."
+    others = [
+        (kind, case.recording.name, draw_loops(case, "both", f"o{i}x", alt))
+        for i, (kind, case) in enumerate(chosen[: MOST_LOOPS - 1])
+    ]
+    return {
+        "name": worst.recording.name,
+        "pair": pair,
+        "difference": draw_difference(worst, "df"),
+        "alike": worst.alike,
+        "others": others,
+        "missing": len(chosen) - len(others),
+        "several": len(chosen) > 0,
+    }
+
+
+def _maps(cases: Sequence[Case], noise: float) -> dict[str, Any]:
+    misfit = misfit_of(cases)
+    maps, second = draw_maps(misfit, noise, "m")
+    return {
+        "lines": [
+            draw_over_time(misfit, noise, "t"),
+            draw_over_deflection(misfit, noise, "d"),
+            draw_over_rate(misfit, noise, "r"),
+            draw_slow_changes(misfit, noise, "s"),
+        ],
+        "maps": maps,
+        "second": second,
+        "alike": misfit.alike,
+    }
+
+
+_EVIDENCE_COLUMNS = (
+    ("log_evidence", "Log evidence below the best"),
+    ("misfit", "Misfit / noise"),
+    ("rmse", "Error [N]"),
+    ("held_out_rmse", "Error held out [N]"),
+    ("remark", "Remark"),
+)
+
+
+def _evidence(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    columns = [
+        (key, title) for key, title in _EVIDENCE_COLUMNS if any(row.get(key) is not None for row in rows)
+    ]
+    shown = [
+        (
+            words.set_title(row["effects"]),
+            [row.get(key) or "" if key == "remark" else words.number(row.get(key), 3) for key, _ in columns],
+        )
+        for row in rows[:MOST_SETS]
+    ]
+    return {"columns": columns, "rows": shown, "more": max(len(rows) - MOST_SETS, 0)}
+
+
+_TEST_FACTS = (
+    ("waveform", "Motion", "", ""),
+    ("surfaces", "Surface", "", ""),
+    ("amplitude", "Largest deflection", "m", ""),
+    ("rate_max", "Fastest rate", "m/s", ""),
+    ("duration", "Duration", "s", ""),
+    ("separation", "Predicted separation", "1", "times the noise, over all samples"),
+    ("file", "File for the rig", "", ""),
+)
+
+
+def _test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    if test is None:
+        return None
+    facts = []
+    for key, title, unit, remark in _TEST_FACTS:
+        value = test.get(key)
+        if value is None:
+            continue
+        if key == "surfaces":
+            text = words.listed([words.surface(radius) for radius in value])
+        elif isinstance(value, (int, float)):
+            factor, name = words.scaled(unit)
+            text = words.with_unit(words.number(factor * value), remark or name)
+        else:
+            text = str(value)
+        facts.append((title, text))
+    drawn = draw_waveform(waveform["time"], waveform["deflection"], "w") if waveform else None
+    weak = test.get("separation", words.CLEAR) < words.CLEAR
+    return {
+        "sentence": test.get("sentence", ""),
+        "weak": words.TOO_WEAK if weak else "",
+        "facts": facts,
+        "picture": drawn,
+    }
+
+
+def _corrections(found: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None) -> list[dict[str, Any]]:
+    corrections = [found] if isinstance(found, Mapping) else list(found or [])
+    return [
+        {
+            "by": c["by"],
+            "repeats": c["repeats"],
+            "picture": draw_correction(c["by"], c["unit"], c["x"], c["force"], c.get("std"), f"c{i}x"),
+        }
+        for i, c in enumerate(corrections)
+    ]
+
+
+def _versions() -> str:
+    found = [f"Python {platform.python_version()}"]
+    for name in VERSIONS_OF:
+        try:
+            found.append(f"{name} {importlib.metadata.version(name)}")
+        except importlib.metadata.PackageNotFoundError:
+            found.append(f"{name} (not installed as a package)")
+    return ", ".join(found)

@@ -1,0 +1,281 @@
+"""Where simulation and recording part: the residual over time, deflection, rate, and over two of them at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from numpy.typing import NDArray
+
+from .course import loading, rate_of
+from .loops import Case
+from .svg import AFTER, BAND, BEFORE, GRID, INK, drawing, inline_svg
+from .thinning import envelope
+from .words import number
+
+FloatArray = NDArray[np.float64]
+
+BINS = 32
+"""Bins of a coordinate: a mean in each."""
+
+CELLS = (40, 28)
+"""Cells of a map, across and up."""
+
+NARROWEST = 0.1
+"""Rates closer than this part of themselves are one."""
+
+FEWEST = 5
+"""Samples without which a bin or cell shows nothing."""
+
+DIVERGING = LinearSegmentedColormap.from_list(
+    "over_and_under",
+    [
+        (0.0, (0.00, 0.36, 0.68, 1.0)),
+        (0.25, (0.25, 0.58, 0.86, 0.9)),
+        (0.5, (0.55, 0.57, 0.60, 0.16)),
+        (0.75, (0.93, 0.52, 0.18, 0.9)),
+        (1.0, (0.72, 0.27, 0.00, 1.0)),
+    ],
+)
+"""Blue below, orange above: told apart by every kind of colour vision; nearly clear about zero, on any paper."""
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """All recordings end to end: time counted on [s], deflection [m], rate [m/s], residuals [N].
+
+    ends: samples at which a recording ends
+    """
+
+    time: FloatArray
+    deflection: FloatArray
+    rate: FloatArray
+    loading: NDArray[np.bool_]
+    before: FloatArray
+    after: FloatArray
+    ends: tuple[int, ...]
+
+    @property
+    def alike(self) -> bool:
+        """Whether the correction changes nothing that a picture could show."""
+        return bool(np.max(np.abs(self.before - self.after)) <= 1e-3 * np.max(np.abs(self.before)))
+
+
+def misfit_of(cases: Sequence[Case]) -> Misfit:
+    """Return the misfit of the recordings, put end to end with a sampling step between."""
+    times, rates, start = [], [], 0.0
+    for case in cases:
+        own = case.recording.time - case.recording.time[0]
+        times.append(own + start)
+        start += float(own[-1]) + case.recording.sampling_interval
+        rates.append(rate_of(case.recording.time, case.recording.deflection))
+    return Misfit(
+        np.concatenate(times),
+        np.concatenate([c.recording.deflection for c in cases]),
+        np.concatenate(rates),
+        np.concatenate([loading(r) for r in rates]),
+        np.concatenate([c.recording.force - c.before for c in cases]),
+        np.concatenate([c.recording.force - c.after for c in cases]),
+        tuple(int(n) for n in np.cumsum([len(c.recording) for c in cases])),
+    )
+
+
+def draw_over_time(m: Misfit, noise: float, mark: str) -> Markup:
+    """Return the residual over time, every sample in it, before and after."""
+    with drawing() as (figure, axes):
+        _noise_band(axes, noise)
+        for residual, colour in _courses(m):
+            start = 0
+            for end in m.ends:
+                axes.plot(*envelope(m.time[start:end], residual[start:end]), color=colour, lw=0.7)
+                start = end
+        _time_axis(axes, m)
+        axes.set(ylabel="recorded − simulated [N]", title="Over time, every sample")
+        return inline_svg(figure, "Residual over time before and after the correction, with the noise.", mark)
+
+
+def draw_over_deflection(m: Misfit, noise: float, mark: str) -> Markup:
+    """Return the mean residual over the deflection, loading and unloading apart."""
+    edges = np.linspace(m.deflection.min(), m.deflection.max(), BINS + 1)
+    with drawing() as (figure, axes):
+        _noise_band(axes, noise)
+        for residual, colour in _courses(m):
+            for branch, style, marker in ((m.loading, "-", "^"), (~m.loading, (0, (3, 2)), "v")):
+                at, mean = _means(m.deflection[branch], residual[branch], edges)
+                axes.plot(1e3 * at, mean, color=colour, ls=style, marker=marker, ms=3.2, lw=1.2)
+        axes.set(
+            xlabel="deflection [mm]",
+            ylabel="mean residual [N]",
+            title="Over the deflection (▲ loading, ▼ unloading)",
+        )
+        alt = (
+            "Mean residual over the deflection, loading and unloading apart, before and after the correction."
+        )
+        return inline_svg(figure, alt, mark)
+
+
+def draw_over_rate(m: Misfit, noise: float, mark: str) -> Markup:
+    """Return the mean residual over the rate of deflection."""
+    edges = _rate_edges(m.rate, BINS)
+    with drawing() as (figure, axes):
+        _noise_band(axes, noise)
+        for residual, colour in _courses(m):
+            at, mean = _means(m.rate, residual, edges)
+            axes.plot(1e3 * at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
+        axes.set(
+            xlabel="rate [mm/s], unloading < 0 < loading", ylabel="mean residual [N]", title="Over the rate"
+        )
+        slow, fast = 1e3 * float(np.quantile(np.abs(m.rate), 0.25)), 1e3 * float(np.max(np.abs(m.rate)))
+        if fast > 20.0 * slow > 0.0:
+            decade = 10.0 ** np.floor(np.log10(max(slow, 1e-3 * fast)))
+            ticks = decade * 10.0 ** np.arange(np.ceil(np.log10(fast / decade)) + 1)
+            axes.set_xscale("asinh", linear_width=decade)
+            axes.set_xticks(
+                [*-ticks[::-1], 0.0, *ticks],
+                labels=[*(f"−{t:g}" for t in ticks[::-1]), "0", *(f"{t:g}" for t in ticks)],
+            )
+            axes.set_xticks([], minor=True)
+            axes.set_xlim(-1.3 * fast, 1.3 * fast)
+        alt = "Mean residual over the rate of deflection, before and after the correction."
+        return inline_svg(figure, alt, mark)
+
+
+def draw_slow_changes(m: Misfit, noise: float, mark: str) -> Markup:
+    """Return the mean residual of whole cycles over time: what drifts, leaks or warms up."""
+    blocks = max(BINS // len(m.ends), 4)
+    with drawing() as (figure, axes):
+        _noise_band(axes, noise)
+        for residual, colour in _courses(m):
+            start = 0
+            for end in m.ends:
+                time = m.time[start:end]
+                edges = _cycles(time, m.loading[start:end], blocks)
+                whole = (time >= edges[0]) & (time < edges[-1])
+                at, mean = _means(time[whole], residual[start:end][whole], edges)
+                axes.plot(at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
+                start = end
+        _time_axis(axes, m)
+        axes.set(ylabel="mean residual [N]", title="Slow changes: means of whole cycles")
+        return inline_svg(
+            figure, "Mean residual of whole cycles over time, before and after the correction.", mark
+        )
+
+
+def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
+    """Return maps of the mean residual over deflection and a second coordinate, and what that one is called.
+
+    The second coordinate, rate or time, is the one over which the residual before the correction is more ordered.
+    """
+    x_edges = np.linspace(m.deflection.min(), m.deflection.max(), CELLS[0] + 1)
+    choices = []
+    for name, values, edges in (
+        ("rate", m.rate, _rate_edges(m.rate, CELLS[1])),
+        ("time", m.time, np.linspace(m.time[0], m.time[-1], CELLS[1] + 1)),
+    ):
+        mean, count = _cells(m.deflection, values, m.before, x_edges, edges)
+        ordered = float(np.nansum(mean**2 * count)) - noise**2 * int(np.sum(np.isfinite(mean)))
+        choices.append((ordered, name, values, edges))
+    _, name, values, edges = max(choices, key=lambda choice: choice[0])
+    before, _ = _cells(m.deflection, values, m.before, x_edges, edges)
+    size = np.abs(before[np.isfinite(before)])
+    reach = max(float(np.quantile(size, 0.98)) if size.size else 0.0, noise)
+    maps = []
+    for which, residual in (("before", m.before), ("after", m.after)):
+        if which == "after" and m.alike:
+            break
+        mean, _ = _cells(m.deflection, values, residual, x_edges, edges)
+        rows = edges if name == "time" else np.arange(edges.size)
+        with drawing(3.4) as (figure, axes):
+            drawn = axes.pcolormesh(
+                1e3 * x_edges, rows, mean.T, cmap=DIVERGING, vmin=-reach, vmax=reach, rasterized=True
+            )
+            axes.grid(False)
+            title = "Over deflection and " + name if m.alike else f"{which.capitalize()} the correction"
+            axes.set(xlabel="deflection [mm]", title=title)
+            if name == "time":
+                axes.set_ylabel("time [s]")
+            else:
+                at = _row_rates(m.rate, edges)
+                ticks = np.unique(np.linspace(0, at.size - 1, 8).round().astype(int))
+                axes.set_yticks(ticks + 0.5, labels=[number(1e3 * at[t], 2) for t in ticks])
+                axes.set_ylabel("rate [mm/s]")
+            figure.subplots_adjust(right=0.94)
+            bar = figure.colorbar(drawn, ax=axes, label="mean residual [N]", aspect=30)
+            bar.outline.set_visible(False)
+            alt = f"Map of the mean residual over deflection and {name}, {which} the correction."
+            maps.append(inline_svg(figure, alt, mark + which))
+    return maps, name
+
+
+def _courses(m: Misfit) -> list[tuple[FloatArray, str]]:
+    before = (m.before, BEFORE)
+    return [before] if m.alike else [before, (m.after, AFTER)]
+
+
+def _cycles(time: FloatArray, loading: NDArray[np.bool_], most: int) -> FloatArray:
+    """Return times [s] between which whole cycles lie, at most so many; even spans where there are hardly cycles."""
+    starts = np.flatnonzero(~loading[:-1] & loading[1:]) + 1
+    if loading[0]:
+        starts = np.append(0, starts)
+    if starts.size < 4:
+        return np.linspace(time[0], time[-1], most + 1)
+    return np.asarray(time[starts[np.unique(np.linspace(0, starts.size - 1, most + 1).astype(int))]])
+
+
+def _time_axis(axes: Axes, m: Misfit) -> None:
+    for end in m.ends[:-1]:
+        axes.axvline(m.time[end], color=INK, lw=0.8, ls=(0, (2, 2)))
+    axes.set_xlabel("time, recordings one after another [s]" if len(m.ends) > 1 else "time [s]")
+    axes.set_xlim(m.time[0] - 0.01 * m.time[-1], 1.01 * m.time[-1])
+
+
+def _noise_band(axes: Axes, noise: float) -> None:
+    axes.axhspan(-noise, noise, color=BAND, lw=0, zorder=0.5)
+    axes.axhline(0.0, color=GRID, lw=1.0)
+
+
+def _means(values: FloatArray, residual: FloatArray, edges: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the mean coordinate and the mean residual of every bin with samples enough."""
+    bin_of = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    count = np.bincount(bin_of, minlength=edges.size - 1)
+    full = count >= FEWEST
+    at = np.bincount(bin_of, values, minlength=edges.size - 1)[full] / count[full]
+    return at, np.bincount(bin_of, residual, minlength=edges.size - 1)[full] / count[full]
+
+
+def _cells(
+    x: FloatArray, y: FloatArray, residual: FloatArray, x_edges: FloatArray, y_edges: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the mean residual and the count of every cell; NaN where a cell has too few samples."""
+    rows, columns = x_edges.size - 1, y_edges.size - 1
+    i = np.clip(np.searchsorted(x_edges, x, side="right") - 1, 0, rows - 1)
+    j = np.clip(np.searchsorted(y_edges, y, side="right") - 1, 0, columns - 1)
+    cell = i * columns + j
+    count = np.bincount(cell, minlength=rows * columns).astype(float)
+    total = np.bincount(cell, residual, minlength=rows * columns)
+    mean = np.where(count >= FEWEST, total / np.maximum(count, 1.0), np.nan)
+    return mean.reshape(rows, columns), count.reshape(rows, columns)
+
+
+def _row_rates(rate: FloatArray, edges: FloatArray) -> FloatArray:
+    """Return the mean rate of the samples of every row; the middle where a row has none."""
+    row = np.clip(np.searchsorted(edges, rate, side="right") - 1, 0, edges.size - 2)
+    count = np.bincount(row, minlength=edges.size - 1)
+    total = np.bincount(row, rate, minlength=edges.size - 1)
+    return np.where(count > 0, total / np.maximum(count, 1), 0.5 * (edges[:-1] + edges[1:]))
+
+
+def _rate_edges(rate: FloatArray, count: int) -> FloatArray:
+    """Return at most `count` + 1 edges between which about as many samples lie, none closer than rates can be told."""
+    edges = np.unique(np.quantile(rate, np.linspace(0.0, 1.0, count + 1)))
+    kept = [float(edges[0])]
+    for edge in edges[1:-1]:
+        if edge - kept[-1] > NARROWEST * max(
+            abs(edge), abs(kept[-1]), NARROWEST * float(edges[-1] - edges[0])
+        ):
+            kept.append(float(edge))
+    return np.array([*kept, np.nextafter(edges[-1], np.inf)])

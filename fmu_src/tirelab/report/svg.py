@@ -1,0 +1,108 @@
+"""A matplotlib figure as SVG that stands in the page: its colours follow light and dark, its text the page's font."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from typing import Any
+
+import matplotlib as mpl
+from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+INK, GRID, RECORDED, BEFORE, AFTER, BAND = "#010101", "#020202", "#030303", "#040404", "#050505", "#060606"
+"""Stand-ins that become the variables of the page's style sheet."""
+
+_VARIABLES = {
+    INK: "var(--ink)",
+    GRID: "var(--grid)",
+    RECORDED: "var(--recorded)",
+    BEFORE: "var(--before)",
+    AFTER: "var(--after)",
+    BAND: "var(--band)",
+}
+
+WIDTH = 4.6
+"""Width of a figure [in]: two stand side by side on a desktop, one fills a phone with its text still legible."""
+
+MARGINS = (0.145, 0.975)
+"""Left and right edge of the axes: margins found by matplotlib for each picture would double the time."""
+
+_SETTINGS: dict[Any, Any] = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "tirelab",
+    "text.parse_math": False,
+    "axes.unicode_minus": True,
+    "font.size": 10.0,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 10.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.facecolor": "none",
+    "figure.facecolor": "none",
+    "savefig.facecolor": "none",
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "path.simplify": False,
+    "agg.path.chunksize": 0,
+}
+
+_path = re.compile(r' d="[^"]*"')
+_numbers = re.compile(r"(\d\.\d\d)\d+")
+_dropped = re.compile(
+    r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>|<style.*?</style>| xmlns(?::\w+)?=\"[^\"]*\"",
+    re.DOTALL,
+)
+_identity = re.compile(r' id="([^"]+)"')
+_reference = re.compile(r'url\(#([^)]+)\)|href="#([^"]+)"')
+
+
+@contextmanager
+def drawing(height: float = 3.2) -> Iterator[tuple[Figure, Axes]]:
+    """Give a figure `height` [in] high with its axes, in the page's look; everything drawn belongs inside."""
+    with mpl.rc_context(_SETTINGS):
+        figure = Figure(figsize=(WIDTH, height))
+        figure.subplots_adjust(
+            left=MARGINS[0], right=MARGINS[1], bottom=0.5 / height, top=1.0 - 0.27 / height
+        )
+        yield figure, figure.subplots()
+
+
+def inline_svg(figure: Figure, alt: str, mark: str) -> Markup:
+    """Return the figure as an SVG element, told to those who cannot see it by `alt`.
+
+    mark: a word of its own for each figure of the page, to keep their inner references apart
+    """
+    buffer = io.StringIO()
+    figure.savefig(buffer, format="svg", dpi=160, metadata={"Date": None})
+    text = _dropped.sub("", buffer.getvalue())
+    for stand_in, variable in _VARIABLES.items():
+        text = text.replace(stand_in, variable)
+    # Only in paths: the digits of a picture's scale are worth its whole width.
+    text = _path.sub(lambda path: _numbers.sub(r"\1", path[0]), text)
+    used = {name for pair in _reference.findall(text) for name in pair if name}
+    numbered = dict(zip(sorted(used), (f"{mark}{i}" for i in itertools.count()), strict=False))
+    text = _identity.sub(lambda m: f' id="{numbered[m[1]]}"' if m[1] in numbered else "", text)
+    for name, short in numbered.items():
+        text = text.replace(f"url(#{name})", f"url(#{short})").replace(f'href="#{name}"', f'href="#{short}"')
+    text = re.sub(r"<svg [^>]*?viewBox=\"([^\"]+)\"[^>]*>", _opening(alt), text.strip(), count=1)
+    return Markup(re.sub(r">\s+<", "><", text))
+
+
+def _opening(alt: str) -> str:
+    told = escape(alt).replace("\\", r"\\")
+    return rf'<svg viewBox="\1" role="img" aria-label="{told}">'

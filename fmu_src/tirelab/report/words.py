@@ -1,0 +1,199 @@
+"""What the contract's names, numbers and spans are called in a report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from radialtire import CATALOGUE, FLAT_RADIUS
+
+RECALIBRATION = "recalibration"
+RECALIBRATED = "the coefficients of the elastic law are another tire's; no physics is missing"
+UNKNOWN = "unknown"
+
+CLEAR = 5.0
+"""Separation, in units of the noise, from which a test would tell two sets apart without doubt."""
+
+TOO_WEAK = (
+    "Within the rig's limits this is the best motion that was tried, but it would hardly tell them apart."
+)
+
+_SCALES = {
+    "m": (1e3, "mm"),
+    "m/s": (1e3, "mm/s"),
+    "m/N": (1e6, "mm/kN"),
+    "N.s/m": (1.0, "N·s/m"),
+    "m/s^2": (1.0, "m/s²"),
+    "1": (1.0, ""),
+}
+"""Units of the contract that read better in others: factor and name."""
+
+_COORDINATES = {
+    "history": "largest deflection so far",
+    "direction": "loading or unloading",
+    "radius": "surface",
+    "rate": "rate of deflection",
+}
+
+
+def effect_title(name: str) -> str:
+    """Return the name of an effect, or of one of its parameters, as a reader says it."""
+    if name == UNKNOWN:
+        return "something unknown"
+    return (
+        name.replace("_", " ").replace("rate independent", "rate-independent").replace("mullins", "Mullins")
+    )
+
+
+def set_title(names: Sequence[str]) -> str:
+    """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
+    known = {*CATALOGUE, RECALIBRATION, UNKNOWN}
+    return (
+        listed([effect_title(n) if n in known else f"something unknown over {n}" for n in names])
+        or "nothing missing"
+    )
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return "a", "a and b", "a, b and c"."""
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def statement(name: str) -> str:
+    """Return the sentence of the catalogue on an effect, or nothing where it has none."""
+    if name == RECALIBRATION:
+        return RECALIBRATED
+    return CATALOGUE[name].statement if name in CATALOGUE else ""
+
+
+def meaning(effect: str, parameter: str) -> str:
+    """Return what a parameter means, from the catalogue, or nothing where it has none."""
+    owner = CATALOGUE.get("elastic_shape" if effect == RECALIBRATION else effect)
+    found = [p.meaning for p in owner.parameters if p.name == parameter] if owner else []
+    return found[0] if found else ""
+
+
+def scaled(unit: str) -> tuple[float, str]:
+    """Return the factor and the name of the unit in which a report gives values of `unit`."""
+    return _SCALES.get(unit, (1.0, unit))
+
+
+def with_unit(text: str, unit: str) -> str:
+    """Return a number with its unit, if it has one."""
+    return f"{text} {unit}" if unit else text
+
+
+def number(value: Any, digits: int = 3) -> str:
+    """Return `value` with so many significant digits; a dash where there is none."""
+    if value is None or isinstance(value, str) or not math.isfinite(value):
+        return str(value) if isinstance(value, str) else "–"
+    text = f"{value:#.{digits}g}".rstrip(".") if 0.0 < abs(value) < 10**digits else f"{value + 0.0:.0f}"
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        text = f"{mantissa}·10^{int(exponent)}"
+    return text.replace("-", "−")
+
+
+def residual(value: float, noise: float) -> str:
+    """Return a mean residual [N] to the tenth of the noise [N]."""
+    decimals = min(max(1 - math.floor(math.log10(noise)), 0), 6) if noise > 0.0 else 3
+    return f"{value + 0.0:.{decimals}f}".replace("-", "−")
+
+
+def estimate(value: float, std: float | None, unit: str) -> str:
+    """Return value ± standard deviation with its unit, both to the second digit of the deviation."""
+    factor, name = scaled(unit)
+    if std is None or not math.isfinite(std) or std <= 0.0:
+        return with_unit(number(factor * value, 4), name)
+    decimals = 1 - math.floor(math.log10(factor * std))
+    if not 0 <= decimals <= 6 or abs(factor * value) >= 1e6:
+        return with_unit(f"{number(factor * value, 4)} ± {number(factor * std, 2)}", name)
+    text = f"{factor * value:.{decimals}f} ± {factor * std:.{decimals}f}"
+    return with_unit(text.replace("-", "−"), name)
+
+
+def percent(share: float) -> str:
+    """Return a share as percent; what is less than half of one is said to be so."""
+    if 0.0 < share < 0.005:
+        return "< 1 %"
+    return f"{100.0 * share:.0f} %".replace("-", "−")
+
+
+def confidence_word(confidence: float) -> str:
+    """Return how sure that is, in words."""
+    for limit, word in ((0.9, "sure"), (0.7, "fairly sure"), (0.5, "more likely than not")):
+        if confidence >= limit:
+            return word
+    return "one of several possibilities"
+
+
+def coordinate(by: str) -> str:
+    """Return what a coordinate of the misfit is called."""
+    return _COORDINATES.get(by, by)
+
+
+def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
+    """Return the first entries of `where`, at most so many, and at most `of_one` over one coordinate."""
+    counts: dict[str, int] = {}
+    found = []
+    for place in where:
+        counts[place["by"]] = counts.get(place["by"], 0) + 1
+        if counts[place["by"]] <= of_one:
+            found.append(place)
+    return found[:most]
+
+
+def span(place: Mapping[str, Any]) -> str:
+    """Return the span of an entry of `where` in words."""
+    by, start, stop, unit = (place[key] for key in ("by", "from", "to", "unit"))
+    if place.get("label"):
+        return str(place["label"])
+    if by == "direction" and not isinstance(start, str) and not isinstance(stop, str):
+        return "loading" if start + stop > 0.0 else "unloading"
+    if by == "radius" and start == stop:
+        return surface(start)
+    factor, name = scaled(str(unit))
+    if start == stop:
+        return with_unit(_edge(start, factor), name)
+    digits = 3 if _edge(start, factor) != _edge(stop, factor) else 5
+    if _edge(start, factor, digits) == _edge(stop, factor, digits):
+        return with_unit(_edge(start, factor, digits), name)
+    return with_unit(f"{_edge(start, factor, digits)} to {_edge(stop, factor, digits)}", name)
+
+
+def _edge(value: float | str, factor: float, digits: int = 3) -> str:
+    if isinstance(value, str):
+        return {"inf": "∞", "-inf": "−∞"}.get(value, value)
+    return number(factor * value, digits)
+
+
+def surface(radius: float | str) -> str:
+    """Return a surface by its radius [m]."""
+    size = float(radius)
+    if abs(size) >= FLAT_RADIUS:
+        return "flat ground"
+    return f"{'convex' if size > 0.0 else 'concave'}, radius {number(100.0 * abs(size))} cm"
+
+
+def headline(verdict: Mapping[str, Any]) -> str:
+    """Return the verdict in one line."""
+    names = [effect["name"] for effect in verdict["effects"]]
+    physics = [name for name in names if name != RECALIBRATION]
+    unexplained = bool(verdict["unexplained"])
+    if not physics and not unexplained:
+        told = "No physics is missing: the elastic law is another tire's" if names else "Nothing is missing"
+    elif not names:
+        told = "Something is missing that no known effect explains"
+    else:
+        parts = [effect_title(name) for name in physics]
+        if unexplained:
+            parts.append("something that no known effect explains")
+        told = f"Left out: {listed(parts)}"
+        if RECALIBRATION in names:
+            told += ", and the elastic law is another tire's"
+    if verdict["alternatives"]:
+        told += " – or something that these recordings cannot tell from it"
+    return f"{told}."

@@ -1,0 +1,114 @@
+"""Names, numbers and spans as a reader is told them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from tirelab.report import words
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "unit", "told"),
+    [
+        (301.4, 3.77, "N.s/m", "301.4 ± 3.8 N·s/m"),
+        (-7.9894e-4, 4.7e-7, "m", "−0.79894 ± 0.00047 mm"),
+        (0.0199, 0.0008, "1", "0.01990 ± 0.00080"),
+        (1234567.0, 45678.0, "N/m", "1234567 ± 45678 N/m"),
+        (2e-6, None, "m/N", "2.000 mm/kN"),
+        (5.0, float("nan"), "s", "5.000 s"),
+        (0.0, 0.0018, "1", "0.0000 ± 0.0018"),
+    ],
+)
+def test_estimates_have_two_digits_of_their_deviation(
+    value: float, std: float | None, unit: str, told: str
+) -> None:
+    assert words.estimate(value, std, unit) == told
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (6.0, "6.00"),
+        (-30844.4, "−30844"),
+        (0.0, "0"),
+        (-0.0, "0"),
+        (None, "–"),
+        (float("nan"), "–"),
+        (1.5e-7, "1.50·10^-7"),
+    ],
+)
+def test_numbers_have_three_digits(value: float | None, told: str) -> None:
+    assert words.number(value) == told.replace("-", "−")
+
+
+def place(by: str, start: Any, stop: Any, unit: str, **more: Any) -> dict[str, Any]:
+    return {"by": by, "from": start, "to": stop, "unit": unit, **more}
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        (place("deflection", 0.012, 0.015, "m"), "12.0 to 15.0 mm"),
+        (place("rate", 0.0240, 0.024003, "m/s"), "24.000 to 24.003 mm/s"),
+        (place("rate", 0.0599999999, 0.06, "m/s"), "60.000 mm/s"),
+        (place("direction", -1.5, 0.0, "1"), "unloading"),
+        (place("direction", 0.0, 1.5, "1"), "loading"),
+        (place("radius", "inf", "inf", "m"), "flat ground"),
+        (place("radius", -0.381, -0.381, "m"), "concave, radius 38.1 cm"),
+        (place("radius", 0.127, "inf", "m"), "127 to ∞ mm"),
+        (place("cycle", 0.5, 7.5, "1", label="later cycles"), "later cycles"),
+        (place("recording", 2, 2, "1"), "2.00"),
+    ],
+)
+def test_spans_are_told_in_the_readers_units(entry: dict[str, Any], told: str) -> None:
+    assert words.span(entry) == told
+
+
+def test_the_foremost_places_do_not_crowd_each_other_out() -> None:
+    where = [place("time", i, i + 1, "s") for i in range(5)] + [place("rate", 0, 1, "m/s")]
+    assert [p["by"] for p in words.foremost(where, 12)] == ["time", "time", "rate"]
+    assert len(words.foremost(where, 1)) == 1
+
+
+@pytest.mark.parametrize(
+    ("names", "unexplained", "rivals", "told"),
+    [
+        ([], False, [], "Nothing is missing."),
+        (["recalibration"], False, [], "No physics is missing: the elastic law is another tire's."),
+        (
+            ["recalibration"],
+            True,
+            [],
+            "Left out: something that no known effect explains, and the elastic law is another tire's.",
+        ),
+        (["inertia", "force_lag"], False, [], "Left out: inertia and force lag."),
+        ([], True, [], "Something is missing that no known effect explains."),
+        (
+            [],
+            False,
+            [["force_offset"]],
+            "Nothing is missing – or something that these recordings cannot tell from it.",
+        ),
+    ],
+)
+def test_headlines(names: list[str], unexplained: bool, rivals: list[list[str]], told: str) -> None:
+    effects = [{"name": name} for name in names]
+    assert words.headline({"effects": effects, "unexplained": unexplained, "alternatives": rivals}) == told
+
+
+def test_sets_are_named_whether_known_or_not() -> None:
+    assert words.set_title([]) == "nothing missing"
+    assert words.set_title(["unknown", "inertia"]) == "something unknown and inertia"
+    assert words.set_title(["rate"]) == "something unknown over rate"
+
+
+def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
+    assert words.residual(-0.42, 6.0) == "−0.4"
+    assert words.residual(0.00123, 0.0) == "0.001"
+    assert words.residual(12.3456, 0.05) == "12.346"
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.0, "0 %"), (0.001, "< 1 %"), (0.424, "42 %"), (1.0, "100 %")])
+def test_percent(share: float, told: str) -> None:
+    assert words.percent(share) == told

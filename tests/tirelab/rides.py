@@ -1,0 +1,54 @@
+"""Recordings for tests, written out with numpy alone: the article's flat tire, driven in a few ways."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A recording: arrays of one length, in SI."""
+
+    name: str
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+    force: FloatArray
+
+
+def flat_force(deflection: FloatArray) -> FloatArray:
+    """Return 550.9 x^1.422, x in cm: equations 2, 5a and 6a on flat ground."""
+    return np.asarray(550.9 * np.maximum(100.0 * deflection, 0.0) ** 1.422)
+
+
+def ride(seed: int, samples: int = 6000, step: float = 0.005) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return time [s], deflection [m] of eight sines between 0.1 and 4 Hz about 12 mm, and its rate [m/s]."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(samples) * step
+    frequencies = np.geomspace(0.1, 4.0, 8)
+    phases = rng.uniform(0.0, 2.0 * np.pi, 8)
+    waves = 2.0 * np.pi * frequencies * time[:, None] + phases
+    amplitude = 0.0022 / np.sqrt(1.0 + frequencies)
+    deflection = 0.0115 + (amplitude * np.sin(waves)).sum(axis=1)
+    rate = (amplitude * 2.0 * np.pi * frequencies * np.cos(waves)).sum(axis=1)
+    return time, deflection, rate
+
+
+def triangle(samples: int = 1200, step: float = 0.02, period: float = 4.0) -> tuple[FloatArray, FloatArray]:
+    """Return time [s] and deflection [m] of a triangle to 23 mm at one constant rate."""
+    time = np.arange(samples) * step
+    return time, 0.023 * (1.0 - np.abs(1.0 - 2.0 * (time / period % 1.0)))
+
+
+def read(
+    name: str, time: FloatArray, deflection: FloatArray, force: FloatArray, seed: int, noise: float = 5.0
+) -> Drive:
+    """Return a recording on flat ground with white noise of `noise` [N] on the force and 5 um on the deflection."""
+    rng = np.random.default_rng(seed)
+    shown = deflection + 5e-6 * rng.standard_normal(time.size)
+    return Drive(
+        name, time, shown, np.full(time.size, np.inf), force + noise * rng.standard_normal(time.size)
+    )
