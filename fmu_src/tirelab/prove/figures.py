@@ -100,8 +100,8 @@ def overview(scores: Sequence[Score], title: str) -> Figure:
 
 
 def _over_sizes(axes: Axes) -> None:
-    axes.set(xscale="log", xlim=(0.8, 40.0), ylim=(-0.05, 1.05))
-    axes.set_xticks([1, 3, 10, 30], ["1", "3", "10", "30"])
+    axes.set(xscale="log", xlim=(0.8, 150.0), ylim=(-0.05, 1.05))
+    axes.set_xticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
     axes.minorticks_off()
     _plain(axes)
 

@@ -16,7 +16,7 @@ from .score import Score
 CONFIDENCE = 0.95
 """Coverage of all intervals."""
 
-SIZE_EDGES = (0.0, 2.0, 4.0, 8.0, 16.0, np.inf)
+SIZE_EDGES = (0.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf)
 """Classes of effect size over noise: octaves, as the rig draws sizes evenly over the logarithm from 1 to 30."""
 
 CONFIDENCE_EDGES = (0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0)
