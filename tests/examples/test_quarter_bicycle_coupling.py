@@ -23,7 +23,7 @@ import pytest
 from fmpy.ssp.ssd import read_ssd
 from radialtire import TireModel
 from tirelab.errors import TirelabError
-from tirelab.terrain import Ground, contact, flat, ground_from, iso8608, log, place, sine
+from tirelab.terrain import Ground, flat, ground_from, log, place, sine
 
 MODULES = (
     "bicycle",
@@ -137,28 +137,6 @@ def master(repository: Path) -> Callable[..., Any]:
 
 
 MASTERS = [("libcosim", "libcosimpy"), ("ecos", "ecospy")]
-
-
-def test_one_wheel_and_many_meet_the_ground_alike(example: dict[str, ModuleType]) -> None:
-    """The scalar contact of the FMU against the vectorised one: the same formulas, so the same to a few last digits."""
-    for ground in (
-        ground_from(iso8608("E", 12.0, 3), 0.005),
-        ground_from(place(flat(6.0), log(0.05), 3.0), 0.002),
-    ):
-        random = np.random.default_rng(7)
-        position = random.uniform(1.0, 5.0, 400)
-        below = np.interp(position, ground.s, ground.z)
-        height = below + 0.33 + random.uniform(-0.06, 0.06, position.size)
-        touch = contact(ground, position, height)
-        track = example["model"].track_of(ground, 1.0, 5.0)
-        met = [example["wheel"].meet(track, s, h, 0.33) for s, h in zip(position, height, strict=True)]
-        assert {bool(m.deflection > 0.0) for m in met} == {True, False}
-        np.testing.assert_allclose([m.deflection for m in met], touch.deflection, atol=1e-12)
-        np.testing.assert_allclose([m.inclination for m in met], touch.inclination, atol=1e-11)
-        # The curvature is a quotient of differences over a section of at least a centimetre.
-        np.testing.assert_allclose(
-            [1.0 / m.surface_radius for m in met], 1.0 / touch.surface_radius, atol=1e-9
-        )
 
 
 def test_archive_is_the_same_for_the_same_ride(

@@ -8,6 +8,7 @@ import platform
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -49,15 +50,17 @@ def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) ->
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     # The oneTBB that ecospy needs is installed beside the interpreter, where the linker does not look.
     environment["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
-    result = subprocess.run(
-        [sys.executable, "-I", str(HOSTS / script), *map(str, arguments)],
-        input=json.dumps(job),
-        capture_output=True,
-        text=True,
-        env=environment,
-        timeout=timeout,
-        check=False,
-    )
+    with tempfile.TemporaryDirectory() as folder:  # proxyfmu writes its logs where it stands
+        result = subprocess.run(
+            [sys.executable, "-I", str(HOSTS / script), *map(str, arguments)],
+            input=json.dumps(job),
+            capture_output=True,
+            text=True,
+            env=environment,
+            cwd=folder,
+            timeout=timeout,
+            check=False,
+        )
     assert result.returncode == 0, f"{script} exited with {result.returncode}:\n{result.stderr}"
     return result.stdout
 
