@@ -107,7 +107,7 @@ def test_samples_count_and_not_widths() -> None:
 
 def test_the_rate_of_a_ramp_is_found() -> None:
     assert overlap([true("rate", 0.001, None, "m/s")], [said("rate", 1.5, 3.0, "mm/s")]) == 1.0
-    assert overlap([true("rate", None, -0.001, "m/s")], [said("rate", 1.5, 3.0, "mm/s")]) == 0.0
+    assert overlap([true("rate", 0.001, None, "m/s")], [said("rate", -3.0, -1.5, "mm/s")]) == 0.0
 
 
 def test_a_recording_that_never_reaches_the_place_does_not_count() -> None:
