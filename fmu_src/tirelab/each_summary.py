@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 import jinja2
+from rich.table import Table
 
 from .stated import NOTHING, Names, Stated
 
@@ -115,6 +116,20 @@ def summary_html(result: EachResult, out: Path) -> str:
     return environment.from_string(source).render(
         result=result, reports={row.item.name: quote(_report(row, out)) for row in result.rows}
     )
+
+
+def summary_table(result: EachResult) -> Table:
+    """Return what is missing, how often and how sure, for a terminal."""
+    total = len(result.rows)
+    table = Table(title=f"{total} recordings or folders", title_justify="left")
+    for heading in ("missing", "how often", "mean confidence"):
+        table.add_column(heading)
+    for count in result.counts:
+        name = _words(frozenset({count.name}))
+        table.add_row(name, f"{count.times} of {total}", f"{100.0 * count.confidence:.0f} %")
+    if result.failures:
+        table.add_row("no verdict", f"{len(result.failures)} of {total}", "")
+    return table
 
 
 def _report(row: Row, out: Path) -> str:

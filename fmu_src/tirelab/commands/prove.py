@@ -10,6 +10,9 @@ from rich.console import Console
 from ..workers import Cores
 from .options import FILE, SentenceCommand
 
+WIDTH = 110
+"""Columns of the table where it does not go to a terminal."""
+
 
 @click.command("prove", cls=SentenceCommand)
 @click.option("--trials", type=click.IntRange(min=1), default=200, show_default=True, help="How many trials.")
@@ -38,7 +41,10 @@ def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | Non
     from ..prove.terminal import bar_table
 
     proof = prove(Series(Folders(out), seed, trials, kind), Cores(jobs, dask), click.echo)
-    Console().print(bar_table(proof))
+    console = Console()
+    if not console.is_terminal:
+        console.width = WIDTH
+    console.print(bar_table(proof))
     for score in proof.failures:
         click.echo(f"trial {score.trial} failed: {score.error}")
     click.echo(f"proof: {out / 'proof.html'}")

@@ -35,14 +35,14 @@ def against_the_bar(scores: Sequence[Score]) -> tuple[Line, ...]:
     """Return every figure beside its bar."""
     return (
         Line("exact set named", exact(scores), 0.90, at_least=True),
-        Line("truth is the verdict or a stated rival", among(scores), 0.97, at_least=True),
+        Line("truth is the verdict or a rival", among(scores), 0.97, at_least=True),
         Line("false alarms where nothing is hidden", false_alarms(scores), 0.02, at_least=False),
-        Line("unknown recognised outside the catalogue", recognised(scores), 0.90, at_least=True),
+        Line("unknown said outside the catalogue", recognised(scores), 0.90, at_least=True),
         Line(
-            "held-out RMSE within 10 % of the floor, inside the catalogue",
+            "held-out RMSE within 10 % of the floor",
             near_floor(scores, NEAR_FLOOR),
             0.95,
             at_least=True,
         ),
-        Line("Brier score of the stated confidence", brier(scores), 0.08, at_least=False),
+        Line("Brier score of the confidence", brier(scores), 0.08, at_least=False),
     )

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from .bar import NEAR_FLOOR
 from .score import Score
-from .summary import NO_NAME, Point
+from .summary import ANY_EFFECT, NO_NAME, Point, naming, reliability
 
 BLUE, ORANGE, GREY = "#1f6f9f", "#d9731a", "#777777"
 
@@ -64,10 +64,7 @@ def naming_curves(curves: Mapping[str, Sequence[Point]]) -> Figure:
         _rates(axes, points)
         count = sum(p.rate.trials for p in points)
         axes.set_title(f"{_words(effect)} ({count})", fontsize=9)
-        axes.set(xscale="log", xlim=(0.8, 40.0), ylim=(-0.05, 1.05))
-        axes.set_xticks([1, 3, 10, 30], ["1", "3", "10", "30"])
-        axes.minorticks_off()
-        _plain(axes)
+        _over_sizes(axes)
     for axes in grid[len(curves) :]:
         axes.set_visible(False)
     figure.supxlabel("size of the effect over the noise", fontsize=9)
@@ -78,12 +75,48 @@ def naming_curves(curves: Mapping[str, Sequence[Point]]) -> Figure:
 def reliability_diagram(points: Sequence[Point]) -> Figure:
     """Draw how often verdicts were exact over the confidence that they stated."""
     figure = Figure(figsize=(4.6, 4.4), layout="constrained")
-    axes = figure.subplots()
+    _reliability(figure.subplots(), points)
+    return figure
+
+
+def held_out_errors(scores: Sequence[Score]) -> Figure:
+    """Draw the held-out RMSE over the noise floor, after against before, one point a trial."""
+    figure = Figure(figsize=(5.8, 4.4), layout="constrained")
+    _held_out(figure.subplots(), scores)
+    return figure
+
+
+def overview(scores: Sequence[Score], title: str) -> Figure:
+    """Draw the proof in one picture: naming over size, held-out errors, reliability."""
+    figure = Figure(figsize=(13.0, 4.2), layout="constrained")
+    named, errors, honest = figure.subplots(1, 3)
+    _rates(named, naming(scores).get(ANY_EFFECT, []))
+    _over_sizes(named)
+    named.set(xlabel="size of a hidden effect over the noise", ylabel="how often it was named")
+    _held_out(errors, scores)
+    _reliability(honest, reliability(scores))
+    figure.suptitle(title, fontsize=10)
+    return figure
+
+
+def _over_sizes(axes: Axes) -> None:
+    axes.set(xscale="log", xlim=(0.8, 150.0), ylim=(-0.05, 1.05))
+    axes.set_xticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
+    axes.minorticks_off()
+    _plain(axes)
+
+
+def _reliability(axes: Axes, points: Sequence[Point]) -> None:
     axes.plot([0, 1], [0, 1], color=GREY, lw=1, ls="--", label="honest")
     _rates(axes, points)
     for p in points:
         axes.annotate(
-            f"{p.rate.trials}", (p.at, p.rate.value), (6, -11), textcoords="offset points", fontsize=8
+            f"{p.rate.trials}",
+            (p.at, p.rate.value),
+            (-8, -12),
+            textcoords="offset points",
+            fontsize=8,
+            ha="right",
         )
     axes.set(
         xlabel="stated confidence",
@@ -93,13 +126,9 @@ def reliability_diagram(points: Sequence[Point]) -> Figure:
     )
     axes.legend(frameon=False, loc="upper left")
     _plain(axes)
-    return figure
 
 
-def held_out_errors(scores: Sequence[Score]) -> Figure:
-    """Draw the held-out RMSE over the noise floor, after against before, one point a trial."""
-    figure = Figure(figsize=(5.8, 4.4), layout="constrained")
-    axes = figure.subplots()
+def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
     for outside, colour, label in ((False, BLUE, "inside the catalogue"), (True, ORANGE, "outside")):
         found = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
         if found:
@@ -107,8 +136,9 @@ def held_out_errors(scores: Sequence[Score]) -> Figure:
             axes.plot(before, after, "o", ms=4, alpha=0.7, mec="none", color=colour, label=label)
     axes.axhline(1.0 + NEAR_FLOOR, color=GREY, lw=1, ls="--", label="10 % above the floor")
     axes.axline((1.0, 1.0), slope=1.0, color=GREY, lw=1, ls=":", label="no better than before")
-    axes.set(xscale="log", yscale="log", xlabel="RMSE of the believed tire over the noise floor")
-    axes.set_ylabel("RMSE of the corrected tire over the noise floor")
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlabel("held-out RMSE of the believed tire over the noise floor")
+    axes.set_ylabel("of the corrected tire")
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.95), max(high, 2.0))
     for axis in (axes.xaxis, axes.yaxis):
@@ -116,7 +146,6 @@ def held_out_errors(scores: Sequence[Score]) -> Figure:
         axis.set_minor_formatter(mpl.ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
     axes.legend(frameon=False, fontsize=8)
     _plain(axes)
-    return figure
 
 
 def _rates(axes: Axes, points: Sequence[Point]) -> None:

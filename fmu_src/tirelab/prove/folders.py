@@ -9,7 +9,7 @@ DIR/verdicts/NNNN/           what `tirelab diagnose` wrote; outcomes/NNNN.json h
 DIR/tests/NNNN/test.csv      the suggested separating test, as the rig recorded it
 DIR/second_verdicts/NNNN/    the diagnosis with that recording; second_outcomes/NNNN.json how it ended
 DIR/scores/NNNN.json         the score
-DIR/proof.json, proof.html   the proof
+DIR/proof.json, .html, .png  the proof
 """
 
 from __future__ import annotations

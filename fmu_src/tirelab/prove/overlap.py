@@ -40,9 +40,9 @@ def place_scores(
     """Return the overlap for every effect and coordinate in the answer's `where`.
 
     The stated region along a coordinate is made of its stated spans in falling order of their share of the squared
-    error, until they hold `STATED_PART` of what all of them hold together. Both regions are cut to what the recordings
-    cover. An effect confined differently in several recordings (times) counts with the mean over them; a place stated
-    without its recording counts for each of them. A direction is found or not: 1 or 0.
+    error, until they hold `STATED_PART` of what all of them hold together. The mean over the recordings with samples
+    in the true place counts; a place stated without its recording is meant in each of them. A direction is found or
+    not: 1 or 0.
     """
     groups: dict[tuple[str, str], dict[str, list[Mapping[str, Any]]]] = {}
     for place in where:
@@ -59,10 +59,12 @@ def place_scores(
             if by == "direction":
                 overlaps.append(_direction_overlap(str(places[0]["from"]), said))
             else:
-                within = _covered(by, [by_name[name]] if by == "time" else list(recordings))
-                true = [_cut(place["from"], place["to"], within) for place in places]
-                overlaps.append(_jaccard(true, _stated_region(said, by, within)))
-        scores.append(PlaceScore(effect, by, float(np.mean(overlaps))))
+                values = _coordinate(by, by_name[name])
+                true = _inside(values, [_span(place["from"], place["to"]) for place in places])
+                if true.any():
+                    overlaps.append(_jaccard(true, _inside(values, _stated_region(said, by))))
+        if overlaps:
+            scores.append(PlaceScore(effect, by, float(np.mean(overlaps))))
     return tuple(scores)
 
 
@@ -78,7 +80,7 @@ def _direction_overlap(true: str, said: Sequence[StatedPlace]) -> float:
     return float((middle < 0.0) == (true == "unloading"))
 
 
-def _stated_region(said: Sequence[StatedPlace], by: str, within: Span) -> list[Span]:
+def _stated_region(said: Sequence[StatedPlace], by: str) -> list[Span]:
     whole = sum(p.share for p in said)
     region: list[Span] = []
     held = 0.0
@@ -87,12 +89,9 @@ def _stated_region(said: Sequence[StatedPlace], by: str, within: Span) -> list[S
             break
         held += place.share
         factor = _to_si(place.unit, by)
-        begin, end = place.begin, place.end
-        if factor is None or isinstance(begin, str) or isinstance(end, str):
-            continue
-        region.append(
-            _cut(None if begin is None else factor * begin, None if end is None else factor * end, within)
-        )
+        if factor is not None and not isinstance(place.begin, str) and not isinstance(place.end, str):
+            low, high = _span(place.begin, place.end)
+            region.append((factor * low, factor * high))
     return region
 
 
@@ -106,38 +105,29 @@ def _to_si(unit: str, by: str) -> float | None:
     return float(found.multiply / found.divide)
 
 
-def _covered(by: str, recordings: Sequence[Recording]) -> Span:
-    values = np.concatenate([_coordinate(by, r) for r in recordings])
-    return (float(np.min(values)), float(np.max(values))) if values.size else (-np.inf, np.inf)
-
-
 def _coordinate(by: str, recording: Recording) -> NDArray[np.float64]:
     if by == "rate":
-        # twenty steps apart, so that the gauge's noise does not widen the range
-        lag = min(20, len(recording) - 1)
-        x, t = recording.deflection, recording.time
-        return np.asarray((x[lag:] - x[:-lag]) / (t[lag:] - t[:-lag]))
+        # over twenty steps, so that the gauge's noise does not drown it
+        half = min(10, (len(recording) - 1) // 2)
+        padded = [np.pad(v, half, mode="edge") for v in (recording.deflection, recording.time)]
+        change, interval = (v[2 * half :] - v[: v.size - 2 * half] for v in padded)
+        return np.asarray(change / interval)
     known = {"time": recording.time, "deflection": recording.deflection, "force": recording.force}
-    return known.get(by, np.empty(0))
+    return known.get(by, np.full(len(recording), np.nan))
 
 
-def _cut(begin: float | None, end: float | None, within: Span) -> Span:
-    low = within[0] if begin is None else float(begin)
-    high = within[1] if end is None else float(end)
-    return max(low, within[0]), min(high, within[1])
+def _span(begin: float | None, end: float | None) -> Span:
+    return -np.inf if begin is None else float(begin), np.inf if end is None else float(end)
 
 
-def _jaccard(first: Sequence[Span], second: Sequence[Span]) -> float:
-    """Jaccard index of two unions of spans: on the grid of all ends, each cell lies in a union or not."""
-    ends = np.unique([end for span in (*first, *second) if span[1] > span[0] for end in span])
-    if ends.size < 2:
-        return 0.0
-    middles, widths = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
-    inside = [
-        np.any(
-            [(low < middles) & (middles < high) for low, high in spans] or [np.zeros(middles.size, bool)],
-            axis=0,
-        )
-        for spans in (first, second)
-    ]
-    return float(np.sum(widths[inside[0] & inside[1]]) / np.sum(widths[inside[0] | inside[1]]))
+def _inside(values: NDArray[np.float64], spans: Sequence[Span]) -> NDArray[np.bool_]:
+    """The samples that lie in one of the spans."""
+    inside = np.zeros(values.shape, dtype=bool)
+    for low, high in spans:
+        inside |= (low <= values) & (values <= high)
+    return inside
+
+
+def _jaccard(first: NDArray[np.bool_], second: NDArray[np.bool_]) -> float:
+    either = int(np.sum(first | second))
+    return float(np.sum(first & second) / either) if either else 0.0

@@ -17,6 +17,7 @@ from ..errors import TirelabError
 from ..recording import read_recording
 from ..stated import Stated, read_stated
 from ..workers import Cores, work
+from .figures import overview
 from .folders import Folders, read_json, write_json
 from .held_out import held_out
 from .overlap import place_scores
@@ -50,7 +51,7 @@ class Series:
 
 
 def prove(series: Series, cores: Cores, tell: Told) -> Proof:
-    """Run what of the series is not done yet, write proof.json and proof.html, and return the proof.
+    """Run what of the series is not done yet, write proof.json, proof.html, proof.png, and return the proof.
 
     Every step's results are files; what is there is not done again, a failed diagnosis neither: a proof is not thrown
     again until it fits. `tell` is handed one line for every seal, before the first diagnosis.
@@ -64,6 +65,7 @@ def prove(series: Series, cores: Cores, tell: Told) -> Proof:
     proof = Proof(series.seed, _score_all(series, seals, cores))
     write_json(series.folders.root / "proof.json", numbers(proof))
     (series.folders.root / "proof.html").write_text(page(proof), encoding="utf-8")
+    overview(proof.scores, proof.command).savefig(series.folders.root / "proof.png", dpi=110)
     return proof
 
 

@@ -16,11 +16,14 @@ from .score import Score
 CONFIDENCE = 0.95
 """Coverage of all intervals."""
 
-SIZE_EDGES = (0.0, 2.0, 4.0, 8.0, 16.0, np.inf)
+SIZE_EDGES = (0.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf)
 """Classes of effect size over noise: octaves, as the rig draws sizes evenly over the logarithm from 1 to 30."""
 
 CONFIDENCE_EDGES = (0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0)
 """Classes of stated confidence, closer where verdicts are."""
+
+ANY_EFFECT = "any effect"
+"""Name of the curve over all effects together."""
 
 RESAMPLES = 2000
 
@@ -139,7 +142,7 @@ def reliability(scores: Sequence[Score]) -> list[Point]:
 
 
 def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:
-    """How often each hidden effect was named, by classes of its size over the noise.
+    """How often each hidden effect, and any of them, was named, by classes of its size over the noise.
 
     Trials in which a set without the effect counts as right too (the recordings cannot show it) are left out.
     """
@@ -148,7 +151,9 @@ def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:
         for effect, size in s.sizes.items():
             if s.demands(effect):
                 pairs[effect].append((size, s.named(effect)))
-    return {effect: _curve(pairs[effect], SIZE_EDGES) for effect in sorted(pairs)}
+    everything = [pair for listed in pairs.values() for pair in listed]
+    curves = {ANY_EFFECT: _curve(everything, SIZE_EDGES)} if everything else {}
+    return curves | {effect: _curve(pairs[effect], SIZE_EDGES) for effect in sorted(pairs)}
 
 
 def _curve(pairs: Sequence[tuple[float, bool]], edges: Sequence[float]) -> list[Point]:

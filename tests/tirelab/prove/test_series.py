@@ -214,6 +214,7 @@ def test_the_page_loads_nothing_and_escapes_what_it_tells(drawn: Path) -> None:
 
 def test_the_page_of_a_full_series_has_every_part(undiagnosed: Folders, oracle: Any) -> None:
     text = page(run(undiagnosed, oracle))
+    assert (undiagnosed.root / "proof.png").read_bytes().startswith(b"\x89PNG")
     for part in ("Against the bar", "What was taken for what", "honest", "Every trial"):
         assert part in text
     assert text.count("<svg") == 4

@@ -100,6 +100,7 @@ def test_naming_counts_by_size_and_leaves_out_what_cannot_be_seen(score: Make) -
         score("single", "lag", "none", sizes={"lag": 1.2}, also_right=["none"]),
     ]
     first, last = summary.naming(scores)["lag"]
+    assert summary.naming(scores)["any effect"] == [first, last]
     assert (first.rate, last.rate) == (Rate(1, 2), Rate(1, 1))
     assert first.at == pytest.approx(1.65)
 
