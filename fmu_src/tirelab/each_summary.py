@@ -169,4 +169,4 @@ def _number(value: float | None) -> str:
 def _safe(value: object) -> str:
     """Text that a spreadsheet does not take for a formula."""
     text = str(value)
-    return f"'{text}" if text[:1] in "=+-@" else text
+    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
