@@ -37,6 +37,7 @@ from .verdict import (
     Verdict,
     confidence_of,
     named,
+    one_constant_rate,
     rivals_of,
     summarise,
 )
@@ -118,7 +119,8 @@ def diagnose(
     tell("finding the noise")
     noises = background(scene, families, zero)
     _check_signal(scene, noises)
-    found = search(scene, noises, families, coarsening(scene, noises, families, zero), tell)
+    power = coarsening(scene, noises, families, zero)
+    found = search(scene, noises, families, power, tell)
     best = found.settled[0]
 
     tell("fitting the parameters")
@@ -127,7 +129,7 @@ def diagnose(
         Case(recording, recording.force, noise, record.rows, np.zeros(record.rows.size))
         for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
     ]
-    fitted = _refit(best, believed, cases, scene, families)
+    fitted = _refit(best, believed, cases, scene, families, power)
     before = [r.force - simulate(tire, r) for r in recordings]
     beyond = tuple(n for n in best.names if n in BEYOND)
     corrections = learned(beyond, scene, fitted.residuals, noises)
@@ -139,7 +141,7 @@ def diagnose(
     if rivals:
         tell("looking for the test that would tell")
         test = _separating(
-            best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits
+            best, fitted, rivals, found.settled, believed, cases, scene, families, power, fit.noise, limits
         )
     return Verdict(
         effects,
@@ -237,7 +239,12 @@ def _parts(settled: Settled, scene: Scene, families: Sequence[Family]) -> dict[s
 
 
 def _refit(
-    settled: Settled, believed: TireModel, cases: Sequence[Case], scene: Scene, families: Sequence[Family]
+    settled: Settled,
+    believed: TireModel,
+    cases: Sequence[Case],
+    scene: Scene,
+    families: Sequence[Family],
+    power: float,
 ) -> Refit:
     names = [n for n in settled.names if n not in BEYOND and n != "shape"]
     parts = _parts(settled, scene, families)
@@ -249,7 +256,18 @@ def _refit(
     middle = np.log(50.0 * scene.deepest)
     shape = settled.point.shape
     law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
-    return refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
+    return refit(
+        believed,
+        names,
+        parts,
+        law,
+        cleared,
+        scene.radii,
+        scene.deepest,
+        scene.strongest,
+        power,
+        one_constant_rate(scene),
+    )
 
 
 def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
@@ -302,6 +320,7 @@ def _separating(
     cases: Sequence[Case],
     scene: Scene,
     families: Sequence[Family],
+    power: float,
     noise: float,
     limits: Limits | None,
 ) -> SeparatingTest | None:
@@ -311,7 +330,7 @@ def _separating(
         other = next((s for s in settled if named(s) == rival.names), None)
         if other is None:
             continue
-        second = _refit(other, believed, cases, scene, families)
+        second = _refit(other, believed, cases, scene, families, power)
         reach = limits or Limits(
             deepest=scene.deepest,
             fastest=max(0.1, 2.0 * max(float(np.abs(r.motion.rate).max()) for r in scene.records)),
