@@ -257,6 +257,12 @@ def refit(
     return replace(final, evaluations=fitted.evaluations + whole.evaluations + final.evaluations)
 
 
+def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequence[float]) -> Refit:
+    """Return the knobs of a fit fitted anew to other cases; the law starts as believed, and stays so where unseen."""
+    start = [0.0 if k.owner == "law" else float(v) for k, v in zip(fitted.knobs, fitted.values, strict=True)]
+    return _fit(believed, fitted.knobs, np.array(start), cases, radii)
+
+
 def _extra(knob: Knob) -> bool:
     return knob.owner != "law" and CATALOGUE[knob.owner].parameters[knob.index].extra
 
