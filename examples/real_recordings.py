@@ -35,7 +35,7 @@ import numpy as np
 from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
 from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
-from tirelab.diagnose import diagnose
+from tirelab.diagnosis import diagnose
 from tirelab.recording import Recording, read_recording
 from tirelab.simulate import simulate
 from tirelab.verdict import Verdict

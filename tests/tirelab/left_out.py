@@ -8,7 +8,7 @@ import numpy as np
 from radialtire import CATALOGUE, Recalibrated, TireModel
 from rides import Drive, FloatArray
 from scipy.ndimage import uniform_filter1d
-from tirelab.diagnose import CATALOGUE_NAMES, diagnose
+from tirelab.diagnosis import CATALOGUE_NAMES, diagnose
 from tirelab.simulate import simulate
 from tirelab.verdict import Verdict
 

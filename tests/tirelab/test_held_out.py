@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from rides import flat_force, read, ride
-from tirelab.diagnose import diagnose
+from tirelab.diagnosis import diagnose
 
 
 def damped(seed, damping=500.0):

@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 from left_out import Outcome, outcome
-from tirelab.diagnose import CATALOGUE_NAMES
+from tirelab.diagnosis import CATALOGUE_NAMES
 
 pytestmark = pytest.mark.slow
 

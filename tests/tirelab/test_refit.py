@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
 from rides import flat_force, read, ride, triangle
-from tirelab.diagnose import diagnose
+from tirelab.diagnosis import diagnose
 from tirelab.simulate import simulate
 
 

@@ -21,7 +21,7 @@ from radialtire import TireModel, read_tire, write_tire
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from ..diagnose import diagnose
+from ..diagnosis import diagnose
 from ..each import diagnose_each
 from ..each_summary import summary_table
 from ..errors import TirelabError

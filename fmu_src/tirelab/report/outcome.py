@@ -44,17 +44,21 @@ class Replayed:
 def contract_of(verdict: Verdict, fitted: Replayed, held_out: Replayed) -> dict[str, Any]:
     """Return the content of diagnosis.json, schema 1, with the errors of the corrected FMU itself.
 
-    A number that is not known, as the held-out errors where nothing was held out, is null.
+    The held-out errors are those of the recordings held out; without any, those of the part that the diagnosis left
+    out of a fit of its own (`held_out_by` says which). A number that is not known is null.
     """
     content: dict[str, Any] = dict(verdict.to_contract())
-    noise = verdict.fit.noise
     content["fit"] = {
-        "noise": noise,
+        **content["fit"],
         "before": fitted.rmse(fitted.before),
         "after": fitted.rmse(fitted.after),
-        "held_out_before": held_out.rmse(held_out.before),
-        "held_out_after": held_out.rmse(held_out.after),
     }
+    content["held_out_by"] = content["fit"].pop("held_out_by")
+    if held_out.recordings:
+        content["fit"] |= {
+            "held_out_before": held_out.rmse(held_out.before),
+            "held_out_after": held_out.rmse(held_out.after),
+        }
     told = dict(content["verdict"])
     if told["separating_test"] is not None:
         told["separating_test"] = {**told["separating_test"], "file": TEST}
@@ -90,6 +94,10 @@ def _correction(found: Correction) -> dict[str, Any]:
         repeats = f"It repeats: it explains {100.0 * found.repeats:.0f} % of what is left on blocks of time not seen."
     else:
         repeats = "It does not repeat on blocks of time not seen: do not use it."
+    if math.isfinite(found.after):
+        repeats += f" With it the error is {found.after:.3g} N"
+        unseen = math.isfinite(found.held_out_after)
+        repeats += f", and {found.held_out_after:.3g} N on what was not fitted." if unseen else "."
     return {
         "by": found.by,
         "unit": found.unit,

@@ -103,7 +103,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         verdict=verdict,
         effects=[_effect(effect) for effect in verdict["effects"]],
         rivals=list(zip(alternatives, reasons + [""] * (len(alternatives) - len(reasons)), strict=False)),
-        fit=_fit(diagnosis["fit"], fitted, held_out),
+        fit=_fit(diagnosis["fit"], diagnosis.get("held_out_by", ""), fitted, held_out),
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
         places=(places := words.foremost(diagnosis["where"], MOST_PLACES)),
@@ -159,11 +159,14 @@ def _rmse(cases: Sequence[Case], which: str) -> float:
     return float(np.sqrt(np.mean(np.concatenate(squares))))
 
 
-def _fit(fit: Mapping[str, Any], fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
+def _fit(
+    fit: Mapping[str, Any], held_out_by: str, fitted: Sequence[Case], held_out: Sequence[Case]
+) -> dict[str, Any]:
     """The rows of the table of errors [N], and the scale of its bars."""
     rows: list[tuple[str, str | None, float, float]] = [("Fitted", None, fit["before"], fit["after"])]
     if fit["held_out_before"] is not None:
-        rows.append(("Not seen by the fit", None, fit["held_out_before"], fit["held_out_after"]))
+        by = words.held_out_part(held_out_by)
+        rows.append((f"Not seen by the fit{by}", None, fit["held_out_before"], fit["held_out_after"]))
     for kind, cases in (("fitted", fitted), ("not seen", held_out)):
         if len(cases) > 1:
             rows += [(kind, c.recording.name, _rmse([c], "before"), _rmse([c], "after")) for c in cases]

@@ -36,7 +36,8 @@ def print_diagnosis(
     errors.add_row("fitted", words.number(fit["before"]), words.number(fit["after"]), noise)
     if fit["held_out_before"] is not None:
         kept = (words.number(fit["held_out_before"]), words.number(fit["held_out_after"]))
-        errors.add_row("not seen by the fit", *kept, noise)
+        by = diagnosis.get("held_out_by", "")
+        errors.add_row(f"not seen by the fit{words.held_out_part(by)}", *kept, noise)
     console.print(errors)
     console.print()
 

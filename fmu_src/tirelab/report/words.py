@@ -197,3 +197,8 @@ def headline(verdict: Mapping[str, Any]) -> str:
     if verdict["alternatives"]:
         told += " – or something that these recordings cannot tell from it"
     return f"{told}."
+
+
+def held_out_part(by: str) -> str:
+    """Return in brackets what a fit of its own left out, or nothing where recordings were held out."""
+    return f" ({by})" if by and by != "recordings given" else ""

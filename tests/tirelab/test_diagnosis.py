@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from radialtire import TireModel
 from rides import Drive, flat_force, read, ride, triangle
-from tirelab.diagnose import CATALOGUE_NAMES, PoorRecording, diagnose
+from tirelab.diagnosis import CATALOGUE_NAMES, PoorRecording, diagnose
 from tirelab.simulate import simulate
 
 
