@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 from radialtire import TireModel
@@ -19,6 +18,7 @@ from .explain.motion import FloatArray
 from .explain.place import Point
 from .explain.scene import Scene, scene_of
 from .explain.search import Settled, search
+from .held_out import HeldOut, Recorded, given, rmse, split
 from .learn import learned
 from .locate import locate
 from .noise import Noise
@@ -37,6 +37,7 @@ from .verdict import (
     Verdict,
     confidence_of,
     named,
+    one_constant_rate,
     rivals_of,
     summarise,
 )
@@ -59,35 +60,6 @@ class PoorRecording(TirelabError):
     """The recordings are too short or too poor to say anything."""
 
 
-class Recorded(Protocol):
-    """What is diagnosed: name, and arrays of one length in SI (see `tirelab.recording.Recording`)."""
-
-    @property
-    def name(self) -> str:
-        """What the recording is called."""
-        ...
-
-    @property
-    def time(self) -> FloatArray:
-        """[s], rising."""
-        ...
-
-    @property
-    def deflection(self) -> FloatArray:
-        """[m], compressed > 0."""
-        ...
-
-    @property
-    def surface_radius(self) -> FloatArray:
-        """[m], convex > 0, concave < 0, flat infinite."""
-        ...
-
-    @property
-    def force(self) -> FloatArray:
-        """[N], compressive > 0."""
-        ...
-
-
 def diagnose(
     recordings: Sequence[Recorded],
     tire: TireModel = TireModel(),  # noqa: B008
@@ -99,7 +71,8 @@ def diagnose(
 ) -> Verdict:
     """Return what the believed `tire` leaves out of the recordings.
 
-    held_out: recordings on which the correction is only judged; catalogue: names of the effects that may be found
+    held_out: recordings on which the correction is only judged (without any, a part of `recordings` that the fit is
+    repeated without, see `held_out.split`); catalogue: names of the effects that may be found
     (CATALOGUE_NAMES; without one of them what it does is something unknown); limits: of the rig that would drive a
     further test; progress: called with a sentence now and then
 
@@ -118,7 +91,8 @@ def diagnose(
     tell("finding the noise")
     noises = background(scene, families, zero)
     _check_signal(scene, noises)
-    found = search(scene, noises, families, coarsening(scene, noises, families, zero), tell)
+    power = coarsening(scene, noises, families, zero)
+    found = search(scene, noises, families, power, tell)
     best = found.settled[0]
 
     tell("fitting the parameters")
@@ -127,11 +101,18 @@ def diagnose(
         Case(recording, recording.force, noise, record.rows, np.zeros(record.rows.size))
         for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
     ]
-    fitted = _refit(best, believed, cases, scene, families)
+    cleared = _cleared(best, cases, scene, families)
+    fitted = _refit(best, believed, cases, scene, families, power)
     before = [r.force - simulate(tire, r) for r in recordings]
     beyond = tuple(n for n in best.names if n in BEYOND)
-    corrections = learned(beyond, scene, fitted.residuals, noises)
-    fit = _figures(before, fitted, noises, recordings, held_out, tire, believed)
+    tell("judging the correction on what it was not fitted to")
+    kept = (
+        given(held_out, scene, before, fitted, tire)
+        if held_out
+        else split(recordings, scene, before, cleared, fitted, believed)
+    )
+    corrections = learned(beyond, scene, fitted.residuals, kept)
+    fit = _figures(before, fitted, noises, kept)
     effects = _effects(best, fitted)
     rivals = tuple(r for r in rivals_of(found.settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
     confidence = confidence_of(found.settled) / (1.0 + sum(r.log_odds >= 6.0 for r in rivals))
@@ -139,7 +120,7 @@ def diagnose(
     if rivals:
         tell("looking for the test that would tell")
         test = _separating(
-            best, fitted, rivals, found.settled, believed, cases, scene, families, fit.noise, limits
+            best, fitted, rivals, found.settled, believed, cases, scene, families, power, fit.noise, limits
         )
     return Verdict(
         effects,
@@ -237,19 +218,40 @@ def _parts(settled: Settled, scene: Scene, families: Sequence[Family]) -> dict[s
 
 
 def _refit(
-    settled: Settled, believed: TireModel, cases: Sequence[Case], scene: Scene, families: Sequence[Family]
+    settled: Settled,
+    believed: TireModel,
+    cases: Sequence[Case],
+    scene: Scene,
+    families: Sequence[Family],
+    power: float,
 ) -> Refit:
     names = [n for n in settled.names if n not in BEYOND and n != "shape"]
     parts = _parts(settled, scene, families)
-    beyond = [n for n in settled.names if n in BEYOND]
-    # What is beyond the catalogue is taken out first: no effect is bent to follow it.
-    cleared = [
-        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
-    ]
+    cleared = _cleared(settled, cases, scene, families)
     middle = np.log(50.0 * scene.deepest)
     shape = settled.point.shape
     law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
-    return refit(believed, names, parts, law, cleared, scene.radii, scene.deepest, scene.strongest)
+    return refit(
+        believed,
+        names,
+        parts,
+        law,
+        cleared,
+        scene.radii,
+        scene.deepest,
+        scene.strongest,
+        power,
+        one_constant_rate(scene),
+    )
+
+
+def _cleared(settled: Settled, cases: Sequence[Case], scene: Scene, families: Sequence[Family]) -> list[Case]:
+    """Return the cases with what is beyond the catalogue taken out: no effect is bent to follow it."""
+    parts = _parts(settled, scene, families)
+    beyond = [n for n in settled.names if n in BEYOND]
+    return [
+        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
+    ]
 
 
 def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
@@ -271,26 +273,10 @@ def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
     return tuple(sorted(found, key=lambda e: -e.share))
 
 
-def _rmse(parts: Sequence[FloatArray]) -> float:
-    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
-
-
-def _figures(
-    before: Sequence[FloatArray],
-    fitted: Refit,
-    noises: Sequence[Noise],
-    recordings: Sequence[Recorded],
-    held_out: Sequence[Recorded],
-    tire: TireModel,
-    believed: TireModel,
-) -> Fit:
+def _figures(before: Sequence[FloatArray], fitted: Refit, noises: Sequence[Noise], kept: HeldOut) -> Fit:
     sizes = np.array([b.size for b in before], dtype=float)
     level = float(np.sqrt(np.sum(sizes * np.array([n.level for n in noises]) ** 2) / sizes.sum()))
-    kept_before = kept_after = float("nan")
-    if held_out:
-        kept_before = _rmse([r.force - simulate(tire, r) for r in held_out])
-        kept_after = _rmse([r.force - simulate(fitted.tire, r) for r in held_out])
-    return Fit(level, _rmse(before), _rmse(fitted.residuals), kept_before, kept_after)
+    return Fit(level, rmse(before), rmse(fitted.residuals), kept.before, kept.after, kept.by)
 
 
 def _separating(
@@ -302,6 +288,7 @@ def _separating(
     cases: Sequence[Case],
     scene: Scene,
     families: Sequence[Family],
+    power: float,
     noise: float,
     limits: Limits | None,
 ) -> SeparatingTest | None:
@@ -311,7 +298,7 @@ def _separating(
         other = next((s for s in settled if named(s) == rival.names), None)
         if other is None:
             continue
-        second = _refit(other, believed, cases, scene, families)
+        second = _refit(other, believed, cases, scene, families, power)
         reach = limits or Limits(
             deepest=scene.deepest,
             fastest=max(0.1, 2.0 * max(float(np.abs(r.motion.rate).max()) for r in scene.records)),

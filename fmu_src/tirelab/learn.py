@@ -8,7 +8,7 @@ import numpy as np
 
 from .explain.motion import FloatArray
 from .explain.scene import Record, Scene
-from .noise import Noise
+from .held_out import HeldOut, rmse
 from .verdict import Correction
 
 KNOTS = 40
@@ -33,13 +33,13 @@ COORDINATES: dict[str, tuple[str, Coordinate]] = {
 
 
 def learned(
-    beyond: Sequence[str], scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]
+    beyond: Sequence[str], scene: Scene, residuals: Sequence[FloatArray], kept: HeldOut
 ) -> tuple[Correction, ...]:
     """Return a correction for each coordinate in `beyond`, from what is left of each recording [N]."""
-    return tuple(_learned(by, scene, residuals) for by in beyond)
+    return tuple(_learned(by, scene, residuals, kept) for by in beyond)
 
 
-def _learned(by: str, scene: Scene, residuals: Sequence[FloatArray]) -> Correction:
+def _learned(by: str, scene: Scene, residuals: Sequence[FloatArray], kept: HeldOut) -> Correction:
     unit, coordinate = COORDINATES.get(by, ("s", lambda r: r.time))
     at = np.concatenate([coordinate(r) for r in scene.records])
     force = np.concatenate(residuals)
@@ -51,7 +51,19 @@ def _learned(by: str, scene: Scene, residuals: Sequence[FloatArray]) -> Correcti
     for fold in range(FOLDS):
         foretold[part == fold] = _curve(at[part != fold], force[part != fold], knots, at[part == fold])
     gain = 1.0 - float(np.sum((force - foretold) ** 2) / np.sum(force**2))
-    return Correction(by, unit, knots, _curve(at, force, knots, knots), gain)
+    curve = _curve(at, force, knots, knots)
+    left = force - np.interp(at, knots, curve)
+    return Correction(by, unit, knots, curve, gain, rmse([left]), _unseen(coordinate, kept))
+
+
+def _unseen(coordinate: Coordinate, kept: HeldOut) -> float:
+    """Return the RMSE [N] on what is held out, with the correction learned on what was fitted there."""
+    at = np.concatenate([coordinate(p.record)[p.chosen] for p in kept.fitted])
+    force = np.concatenate([p.after[p.chosen] for p in kept.fitted])
+    knots = np.unique(np.quantile(at, np.linspace(0.0, 1.0, KNOTS)))
+    return rmse(
+        [p.after[p.chosen] - _curve(at, force, knots, coordinate(p.record)[p.chosen]) for p in kept.unseen]
+    )
 
 
 def _curve(at: FloatArray, force: FloatArray, knots: FloatArray, wanted: FloatArray) -> FloatArray:

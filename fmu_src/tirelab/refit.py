@@ -6,7 +6,7 @@ are fitted together on whitened residuals, with the changes of the law's coeffic
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -19,12 +19,20 @@ from .explain.motion import FloatArray, IndexArray
 from .noise import Noise
 from .simulate import Sampled, simulate
 
-LOOSE = 1.0
-"""Standard deviation of the weak prior on a parameter, as a part of its scale: it only holds what no sample moves."""
+LOOSE = 100.0
+"""Standard deviation of the weak prior on a parameter, in its scale: it only holds what no sample moves."""
 
 MOST_ROUNDS = 40
 STEP = 1e-4
 """Step of the difference quotients, as a part of a parameter's scale."""
+
+DETERMINED = 0.25
+"""An extra freedom is determined where its standard deviation is below this part of its prior's, that of a value
+anywhere within its bounds."""
+
+OF_RATE = ("rate_exponent",)
+"""Parameters that say how a force changes with the rate: at one rate they are not determined, whatever the short
+reversals would have them be."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +61,10 @@ class Knob:
 
 @dataclass(frozen=True)
 class Refit:
-    """A fitted tire: values and standard deviations of its knobs, and RMSE [N] of each recording."""
+    """A fitted tire: values and standard deviations of its knobs, what it leaves of each recording [N].
+
+    jacobian: of the whitened residuals over the scaled knobs; cost: half the sum of their squares, spikes counted less
+    """
 
     tire: TireModel
     knobs: tuple[Knob, ...]
@@ -61,6 +72,7 @@ class Refit:
     deviations: FloatArray
     residuals: tuple[FloatArray, ...]
     jacobian: FloatArray
+    cost: float
     evaluations: int
 
 
@@ -78,7 +90,9 @@ def assemble(
             changed = True
         else:
             effect = CATALOGUE[knob.owner]
-            chosen.setdefault(knob.owner, list(effect.typical))[knob.index] = bounded
+            chosen.setdefault(knob.owner, [p.start if p.extra else p.everyday for p in effect.parameters])[
+                knob.index
+            ] = bounded
     effects = {e.name: (e, v) for e, v in believed.effects} | {
         name: (CATALOGUE[name], tuple(v)) for name, v in chosen.items()
     }
@@ -212,11 +226,14 @@ def refit(
     radii: Sequence[float],
     deepest: float,
     strongest: float,
+    power: float = 1.0,
+    one_rate: bool = False,
 ) -> Refit:
     """Return the believed tire with the effects `names` fitted to the cases.
 
     parts: what each effect adds in the search [N], at the rows of each case; law (surfaces, 2): guess of the law's
-    changes on `radii` [m]; deepest [m], strongest [N]: largest deflection and force
+    changes on `radii` [m]; deepest [m], strongest [N]: largest deflection and force; power: part of the evidence
+    that counts (see `explain.evidence`); one_rate: whether all cases are driven at one rate
     """
     law_knobs = [k for k in knobs_of(names, radii, False, deepest) if k.owner == "law"]
     tire = assemble(believed, law_knobs, law.ravel()[: len(law_knobs)], radii)
@@ -225,15 +242,74 @@ def refit(
         if name != "recalibration":
             starts[name] = _matched(CATALOGUE[name], parts[name], cases, tire, deepest, strongest)
             tire = _with(tire, CATALOGUE[name], starts[name])
-    fitted = None
-    for extras in (False, True):
-        knobs = knobs_of(names, radii, extras, deepest)
-        if fitted is not None and len(knobs) == len(fitted.knobs):
-            break
-        start = np.array([_start(k, starts, law, fitted) for k in knobs])
-        fitted = _fit(believed, knobs, start, cases, radii)
-    assert fitted is not None
-    return fitted
+    knobs = tuple(k for k in knobs_of(names, radii, True, deepest) if not (one_rate and k.label in OF_RATE))
+    plain = tuple(k for k in knobs if not _extra(k))
+    fitted = _fit(believed, plain, np.array([_start(k, starts, law, None) for k in plain]), cases, radii)
+    if len(plain) == len(knobs):
+        return fitted
+    whole = _fit(believed, knobs, np.array([_start(k, starts, law, fitted) for k in knobs]), cases, radii)
+    kept = earned(whole, power)
+    if len(kept) == len(plain):
+        return replace(fitted, evaluations=fitted.evaluations + whole.evaluations)
+    if len(kept) == len(knobs):
+        return replace(whole, evaluations=fitted.evaluations + whole.evaluations)
+    final = _fit(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
+    return replace(final, evaluations=fitted.evaluations + whole.evaluations + final.evaluations)
+
+
+def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequence[float]) -> Refit:
+    """Return the knobs of a fit fitted anew to other cases; the law starts as believed, and stays so where unseen."""
+    start = [0.0 if k.owner == "law" else float(v) for k, v in zip(fitted.knobs, fitted.values, strict=True)]
+    return _fit(believed, fitted.knobs, np.array(start), cases, radii)
+
+
+def _extra(knob: Knob) -> bool:
+    return knob.owner != "law" and CATALOGUE[knob.owner].parameters[knob.index].extra
+
+
+def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
+    """Return the knobs of a fit without the extra ones that may as well stay at their plain values.
+
+    Those are held one after the other, the least needed one first, in the fit's own quadratic. One keeps its freedom
+    where the samples determine it (see DETERMINED) and, counted by `power`, the log likelihood gains more than half the
+    logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978).
+    """
+    count = whole.jacobian.shape[0]
+    price = 0.5 * float(np.log(max(power * count, np.e)))
+    knobs = list(whole.knobs)
+    scale = np.array([k.scale for k in knobs])
+    values = whole.values / scale
+    information = whole.jacobian.T @ whole.jacobian + np.eye(len(knobs)) / LOOSE**2
+    while True:
+        covariance = np.linalg.inv(information)
+        needs = [
+            _need(k, values[i], float(covariance[i, i]), power, price) if _extra(k) else np.inf
+            for i, k in enumerate(knobs)
+        ]
+        least = int(np.argmin(needs))
+        if needs[least] > 1.0:
+            return tuple(knobs)
+        away = _plain(knobs[least]) / knobs[least].scale - values[least]
+        values = values + covariance[:, least] / covariance[least, least] * away
+        left = [i for i in range(len(knobs)) if i != least]
+        information, values = information[np.ix_(left, left)], values[left]
+        del knobs[least]
+
+
+def _need(knob: Knob, value: float, variance: float, power: float, price: float) -> float:
+    """Return how much an extra knob is needed, by what its freedom asks for: above 1 it keeps it."""
+    away = value - _plain(knob) / knob.scale
+    anywhere = (knob.high - knob.low) / knob.scale / np.sqrt(12.0)
+    gain = 0.5 * power * away**2 / variance
+    return float(min(gain / price, DETERMINED * anywhere / np.sqrt(variance)))
+
+
+def _value(fitted: Refit, knob: Knob) -> float:
+    return float(fitted.values[fitted.knobs.index(knob)])
+
+
+def _plain(knob: Knob) -> float:
+    return CATALOGUE[knob.owner].parameters[knob.index].start
 
 
 def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit | None) -> float:
@@ -243,7 +319,7 @@ def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit 
                 return float(v)
     if knob.owner == "law":
         return float(law.ravel()[knob.index])
-    if knob.owner in starts:
+    if knob.owner in starts and not _extra(knob):
         return float(starts[knob.owner][knob.index])
     return float(CATALOGUE[knob.owner].parameters[knob.index].start)
 
@@ -269,11 +345,20 @@ def _fit(
     centre = np.clip(start / scale, low, high)
     if not knobs:
         plain = tuple(c.force - simulate(believed, c.recording) for c in cases)
-        return Refit(believed, (), np.zeros(0), np.zeros(0), plain, np.zeros((0, 0)), 1)
-    weight = 1e-2 / LOOSE
+        return Refit(believed, (), np.zeros(0), np.zeros(0), plain, np.zeros((0, 0)), 0.0, 1)
 
     def penalised(scaled: FloatArray) -> FloatArray:
-        return np.concatenate([residual(scaled), weight * (scaled - centre)])
+        return np.concatenate([residual(scaled), (scaled - centre) / LOOSE])
+
+    def slopes(scaled: FloatArray) -> FloatArray:
+        # Steps of the same size everywhere: relative ones are lost in rounding where a parameter is off.
+        base = penalised(scaled)
+        columns = []
+        for i in range(scaled.size):
+            aside = scaled.copy()
+            aside[i] += STEP if scaled[i] + STEP <= high[i] else -STEP
+            columns.append((penalised(aside) - base) / (aside[i] - scaled[i]))
+        return np.stack(columns, axis=1)
 
     inside = np.clip(
         centre, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high))
@@ -281,27 +366,30 @@ def _fit(
     answer = least_squares(
         penalised,
         inside,
+        jac=slopes,
         bounds=(low, high),
         x_scale="jac",
-        diff_step=_steps(inside),
         loss="soft_l1",
         f_scale=3.0,
         max_nfev=MOST_ROUNDS,
         method="trf",
     )
-    values = answer.x * scale
+    found = np.where(answer.x - low < STEP, low, np.where(high - answer.x < STEP, high, answer.x))
+    values = found * scale
     tire = assemble(believed, knobs, values, radii)
-    jacobian = np.asarray(answer.jac)[: -len(knobs)]
+    jacobian = slopes(found)[: -len(knobs)]
     total = sum(c.force.size for c in cases)
-    information = jacobian.T @ jacobian * total / max(jacobian.shape[0], 1) + weight**2 * np.eye(len(knobs))
+    information = jacobian.T @ jacobian * total / max(jacobian.shape[0], 1) + np.eye(len(knobs)) / LOOSE**2
     spread = np.sqrt(np.diag(np.linalg.inv(information))) * scale
     residuals = tuple(c.force - simulate(tire, c.recording) for c in cases)
-    return Refit(tire, knobs, values, spread, residuals, jacobian, evaluations)
-
-
-def _steps(at: FloatArray) -> FloatArray:
-    """Return relative steps that are STEP of a scale in themselves."""
-    return np.asarray(STEP / np.maximum(np.abs(at), 1e-3))
-
-
-Progress = Callable[[str], None]
+    anywhere = np.array([(k.high - k.low) / np.sqrt(12.0) for k in knobs])
+    return Refit(
+        tire,
+        knobs,
+        values,
+        np.minimum(spread, anywhere),
+        residuals,
+        jacobian,
+        float(answer.cost),
+        evaluations,
+    )

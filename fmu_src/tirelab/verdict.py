@@ -81,6 +81,7 @@ class Correction:
 
     by: coordinate; at: its values in `unit`; force [N]; repeats: part of the misfit on blocks of time held out that the
     correction learned on the others explains, negative where it does not repeat
+    after, held_out_after: RMSE [N] of the corrected tire with the force added, on what was fitted and what was not
     """
 
     by: str
@@ -88,17 +89,30 @@ class Correction:
     at: FloatArray = field(repr=False)
     force: FloatArray = field(repr=False)
     repeats: float = 0.0
+    after: float = float("nan")
+    held_out_after: float = float("nan")
+
+    def to_contract(self) -> dict[str, object]:
+        """Return an entry of `corrections` in diagnosis.json; the curve itself is in the report."""
+        return {
+            "by": self.by,
+            "unit": self.unit,
+            "repeats": self.repeats,
+            "after": _number(self.after),
+            "held_out_after": _number(self.held_out_after),
+        }
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Noise and root mean square errors [N]; held-out ones are NaN where nothing was held out."""
+    """Noise and root mean square errors [N]; held_out_by: what was held out (see `held_out.HeldOut`)."""
 
     noise: float
     before: float
     after: float
     held_out_before: float
     held_out_after: float
+    held_out_by: str
 
 
 @dataclass(frozen=True)
@@ -133,7 +147,11 @@ class Verdict:
         return (*(e.name for e in self.effects), *((UNKNOWN,) if self.unexplained else ()))
 
     def to_contract(self) -> dict[str, object]:
-        """Return the content of diagnosis.json but for the names of the files beside it."""
+        """Return the content of diagnosis.json but for the names of the files beside it.
+
+        What was learned of something unknown is told under "corrections", which is absent where nothing is unknown.
+        """
+        learned = {"corrections": [c.to_contract() for c in self.corrections]} if self.corrections else {}
         return {
             "schema": 1,
             "verdict": {
@@ -155,6 +173,7 @@ class Verdict:
                 "separating_test": None
                 if self.separating_test is None
                 else self.separating_test.to_contract(),
+                **learned,
             },
             "where": [s.to_contract() for s in self.where],
             "fit": {
@@ -163,6 +182,7 @@ class Verdict:
                 "after": self.fit.after,
                 "held_out_before": _number(self.fit.held_out_before),
                 "held_out_after": _number(self.fit.held_out_after),
+                "held_out_by": self.fit.held_out_by,
             },
         }
 

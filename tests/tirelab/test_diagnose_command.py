@@ -268,3 +268,23 @@ def test_a_folder_that_cannot_be_written_is_told_at_once(
     result = run(rides / "ride.csv", "--out", taken / "deeper")
     assert result.exit_code == 2
     assert "cannot be written" in result.stderr
+
+
+def test_each_gives_a_verdict_for_every_recording(rides: Path, tmp_path: Path) -> None:
+    (tmp_path / "broken.csv").write_text("no table\n")
+    result = run("--each", rides, tmp_path / "broken.csv", "--jobs", "1", "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    summary = (tmp_path / "out" / "summary.csv").read_text(encoding="utf-8-sig")
+    assert len(summary.splitlines()) == 1 + 3
+    assert summary.count("viscous damping") == 2
+    assert "broken.csv: no comma" in summary
+    assert (tmp_path / "out" / "summary.html").is_file()
+
+
+@pytest.mark.parametrize("options", [("--each", "--json"), ("--jobs", "2"), ("--dask", "tcp://nowhere:1")])
+def test_options_that_do_not_go_together_are_told(
+    rides: Path, tmp_path: Path, options: tuple[str, ...]
+) -> None:
+    result = run(rides, *options, "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "--each" in result.output

@@ -36,7 +36,7 @@ def test_the_reason_for_rivals_of_the_deflection_alone():
 
 
 def test_the_summary_names_rivals_and_their_reason():
-    fit = Fit(5.0, 20.0, 5.1, float("nan"), float("nan"))
+    fit = Fit(5.0, 20.0, 5.1, float("nan"), float("nan"), "recordings given")
     text = summarise((), (Rival(("recalibration",), 1.0, "one surface"),), (), 0.7, fit)
     assert "Nothing is missing" in text
     assert "one surface" in text

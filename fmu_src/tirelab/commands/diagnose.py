@@ -22,6 +22,8 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from ..diagnose import diagnose
+from ..each import diagnose_each
+from ..each_summary import summary_table
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..formats import LOADERS
@@ -32,6 +34,7 @@ from ..report.outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, beside, co
 from ..report.terminal import print_diagnosis, printable
 from ..simulate import simulate
 from ..verdict import Verdict
+from ..workers import Cores
 from .options import FILE, Reading, SentenceCommand, out, reading
 
 AGREEMENT = 1e-9
@@ -57,6 +60,13 @@ COLUMNS = 100
 @reading
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json alone.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
+@click.option(
+    "--each",
+    is_flag=True,
+    help="One verdict per recording or folder, and a summary table; goes on where it stopped.",
+)
+@click.option("--jobs", type=int, help="With --each: processes to work in.  [default: one per core]")
+@click.option("--dask", metavar="ADDRESS", help="With --each: scheduler of a Dask cluster to work on.")
 def command(
     recordings: tuple[Path, ...],
     tire: Path | None,
@@ -65,8 +75,22 @@ def command(
     reading: Reading,
     as_json: bool,
     quiet: bool,
+    each: bool,
+    jobs: int | None,
+    dask: str | None,
 ) -> None:
     """Say which physics a tire lacks to follow RECORDING..., files or folders of them, and correct it."""
+    if each:
+        if held_out or as_json:
+            raise TirelabError("--each goes with neither --held-out nor --json; read its summary.csv instead")
+        found = diagnose_each(
+            recordings, out, tire=tire, cores=Cores(jobs, dask), options=reading.words(), tell=click.echo
+        )
+        Console(highlight=False).print(summary_table(found))
+        click.echo(f"summary: {out / 'summary.csv'}, {out / 'summary.html'}")
+        return
+    if jobs is not None or dask is not None:
+        raise TirelabError("--jobs and --dask say where to work with --each; add it, or leave them out")
     told = {"--tire": tire, "--out": out}
     words = ["tirelab", "diagnose", *(str(r) for r in recordings)]
     words += [str(part) for option, value in told.items() if value is not None for part in (option, value)]

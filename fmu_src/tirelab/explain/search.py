@@ -181,7 +181,14 @@ class Screen:
             for n in self.layout.families:
                 if self.allowed(left, n):
                     self.judged((*left, n))
-        self.judged((*(n for n in names if n not in STATIC), "recalibration"))
+        for free in self.freed(names):
+            self.judged(free)
+
+    def freed(self, names: SetName) -> list[SetName]:
+        """Return the set with a free law in place of the effects that are like one, if the law may be another's."""
+        if "recalibration" not in self.layout.families:
+            return []
+        return [law_whole((*(n for n in names if n not in STATIC), "recalibration"))]
 
     def seeds(self) -> list[SetName]:
         """Return every family of the catalogue alone and beside a free law."""
@@ -190,7 +197,8 @@ class Screen:
             for n, f in self.layout.families.items()
             if not f.agnostic and n not in ("shape", "recalibration")
         ]
-        return [law_whole(s) for n in known for s in ((n,), (n, "recalibration"))]
+        beside = [law_whole((n, "recalibration")) for n in known if "recalibration" in self.layout.families]
+        return [*((n,) for n in known), *beside]
 
     def instead_of_unknown(self, names: SetName) -> list[SetName]:
         """Return, for what is beyond the catalogue in a set, the three effects that do best in its place."""
@@ -202,7 +210,7 @@ class Screen:
                 (law_whole((*left, n)) for n in known), key=lambda s: -self.judged(s).log_evidence
             )[:3]
         if any(self.layout.families[n].agnostic for n in names) or any(n in STATIC for n in names):
-            found.append(law_whole((*(n for n in names if n not in STATIC), "recalibration")))
+            found += self.freed(names)
         return found
 
     def best(self, count: int) -> list[Candidate]:

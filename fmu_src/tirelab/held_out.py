@@ -1,0 +1,135 @@
+"""What a correction does on recordings that it was not fitted to.
+
+Recordings kept from the fit are taken where they were given. Where none were, the chosen effects are fitted once more
+without one part: the last recording whose surfaces the others drive too, or the end of each recording, a block of time
+simulated from its true history. Which effects are chosen was seen on the whole; their parameters were not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from radialtire import TireModel
+
+from .explain.motion import BoolArray, FloatArray
+from .explain.scene import Record, Scene, scene_of
+from .refit import Case, Refit, again
+from .simulate import Sampled, simulate
+
+FITTED = 0.7
+"""Part of each recording's time that is fitted where its end is held out."""
+
+
+class Recorded(Sampled, Protocol):
+    """What can be held out: a motion, its force and a name."""
+
+    @property
+    def name(self) -> str:
+        """What the recording is called."""
+        ...
+
+    @property
+    def force(self) -> FloatArray:
+        """[N], compressive > 0."""
+        ...
+
+
+@dataclass(frozen=True)
+class Part:
+    """The samples `chosen` of one recording, and what the believed and the corrected tire leave of all of it [N]."""
+
+    record: Record
+    before: FloatArray
+    after: FloatArray
+    chosen: BoolArray
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """What was fitted and what was not; by: "recordings given", "recording NAME" or "time block A-B s"."""
+
+    by: str
+    fitted: tuple[Part, ...]
+    unseen: tuple[Part, ...]
+
+    @property
+    def before(self) -> float:
+        """RMSE [N] of the believed tire on what was not fitted."""
+        return rmse([p.before[p.chosen] for p in self.unseen])
+
+    @property
+    def after(self) -> float:
+        """RMSE [N] of the corrected tire on what was not fitted."""
+        return rmse([p.after[p.chosen] for p in self.unseen])
+
+
+def rmse(parts: Sequence[FloatArray]) -> float:
+    """Return the root mean square of all `parts` together."""
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def given(
+    held_out: Sequence[Recorded], scene: Scene, before: Sequence[FloatArray], fitted: Refit, tire: TireModel
+) -> HeldOut:
+    """Return the errors on recordings that were kept from the fit; before [N]: residuals of the fitted ones."""
+    others = scene_of([(r.time, r.deflection, r.surface_radius, r.force) for r in held_out], tire)
+    return HeldOut(
+        "recordings given",
+        tuple(
+            Part(record, b, a, np.ones(b.size, dtype=bool))
+            for record, b, a in zip(scene.records, before, fitted.residuals, strict=True)
+        ),
+        tuple(
+            Part(
+                record,
+                r.force - simulate(tire, r),
+                r.force - simulate(fitted.tire, r),
+                np.ones(r.time.size, bool),
+            )
+            for record, r in zip(others.records, held_out, strict=True)
+        ),
+    )
+
+
+def split(
+    recordings: Sequence[Recorded],
+    scene: Scene,
+    before: Sequence[FloatArray],
+    cases: Sequence[Case],
+    fitted: Refit,
+    believed: TireModel,
+) -> HeldOut:
+    """Return the errors on a part of the recordings after a fit to the rest.
+
+    before [N]: residuals of the believed tire; cases, fitted: the fit to everything, with `believed` under it
+    """
+    kept, by = _parts(recordings)
+    without = [
+        replace(c, noise=replace(c.noise, weight=c.noise.weight * k[c.rows]))
+        for c, k in zip(cases, kept, strict=True)
+    ]
+    refitted = again(believed, fitted, without, scene.radii)
+    parts = list(zip(scene.records, before, refitted.residuals, kept, strict=True))
+    return HeldOut(
+        by,
+        tuple(Part(r, b, a, k) for r, b, a, k in parts if k.any()),
+        tuple(Part(r, b, a, ~k) for r, b, a, k in parts if not k.all()),
+    )
+
+
+def _parts(recordings: Sequence[Recorded]) -> tuple[list[BoolArray], str]:
+    """Return which samples stay fitted, and what the others are called."""
+    surfaces = [set(np.unique(r.surface_radius).tolist()) for r in recordings]
+    for number in reversed(range(len(recordings))):
+        others = set().union(*(s for i, s in enumerate(surfaces) if i != number))
+        if surfaces[number] <= others:
+            kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
+            return kept, f"recording {recordings[number].name}"
+    kept = [r.time < r.time[0] + FITTED * (r.time[-1] - r.time[0]) for r in recordings]
+    r = recordings[0]
+    start = float(r.time[kept[0].size - int(np.sum(~kept[0]))])
+    more = " and the ends of the others" if len(recordings) > 1 else ""
+    return kept, f"time block {start:.4g}-{float(r.time[-1]):.4g} s{more}"

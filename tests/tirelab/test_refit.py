@@ -1,0 +1,47 @@
+"""The fit of the chosen effects: what is freed, what stays plain, and how sure it is."""
+
+import numpy as np
+import pytest
+from radialtire import CATALOGUE, TireModel
+from rides import flat_force, read, ride, triangle
+from tirelab.diagnose import diagnose
+from tirelab.simulate import simulate
+
+
+def ridden(seed, tire, noise=5.0):
+    time, deflection, _ = ride(seed)
+    bare = read(f"ride {seed}", time, deflection, np.zeros(time.size), seed, noise=0.0)
+    return read(f"ride {seed}", time, deflection, simulate(tire, bare), seed, noise=noise)
+
+
+def test_extra_freedoms_that_nothing_asks_for_stay_plain():
+    verdict = diagnose([ridden(1, TireModel(effects=((CATALOGUE["viscous_damping"], (600.0, 1.0, 0.0)),)))])
+    assert verdict.names == ("viscous_damping",)
+    assert set(verdict.effects[0].parameters) == {"damping"}
+    values = next(v for e, v in verdict.tire.effects if e.name == "viscous_damping")
+    assert values[1:] == (1.0, 0.0)
+
+
+def test_an_extra_freedom_that_is_needed_is_found():
+    verdict = diagnose([ridden(2, TireModel(effects=((CATALOGUE["viscous_damping"], (900.0, 0.5, 0.0)),)))])
+    assert verdict.names == ("viscous_damping",)
+    exponent = verdict.effects[0].parameters["rate_exponent"]
+    # A root of the rate is steep at its zeros, where the rate is tracked late: a tenth.
+    assert exponent.value == pytest.approx(0.5, abs=0.1)
+
+
+def test_at_one_rate_the_growth_with_the_rate_is_not_fitted():
+    time, deflection = triangle()
+    loop = 30.0 * np.sign(np.sin(2.0 * np.pi * time / 4.0))
+    verdict = diagnose(
+        [read("triangle", time, deflection, np.maximum(flat_force(deflection) + loop, 0.0), 9)]
+    )
+    assert all("rate_exponent" not in e.parameters for e in verdict.effects)
+
+
+def test_deviations_are_those_of_a_linear_fit():
+    verdict = diagnose([ridden(3, TireModel(effects=((CATALOGUE["force_offset"], (25.0,)),)))])
+    offset = verdict.effects[0].parameters["offset"]
+    # The mean of 6000 samples with 5 N of noise: 5 / sqrt(6000); the deflection's noise adds a tenth.
+    assert offset.std == pytest.approx(5.0 / np.sqrt(6000.0), rel=0.25)
+    assert offset.value == pytest.approx(25.0, abs=5.0 * offset.std)
