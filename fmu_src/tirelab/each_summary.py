@@ -140,10 +140,11 @@ def _report(row: Row, out: Path) -> str:
 
 
 def _place(stated: Stated) -> str:
-    """The place with the largest share of the squared error, in words."""
+    """The place in which the squared error is densest against an even spread over its coordinate, in words."""
     if stated.names == NOTHING or not stated.places:
         return ""
-    place = max(stated.places, key=lambda p: p.share)
+    spans = Counter(p.by for p in stated.places)
+    place = max(stated.places, key=lambda p: p.share * spans[p.by])
     ends = [
         end if isinstance(end, str) else "" if end is None else f"{end:.4g}"
         for end in (place.begin, place.end)

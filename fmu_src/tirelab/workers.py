@@ -63,6 +63,7 @@ def work(
     dies, the pieces that it may have held are done again one by one, and only those that die again fail.
     Raises TirelabError where the Dask cluster cannot be reached.
     """
+    deaths = _deaths(cores)
     with _progress() as bar, _backend(cores) as parallel:
         row = bar.add_task(title, total=len(tasks))
         left = dict(tasks)
@@ -72,10 +73,10 @@ def work(
                     del left[done.key]
                     bar.advance(row)
                     yield done
-            except _DEATHS as death:
+            except deaths:
                 suspects = list(left)[: AHEAD * cores.processes]
                 for key in suspects:
-                    yield _alone(function, key, left.pop(key), parallel, death)
+                    yield _alone(function, key, left.pop(key), parallel, deaths)
                     bar.advance(row)
 
 
@@ -87,27 +88,27 @@ def _alone(
     key: str,
     arguments: tuple[Any, ...],
     parallel: _Parallel,
-    death: Exception,
+    deaths: tuple[type[Exception], ...],
 ) -> Done[Value]:
     try:
         return next(iter(parallel(function, {key: arguments})))
-    except _DEATHS:
+    except deaths as death:
         return Done(
             key, None, f"its process died ({type(death).__name__}): out of memory, or a crash in native code"
         )
 
 
-def _deaths() -> tuple[type[Exception], ...]:
+def _deaths(cores: Cores) -> tuple[type[Exception], ...]:
+    """What is raised where a process dies."""
     from joblib.externals.loky.process_executor import BrokenProcessPool
 
-    try:
-        from distributed import KilledWorker
-    except ImportError:
+    if cores.dask is None:
         return (BrokenProcessPool,)
+    try:
+        from distributed import KilledWorker  # here, since it takes half a second to load
+    except ImportError:
+        raise TirelabError("--dask needs Dask; install it: pip install 'tirelab[dask]'") from None
     return (BrokenProcessPool, KilledWorker)
-
-
-_DEATHS = _deaths()
 
 
 @contextmanager
@@ -149,10 +150,8 @@ def _guarded(function: Callable[..., Any], key: str, arguments: tuple[Any, ...])
 
 @contextmanager
 def _client(address: str) -> Iterator[None]:
-    try:
-        from distributed import Client
-    except ImportError:
-        raise TirelabError("--dask needs Dask; install it: pip install 'tirelab[dask]'") from None
+    from distributed import Client
+
     try:
         client = Client(address, timeout=10)
     except (OSError, ValueError) as error:

@@ -123,6 +123,7 @@ def test_the_summary_tells_what_is_missing_how_often_and_how_sure(shelf: Path, t
         rows = {row["name"]: row for row in csv.DictReader(file)}
     assert rows["shelf/day"]["missing"] == "lag + warm"
     assert rows["shelf/day"]["rivals"] == "inertia"
+    assert rows["shelf/day"]["error"] == ""
     assert rows["shelf/nothing_1"]["missing"] == "nothing"
     assert rows["shelf/nothing_1"]["error"] == rows["shelf/nothing_1"]["rivals"] == ""
     assert rows["shelf/lag_1"]["most of it in"] == "direction unloading to unloading (70 %)"

@@ -13,7 +13,7 @@ from .overlap import PlaceScore
 OPEN = "open"
 """The kind of trial whose effect no catalogue names."""
 
-Told = Literal["told right", "told wrong", "still rivals", "failed"]
+Told = Literal["told right", "told wrong", "still rivals", "no test", "failed"]
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Separation:
 
     rivals: how many sets were named before; truth_among: whether the truth was one of them
     outcome: "told right" (one set, the truth, none of the earlier rivals beside it), "told wrong" (one set, another),
-    "still rivals", or "failed" (no test was written, the rig refused it, or the second diagnosis failed)
+    "still rivals", "no test" (none was suggested), or "failed" (the rig refused it, or the second diagnosis failed)
     """
 
     rivals: int
@@ -151,7 +151,8 @@ def separation(right: Sequence[Names], first: Stated, second: Stated | None) -> 
     """Return what became of the rivals of the `first` verdict in the `second` one (None: there is none)."""
     truth = right[0]
     before = {first.names, *first.alternatives}
-    return Separation(len(before), truth in before, _told(truth, before, second))
+    outcome: Told = "no test" if first.separating_test is None else _told(truth, before, second)
+    return Separation(len(before), truth in before, outcome)
 
 
 def _told(truth: Names, before: set[Names], second: Stated | None) -> Told:

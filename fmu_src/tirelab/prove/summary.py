@@ -217,7 +217,7 @@ def separations(scores: Sequence[Score]) -> dict[str, Rate]:
     """What became of rivals when the suggested test was run: of those with the truth among them, and of all."""
     found = [s.separation for s in scores if s.separation is not None]
     true = [x for x in found if x.truth_among]
-    outcomes = ("told right", "told wrong", "still rivals", "failed")
+    outcomes = ("told right", "told wrong", "still rivals", "no test", "failed")
     return {
         "truth among the rivals": Rate(len(true), len(found)),
         **{f"{o}, truth among the rivals": Rate.of(x.outcome == o for x in true) for o in outcomes},

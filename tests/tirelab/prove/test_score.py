@@ -72,8 +72,11 @@ def test_a_score_is_the_same_after_a_file(score: Make) -> None:
 
 @pytest.fixture
 def stated(tmp_path: Path, diagnosis: Callable[..., None]) -> Callable[..., Stated]:
-    def make(names: str, *rivals: str) -> Stated:
-        diagnosis(tmp_path, names.split(), alternatives=[r.split() for r in rivals])
+    def make(names: str, *rivals: str, test: str | None = "test.csv") -> Stated:
+        suggested = None if test is None else {"file": test}
+        diagnosis(
+            tmp_path, names.split(), alternatives=[r.split() for r in rivals], separating_test=suggested
+        )
         return read_stated(tmp_path)
 
     return make
@@ -97,6 +100,8 @@ def test_rivals_are_told_apart_when_one_is_left(
 
 
 def test_no_second_diagnosis_tells_nothing(stated: Callable[..., Stated]) -> None:
+    untested = separation([frozenset({"lag"})], stated("damping", "lag", test=None), None)
+    assert untested == Separation(2, True, "no test")
     assert separation([frozenset({"lag"})], stated("damping", "friction"), None) == Separation(
         2, False, "failed"
     )
