@@ -26,6 +26,8 @@ POOR = 1.15
 BEAM = 6
 DEEPEST_SET = 6
 
+MOST_BEYOND = 2
+"""Coordinates beyond the catalogue in one set: the verdict is then something unknown, whatever else it depends on."""
 
 CLOSE = 30.0
 """Sets within this log evidence of the best one in the screening are settled."""
@@ -156,8 +158,11 @@ class Screen:
         return self.seen[key]
 
     def allowed(self, names: SetName, name: str) -> bool:
-        """Return whether `name` may be added: not twice, and the law's shape only beside its coefficients."""
-        return name not in names and name != "shape"
+        """Return whether `name` may be added: not twice, nothing unknown beyond MOST_BEYOND, no shape by itself."""
+        if name in names or name == "shape":
+            return False
+        beyond = sum(self.layout.families[n].agnostic for n in names)
+        return not self.layout.families[name].agnostic or beyond < MOST_BEYOND
 
     def beam(self) -> None:
         """Grow sets one family at a time, keeping the best of each size."""
