@@ -186,7 +186,8 @@ def test_rivals_come_with_a_test_that_the_rig_can_run(tmp_path: Path) -> None:
     content = json.loads(result.stdout, parse_constant=pytest.fail)
     assert result.stdout == (tmp_path / "out" / "diagnosis.json").read_text(encoding="utf-8")
     check_contract(content)
-    assert content["fit"]["held_out_after"] is None
+    assert content["fit"]["held_out_after"] < 0.5 * content["fit"]["held_out_before"]
+    assert content["held_out_by"].startswith("time block ")
     assert content["verdict"]["alternatives"]
     test = content["verdict"]["separating_test"]
     assert test["file"] == "separating_test.csv"

@@ -14,6 +14,7 @@
 
 #include <dlfcn.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -241,6 +242,7 @@ EXPORT void *fmi2Instantiate(String name, int type, String guid, String location
 {
     char trouble[4000];
     int held;
+    struct sigaction interrupt;
     Instance *self = host ? calloc(1, sizeof *self) : NULL;
     (void)guid;
     if (!self || !(self->name = strdup(name ? name : ""))) {
@@ -249,6 +251,7 @@ EXPORT void *fmi2Instantiate(String name, int type, String guid, String location
     }
     self->host = *host;
     self->verbose = logging;
+    sigaction(SIGINT, NULL, &interrupt);
     if (type != CO_SIMULATION)
         tell(self, ERROR, NULL, "this FMU is for co-simulation only");
     else if (!start_python(trouble, sizeof trouble))
@@ -259,6 +262,7 @@ EXPORT void *fmi2Instantiate(String name, int type, String guid, String location
         instantiate(self, location, visible);
         leave_python(held);
     }
+    sigaction(SIGINT, &interrupt, NULL); /* up to Python 3.10 the module signal takes Ctrl-C when it is imported */
     if (self->slave)
         return self;
     free(self->name);
