@@ -180,7 +180,6 @@ def test_speed_through_fmpy(bench: Bench, tmp_path: Path) -> None:
     text = in_python(
         bench,
         """
-        from statistics import median
         from time import perf_counter
         native = make(sys.argv[1])
         native.setupExperiment()
@@ -193,7 +192,8 @@ def test_speed_through_fmpy(bench: Bench, tmp_path: Path) -> None:
                 slave.doStep(0.01 * i, 0.01)
                 slave.getReal([2])
             return (perf_counter() - start) / count
-        print(median(chain(tire) / chain(native) for _ in range(40)))
+        turns = [(chain(tire), chain(native)) for _ in range(40)]  # the best: a busy machine only adds to a time
+        print(min(t for t, _ in turns) / min(n for _, n in turns))
         """,
         unpacked(tmp_path / "native", bench.native),
     )
