@@ -28,5 +28,7 @@ def seconds(slave, count=400):
 
 
 tire, reference = opened(sys.argv[1]), opened(sys.argv[2])
-turns = [(seconds(tire), seconds(reference)) for _ in range(40)]  # the best: a busy machine only adds to a time
+turns = [
+    (seconds(tire), seconds(reference)) for _ in range(40)
+]  # the best: a busy machine only adds to a time
 print(min(t for t, _ in turns) / min(r for _, r in turns))
