@@ -26,3 +26,8 @@ def test_the_embedded_package_needs_the_standard_library_only(repository: Path) 
 def test_the_licence_in_the_fmu_is_the_repositorys(repository: Path) -> None:
     packed = repository / "fmu_src" / "tirelab" / "fmu" / "license.txt"
     assert packed.read_text() == (repository / "LICENSE").read_text()
+
+
+def test_no_helper_of_the_tests_hides_a_module_of_an_example(repository: Path) -> None:
+    helpers = {p.name for p in (repository / "tests").rglob("*.py") if not p.name.startswith("test_")}
+    assert not helpers & {p.name for p in (repository / "examples").rglob("*.py")}

@@ -6,6 +6,7 @@ are fitted together on whitened residuals, with the changes of the law's coeffic
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -275,7 +276,7 @@ def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
     logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978).
     """
     count = whole.jacobian.shape[0]
-    price = 0.5 * float(np.log(max(power * count, np.e)))
+    price = 0.5 * math.log(max(power * count, math.e))
     knobs = list(whole.knobs)
     scale = np.array([k.scale for k in knobs])
     values = whole.values / scale

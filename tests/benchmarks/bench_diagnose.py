@@ -20,7 +20,7 @@ from scipy.signal import lfilter
 from tirelab.diagnosis import diagnose
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tirelab"))
-from rides import Drive, flat_force, read, ride
+from drives import Drive, flat_force, read, ride
 
 FloatArray = NDArray[np.float64]
 

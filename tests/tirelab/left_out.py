@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from drives import Drive, FloatArray
 from radialtire import CATALOGUE, Recalibrated, TireModel
-from rides import Drive, FloatArray
 from scipy.ndimage import uniform_filter1d
 from tirelab.diagnosis import CATALOGUE_NAMES, diagnose
 from tirelab.simulate import simulate

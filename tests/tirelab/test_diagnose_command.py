@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from drives import Drive, flat_force, read, ride, triangle
 from radialtire import CATALOGUE, TireModel, read_tire
-from rides import Drive, flat_force, read, ride, triangle
 from tirelab.commands import diagnose as diagnose_command
 from tirelab.recording import Recording, read_recording, write_recording
 from tirelab.replay import replay

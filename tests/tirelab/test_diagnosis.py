@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drives import Drive, flat_force, read, ride, triangle
 from radialtire import TireModel
-from rides import Drive, flat_force, read, ride, triangle
 from tirelab.diagnosis import CATALOGUE_NAMES, PoorRecording, diagnose
 from tirelab.simulate import simulate
 

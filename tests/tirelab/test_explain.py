@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from drives import flat_force, read, ride
 from radialtire import TireModel
-from rides import flat_force, read, ride
 from scipy.stats import multivariate_normal
 from tirelab.explain.evidence import explain, products_of
 from tirelab.explain.families import CATALOGUE_FAMILIES, high_pass, jenkins

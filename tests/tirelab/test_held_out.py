@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from rides import flat_force, read, ride
+from drives import flat_force, read, ride
 from tirelab.diagnosis import diagnose
 
 

@@ -1,8 +1,8 @@
 """The residual is located on what it depends on, and noise is not located at all."""
 
 import numpy as np
+from drives import flat_force, read, ride
 from radialtire import TireModel
-from rides import flat_force, read, ride
 from scipy.signal import lfilter
 from tirelab.explain.scene import scene_of
 from tirelab.locate import locate

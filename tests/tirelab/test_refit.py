@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from drives import flat_force, read, ride, triangle
 from radialtire import CATALOGUE, TireModel
-from rides import flat_force, read, ride, triangle
 from tirelab.diagnosis import diagnose
 from tirelab.simulate import simulate
 

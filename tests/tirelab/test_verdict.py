@@ -1,8 +1,8 @@
 """What is said, how sure, and what else it could be."""
 
 import numpy as np
+from drives import flat_force, read, ride, triangle
 from radialtire import TireModel
-from rides import flat_force, read, ride, triangle
 from tirelab.explain.scene import scene_of
 from tirelab.verdict import Fit, Rival, one_constant_rate, one_rate_rivals, poverty, reason_of, summarise
 
