@@ -34,6 +34,7 @@ class Instant(NamedTuple):
     the tire; rate: [m/s] of that deflection; acceleration: [m/s^2] of the deflection read
     coefficient, exponent: A [N/cm^B] and B [1] of the surface
     elastic_force: [N] at the place "scale" A x^B, after it A x^B with its factor, before it 0
+    curvature: [1/m] of the surface, convex > 0
     """
 
     time: float
@@ -45,6 +46,7 @@ class Instant(NamedTuple):
     coefficient: float
     exponent: float
     elastic_force: float
+    curvature: float = 0.0
 
 
 Response = Callable[[float, Instant, State, State], "tuple[float, State]"]

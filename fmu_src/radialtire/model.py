@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 from . import hull1996, power_law, tracking
 from .effect import PLACES, Effect, Instant, State
-from .hull1996 import Hull1996
+from .hull1996 import FLAT_RADIUS, Hull1996
 from .parameter import Parameter, ParameterError
 from .tracking import UNTRACKED, Track
 
@@ -175,6 +175,7 @@ class TireModel:
         if not self.effects:
             return power_law.force(deflection, A, B), state
 
+        bend = 0.0 if abs(surface_radius) >= FLAT_RADIUS else 1.0 / surface_radius
         first = not state.started
         start = time if first else state.start
         interval = 0.0 if first else time - state.time
@@ -182,7 +183,7 @@ class TireModel:
 
         def through(place: str, signal: float, x: float, v: float, elastic: float) -> float:
             for i, effect, values in self._stages[place]:
-                instant = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic)
+                instant = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic, bend)
                 signal, states[i] = effect.respond(signal, instant, states[i], values)
             return signal
 

@@ -14,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import Effect, State, TireModel
+from radialtire import FLAT_RADIUS, Effect, State, TireModel
 from radialtire.model import Law
 
 from . import compiled
@@ -49,7 +49,7 @@ class History:
     """What the effects may know of every moment (see `radialtire.effect.Instant`); arrays of one length.
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
-    coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]
+    coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]
     """
 
     time: FloatArray
@@ -59,6 +59,7 @@ class History:
     coefficient: FloatArray
     exponent: FloatArray
     elastic_force: FloatArray
+    curvature: FloatArray
 
 
 def simulate(tire: TireModel, recording: Sampled) -> FloatArray:
@@ -101,7 +102,9 @@ def history_of(
     if differentiates(tire):
         rate, acceleration = track(time, deflection, tire.tracking_time)
     A, B = coefficients(tire.law, surface_radius)
-    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection))
+    flat = np.abs(surface_radius) >= FLAT_RADIUS
+    curvature = np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, surface_radius))
+    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection), curvature)
 
 
 def differentiates(tire: TireModel) -> bool:
@@ -122,6 +125,7 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
         history.coefficient,
         history.exponent,
         history.elastic_force,
+        history.curvature,
         effect.rest,
         tuple(float(value) for value in values),
         answer,

@@ -12,7 +12,7 @@ FRICTION = knobs_of(("rate_independent_hysteresis",), (np.inf,), False, 0.025)
 def fitted(noise):
     values = np.array([30.0, 0.0, 1e-3])
     friction = assemble(TireModel(), FRICTION, values, (np.inf,))
-    viscous = TireModel(effects=((CATALOGUE["viscous_damping"], (2500.0, 1.0, 0.0)),))
+    viscous = TireModel(effects=((CATALOGUE["viscous_damping"], (2500.0, 1.0, 0.0, 0.0)),))
     return separate(
         (viscous, ("viscous_damping",)),
         (friction, ("rate_independent_hysteresis",)),

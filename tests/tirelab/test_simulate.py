@@ -170,7 +170,7 @@ def test_what_enters_linearly_is_a_sum_of_columns(name: str, linear: tuple[str, 
 
 def test_a_history_may_be_given_a_better_rate() -> None:
     # a fit that may look ahead puts in the rate it knows
-    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0)),))
+    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)),))
     motion = random_motion(10)
     history, force = elastic_stage(tire, motion)
     known = replace(history, rate=np.ones_like(force))
@@ -197,7 +197,7 @@ class Motion:
     deflection = 0.01 + 0.005 * np.sin(9.0 * time)
     surface_radius = np.full(50, np.inf)
 
-tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0)),))
+tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)),))
 print(json.dumps(simulate(tire, Motion).tolist()))
 """
 

@@ -1,10 +1,12 @@
 """The air of the tire compressed by its own deflection: gauge pressure, and with it the force, rise.
 
-    F = A x^B p / p0,   p / p0 = (1 + b) (1 - w)^-n - b,   w = W (x / 2.5 cm)^q
+    F = A x^B p / p0,   p / p0 = (1 + b) (1 - w)^-n - b,   w = W (x / 2.5 cm)^q (1 + r_w / R)^(-s)
 
 w is the share of the air's volume that is gone, W that at 2.5 cm; b the atmosphere over the gauge pressure, n the
 polytropic exponent (1 for slow, 1.4 for fast compression). q = 2.4, the exponent of the work A x^(B+1) / (B+1), since
 the volume lost is about the work done over the pressure. W = 1 to 3 % is an estimate from that; it was not measured.
+On a surface of radius R the patch of a wheel of radius r_w = 33 cm is shorter by (1 + r_w / R)^(-1/2) (the curvatures
+add up, as in Hertz's contact), and takes less of the volume: s = 1/2 for that alone, s = 0 for the same on every one.
 """
 
 from __future__ import annotations
@@ -15,15 +17,23 @@ from ..parameter import Parameter
 REFERENCE = 0.025
 """Deflection [m] at which the lost volume is stated."""
 
+WHEEL_RADIUS = 0.33
+"""r_w [m]: 66 cm of wheel and tire, as in Hull, Wang & Moore 1996."""
+
+LEAST_CURVATURE = 0.05
+"""Least 1 + r_w / R: a hollow as round as the wheel takes it in at once."""
+
 LOST_MAX = 0.9
 """Largest share of the volume lost: a rim meets the ground long before."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Multiply the factor by p / p0."""
-    share, power, polytropic, atmosphere = values
+    share, power, polytropic, surface, atmosphere = values
     if share == 0.0 or instant.deflection <= 0.0:
         return signal, state
+    if surface != 0.0:
+        share *= max(1.0 + WHEEL_RADIUS * instant.curvature, LEAST_CURVATURE) ** -surface
     lost = min(share * (instant.deflection / REFERENCE) ** power, LOST_MAX)
     return signal * ((1.0 + atmosphere) * (1.0 - lost) ** -polytropic - atmosphere), state
 
@@ -39,6 +49,16 @@ GAS_COMPRESSION = Effect(
             "power", "q", "1", 2.4, 1.0, 4.0, "growth of the lost volume with the deflection", extra=True
         ),
         Parameter("polytropic_exponent", "n", "1", 1.0, 1.0, 1.4, "1 slow, 1.4 fast compression", extra=True),
+        Parameter(
+            "surface",
+            "s",
+            "1",
+            0.0,
+            0.0,
+            1.5,
+            "0: same volume on all surfaces, 1: as their force",
+            extra=True,
+        ),
         Parameter("atmosphere", "b", "1", 0.294, 0.05, 5.0, "atmospheric over gauge pressure", extra=True),
     ),
     rest=(),

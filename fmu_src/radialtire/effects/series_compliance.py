@@ -1,13 +1,16 @@
 """Wheel, frame or machine in series with the tire: they give way too, so the tire is compressed less than was read.
 
-    x_tire + k F(x_tire) = x,    F(x) = A (100 x)^B,    k = 1 / stiffness
+    x_tire + d = x,    d (1 + h d) = k F(x_tire),    F(x) = A (100 x)^B,    k = 1 / stiffness
 
 F is the elastic law alone: what acts beside it (friction, damping) is a few percent of it, and its share of the wheel's
 deflection a few percent of a few percent. Hull, Wang & Moore (1996) had a wheel of 2e6 N/m in their readings (5e-7 m/N;
 Hopkins & Principe 1990) and state up to 8.8 % of stiffness lost to it.
 
-Solved by Newton's method on a convex rising function, in x for B >= 1 and in F for B < 1, from above its root: every
-step goes down to the root and none passes it.
+h = 0 is a plain spring; a wheel or fixture that settles under load has h > 0.
+
+With h = 0 solved by Newton's method on a convex rising function, in x for B >= 1 and in F for B < 1, from above its
+root: every step goes down to the root and none passes it. With h > 0 in d between 0 and the plain spring's d, by
+Newton's method inside a bracket.
 """
 
 from __future__ import annotations
@@ -19,9 +22,37 @@ NEAR = 1e-9
 """Relative length of a step whose successor, its square, is below the rounding."""
 
 
+ROUNDS = 60
+"""Halvings at most: they alone would take a bracket to the rounding."""
+
+
+def stiffening(x: float, k: float, h: float, A: float, B: float, plain: float) -> float:
+    """Return the tire's part of the deflection x [m] over a spring that stiffens; plain: over one that does not.
+
+    d (1 + h d) - k F(x - d) rises with d: at nothing it is negative, at the plain spring's d it is h d^2.
+    """
+    low, high = 0.0, x - plain
+    d = high
+    for _ in range(ROUNDS):
+        force = A * (100.0 * (x - d)) ** B
+        miss = d * (1.0 + h * d) - k * force
+        if miss > 0.0:
+            high = d
+        else:
+            low = d
+        slope = 1.0 + 2.0 * h * d + k * B * force / (x - d)
+        following = d - miss / slope
+        if following <= low or following >= high:
+            following = 0.5 * (low + high)
+        if abs(following - d) <= 1e-15 * x:
+            break
+        d = following
+    return x - d
+
+
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Return the tire's part [m] of the deflection."""
-    k = values[0]
+    k, h = values
     A, B = instant.coefficient, instant.exponent
     if k == 0.0 or signal <= 0.0:
         return signal, state
@@ -37,13 +68,15 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
             root -= step
             force = A * (100.0 * root) ** B
             step = (root + k * force - signal) / (1.0 + k * B * force / root)
-        return root - step, state
+        root -= step
+        return (stiffening(signal, k, h, A, B, root) if h > 0.0 else root), state
     step = (root + k * force - signal) / (k + root / (B * force))
     while step > NEAR * force:
         force -= step
         root = 0.01 * (force / A) ** (1.0 / B)
         step = (root + k * force - signal) / (k + root / (B * force))
-    return 0.01 * ((force - step) / A) ** (1.0 / B), state
+    root = 0.01 * ((force - step) / A) ** (1.0 / B)
+    return (stiffening(signal, k, h, A, B, root) if h > 0.0 else root), state
 
 
 SERIES_COMPLIANCE = Effect(
@@ -60,6 +93,9 @@ SERIES_COMPLIANCE = Effect(
             "deflection of wheel and machine for each N; 1/k is their stiffness",
             off=0.0,
             typical=5e-7,
+        ),
+        Parameter(
+            "stiffening", "h", "1/m", 0.0, 0.0, 1000.0, "how soon the spring stiffens", off=0.0, extra=True
         ),
     ),
     rest=(),

@@ -1,8 +1,10 @@
 """A dashpot beside the spring: force that grows with the speed of compression.
 
-    F = F_elastic + c v0 (|v| / v0)^n sign(v) (x / x0)^p     while the tire is loaded (x > 0)
+    F = F_elastic + c v0 (|w| / v0)^n sign(w) (x / x0)^p     while the tire is loaded (x > 0)
+    w = asinh(s v) / s
 
-v = dx/dt, v0 = 0.1 m/s, x0 = 1 cm. n = 1, p = 0 is the plain dashpot c v; p > 0 lets it grow with the contact patch.
+v = dx/dt, v0 = 0.1 m/s, x0 = 1 cm. n = 1, p = 0, s = 0 is the plain dashpot c v; p > 0 lets it grow with the contact
+patch, s > 0 grow ever less beyond the rate 1/s (flow by thermally activated steps: H. Eyring, J. Chem. Phys. 4, 1936).
 
 Wang & Hull found no dependence on the rate from 3.2 to 63.5 mm/s (quoted in Hull, Wang & Moore 1996), which bounds
 c from above for slow presses only: 300 N s/m makes a loop of 0.2 % at 0.05 Hz and of 17.9 % at 5 Hz. No damping of
@@ -10,6 +12,8 @@ bicycle tires in this direction was found in the open: the bounds are wide.
 """
 
 from __future__ import annotations
+
+import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
@@ -23,10 +27,12 @@ DEPTH = 0.01
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Add the dashpot's force [N] while the tire is loaded."""
-    damping, rate_exponent, deflection_exponent = values
+    damping, rate_exponent, deflection_exponent, thinning = values
     x, v = instant.deflection, instant.rate
     if x <= 0.0:
         return signal, state
+    if thinning > 0.0:
+        v = math.asinh(thinning * v) / thinning
     if rate_exponent != 1.0:
         size = SPEED * (abs(v) / SPEED) ** rate_exponent
         v = size if v > 0.0 else -size
@@ -60,6 +66,9 @@ VISCOUS_DAMPING = Effect(
             3.0,
             "growth of the force with the deflection",
             extra=True,
+        ),
+        Parameter(
+            "thinning", "s", "s/m", 0.0, 0.0, 1e4, "1/s: rate beyond which it grows less", off=0.0, extra=True
         ),
     ),
     rest=(),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from driving import drive, only
-from radialtire import TireModel
+from radialtire import PowerLaw, TireModel
 from radialtire.effects.gas_compression import REFERENCE
 
 
@@ -41,3 +43,17 @@ def test_the_loss_grows_with_the_stated_power() -> None:
 def test_it_never_compresses_the_air_to_nothing() -> None:
     force = drive(only("gas_compression", lost_volume=0.5, power=4.0), [0.0, 1.0], [0.1, 0.3])
     assert np.all(np.isfinite(force))
+
+
+def test_a_bump_takes_less_of_the_volume() -> None:
+    # R = r_w / 3: both curvatures make four times that of the wheel, a patch of half the length
+    small = {"lost_volume": 1e-6, "atmosphere": 1.0}
+    law = PowerLaw(550.9, 1.422)
+    x = np.array([REFERENCE])
+
+    def rise(radius: float, surface: float) -> float:
+        one = drive(only("gas_compression", law=law, surface=surface, **small), [0.0], x, radius)[0]
+        return float(one / drive(TireModel(law), [0.0], x, radius)[0]) - 1.0
+
+    assert rise(0.11, 0.5) / rise(math.inf, 0.5) == pytest.approx(0.5, rel=1e-3)
+    assert rise(0.11, 0.0) == rise(math.inf, 0.0)

@@ -61,3 +61,11 @@ def test_a_tire_with_a_history_starts_soft() -> None:
     used = drive(only("mullins_softening", share=0.3, history=0.02), [0.0], [0.01])
     new_then_used = drive(only("mullins_softening", share=0.3), [0.0, 1.0], [0.02, 0.01])
     assert used[0] == new_then_used[-1]
+
+
+def test_it_gathers_along_the_way_below() -> None:
+    # down 20 mm and up 2 mm again: g = 1 - exp(-22 / 11), and all of the share is at stake far below
+    i = 202 + 10
+    force = driven(share=0.3, width=1e-3, gathering=0.011)
+    gathered = -math.expm1(-2.0)
+    assert force[i] / BARE[i] == pytest.approx(1.0 - 0.3 * gathered * -math.expm1(-18.0), rel=1e-9)

@@ -10,7 +10,7 @@ from driving import LINEAR, STIFFNESS, drive, only
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from published import hull1996 as article
-from radialtire import Instant, PowerLaw, power_law
+from radialtire import Instant, PowerLaw, TireModel, power_law
 from radialtire.effects.series_compliance import SERIES_COMPLIANCE
 
 
@@ -24,7 +24,7 @@ from radialtire.effects.series_compliance import SERIES_COMPLIANCE
 def test_the_parts_add_up_to_the_reading(x: float, k: float, A: float, B: float) -> None:
     # its own equation; a change of x of one rounding changes k F by up to B of them
     instant = Instant(0.0, 0.0, True, x, 0.0, 0.0, A, B, 0.0)
-    tire, _ = SERIES_COMPLIANCE.respond(x, instant, (), (k,))
+    tire, _ = SERIES_COMPLIANCE.respond(x, instant, (), (k, 0.0))
     assert 0.0 < tire <= x * (1.0 + 1e-15)
     assert tire + k * power_law.force(tire, A, B) == pytest.approx(x, rel=2e-14)
 
@@ -62,3 +62,21 @@ def test_the_articles_wheel_hides_the_printed_share_of_the_stiffness() -> None:
 def test_in_the_air_nothing_gives_way() -> None:
     x = np.array([-0.5, -1e-9, 0.0])
     assert list(drive(only("series_compliance", compliance=1e-5), [0.0, 1.0, 2.0], x)) == [0.0, 0.0, 0.0]
+
+
+def test_a_spring_that_stiffens_by_so_much() -> None:
+    # linear tire K, k = 1 / K: d (1 + h d) = x - d, so h d^2 + 2 d = x; h x = 3 gives d = x / 3
+    x = 0.03
+    force = drive(
+        only("series_compliance", law=LINEAR, compliance=1.0 / STIFFNESS, stiffening=3.0 / x), [0.0], [x]
+    )
+    assert force[0] == pytest.approx(STIFFNESS * (x - x / 3.0), rel=1e-12)
+
+
+def test_a_spring_that_stiffens_gives_way_less_than_a_plain_one() -> None:
+    x = np.linspace(0.0, 0.03, 50)
+    plain = drive(only("series_compliance", compliance=4e-6), x, x)
+    stiffer = drive(only("series_compliance", compliance=4e-6, stiffening=100.0), x, x)
+    rigid = drive(TireModel(), x, x)
+    assert np.all(plain[1:] < stiffer[1:])
+    assert np.all(stiffer[1:] < rigid[1:])
