@@ -6,19 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import correlate1d, uniform_filter1d
-from scipy.signal import savgol_filter
+
+from .smoothing import smoothed
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IndexArray = NDArray[np.intp]
-
-WINDOWS = (5, 7, 9, 13, 19, 27, 39)
-"""Lengths [samples] of the local cubic fits among which each sample chooses."""
-
-MISFIT_ALLOWED = 1.6
-"""A local fit is kept while its mean square residual stays below this multiple of the noise variance: with the 9
-samples of a usual window, one window in twenty of pure noise exceeds it."""
 
 CORNER = 9.0
 """Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by a twentieth
@@ -29,8 +22,8 @@ of a sample's travel, the motion turns within a sample."""
 class Motion:
     """The motion of one recording; every array has the shape of its samples.
 
-    deflection [m], rate [m/s], acceleration [m/s^2]: from local cubic fits as long as the noise allows
-    noise: standard deviation [m] of the deflection's reading
+    deflection [m], rate [m/s], acceleration [m/s^2]: smoothed as long as the noise and the motion allow
+    noise: standard deviation [m] of the deflection's reading; blur: that of the smoothed deflection [m]
     deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
     -1 unloading, kept through holds; turned: deflection [m] travelled since the last reversal
     resolved: False where the motion turns within a sample, so that its rate there is anybody's guess
@@ -40,6 +33,7 @@ class Motion:
     rate: FloatArray
     acceleration: FloatArray
     noise: float
+    blur: FloatArray
     deepest: FloatArray
     cycle: FloatArray
     direction: FloatArray
@@ -50,11 +44,10 @@ class Motion:
 def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]."""
     noise = deflection_noise(deflection)
-    smooth, rate, acceleration, resolved = _local_cubics(time, deflection, noise)
+    smooth, rate, acceleration, blur, resolved = _smoothed(time, deflection, noise)
     direction, cycle, turned = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
-    return Motion(
-        smooth, rate, acceleration, noise, np.maximum.accumulate(smooth), cycle, direction, turned, resolved
-    )
+    deepest = np.maximum.accumulate(smooth)
+    return Motion(smooth, rate, acceleration, noise, blur, deepest, cycle, direction, turned, resolved)
 
 
 def deflection_noise(deflection: FloatArray) -> float:
@@ -68,68 +61,30 @@ def deflection_noise(deflection: FloatArray) -> float:
     return float(max(scaled, 1e-9))
 
 
-def _local_cubics(
+def _smoothed(
     time: FloatArray, deflection: FloatArray, noise: float
-) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Fit cubics over windows before, around and after each sample; keep the longest that fits within the noise."""
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return deflection, rate and acceleration, the deflection's blur, and where the motion is resolved."""
     step = float(np.median(np.diff(time)))
-    count = deflection.size
     if np.ptp(np.diff(time)) > 1e-3 * step:
-        grid = np.linspace(time[0], time[-1], count)
-        even = _local_cubics(grid, np.interp(grid, time, deflection), noise)
-        return deflection, np.interp(time, grid, even[1]), np.interp(time, grid, even[2]), even[3]
-    smooth = deflection.copy()
-    rate = np.gradient(deflection, time)
-    acceleration = np.gradient(rate, time)
-    resolved = np.ones(count, dtype=bool)
-    for window in WINDOWS:
-        if window > count // 4:
-            break
-        half = window // 2
-        cubic, misfit = _cubic_at_centres(deflection, window, step)
-        good = misfit < MISFIT_ALLOWED * noise**2
-        if window == WINDOWS[0]:
-            travel = step * float(np.sqrt(np.mean(rate**2)))
-            resolved = misfit < np.maximum(CORNER * noise**2, (0.05 * travel) ** 2)
-            good |= misfit < (0.01 * travel) ** 2
-        resolved[half : count - half] |= good[half : count - half]
-        votes = np.zeros(count)
-        votes_centred = np.zeros(count)
-        sums = np.zeros((3, count))
-        # A window around the sample is best; before or behind a corner one beside it has to do, on a corner both.
-        for offset in (0, -half, half):
-            centre = np.arange(count) - offset
-            inside = (centre >= half) & (centre < count - half)
-            chosen = np.flatnonzero(inside & (votes_centred == 0.0))
-            chosen = chosen[good[centre[chosen]]]
-            c0, c1, c2, c3 = cubic[:, centre[chosen]]
-            s = offset * step
-            sums[0, chosen] += c0 + s * (c1 + s * (c2 / 2.0 + s * c3 / 6.0))
-            sums[1, chosen] += c1 + s * (c2 + s * c3 / 2.0)
-            sums[2, chosen] += c2 + s * c3
-            votes[chosen] += 1.0
-            if offset == 0:
-                votes_centred = votes.copy()
-        fitted = votes > 0.0
-        smooth[fitted], rate[fitted], acceleration[fitted] = sums[:, fitted] / votes[fitted]
-    return smooth, rate, acceleration, resolved
+        grid = np.linspace(time[0], time[-1], deflection.size)
+        read = np.interp(grid, time, deflection)
+        level, *rest, resolved = _smoothed(grid, read, noise)
+        rate, acceleration, blur = (np.interp(time, grid, r) for r in rest)
+        return deflection - np.interp(time, grid, read - level), rate, acceleration, blur, resolved
+    smooth, rate, acceleration, leverage = smoothed(deflection, step, noise)
+    travel = step * float(np.sqrt(np.mean(rate**2)))
+    return smooth, rate, acceleration, noise * np.sqrt(leverage), _resolved(deflection, noise, travel)
 
 
-def _cubic_at_centres(values: FloatArray, window: int, step: float) -> tuple[FloatArray, FloatArray]:
-    """Return value and three derivatives, shape (4, n), of the cubic fitted around each sample, and its mean square
-    residual corrected for the four coefficients."""
-    steps = np.arange(window) - window // 2
-    basis = np.linalg.qr(np.vander(steps / (window // 2), 4, increasing=True).astype(float))[0]
-    level = float(np.mean(values))
-    centred = values - level
-    cubic = np.stack(
-        [savgol_filter(centred, window, 3, deriv=d, delta=step, mode="nearest") for d in range(4)]
-    )
-    square = uniform_filter1d(centred**2, window, mode="nearest") * window
-    for column in basis.T:
-        square -= correlate1d(centred, column, mode="nearest") ** 2
-    cubic[0] += level
-    return cubic, np.maximum(square, 0.0) / (window - 4)
+def _resolved(deflection: FloatArray, noise: float, travel: float) -> BoolArray:
+    """Return where five samples follow a cubic; travel [m]: what a sample usually moves."""
+    resolved = np.ones(deflection.size, dtype=bool)
+    basis = np.linalg.qr(np.vander(np.arange(-2.0, 3.0), 4, increasing=True))[0]
+    outside = np.linalg.qr(np.eye(5) - basis @ basis.T)[0][:, 0]
+    misfit = np.convolve(deflection - deflection.mean(), outside[::-1], mode="valid") ** 2
+    resolved[2:-2] = misfit < max(CORNER * noise**2, (0.05 * travel) ** 2)
+    return resolved
 
 
 def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray, FloatArray]:
