@@ -6,12 +6,16 @@ no effect explains, in that coordinate.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.signal import lfilter
 
 from .families import Family, one_each, pairs, scale_of
 from .motion import FloatArray
+from .outstanding import LOUD, SWELLINGS, waves
 from .place import Place
+from .scene import Scene
 
 
 def _cosines(values: FloatArray, first: int, last: int) -> list[FloatArray]:
@@ -92,48 +96,78 @@ def _history(p: Place) -> FloatArray:
 
 
 RESONANCES = 16
+DAMPINGS = (0.012, 0.03, 0.08)
+"""Damping ratios of the modes that are tried where a line stands out; between the lines the last one alone."""
 
 
 def _resonance(p: Place) -> FloatArray:
     """The elastic force through a lightly damped mode, at frequencies from four in a recording up."""
-    columns = []
-    for frequency in np.geomspace(4.0 / p.scene.longest, 1.0 / (6.0 * p.scene.finest), RESONANCES):
+    change = np.diff(p.elastic, prepend=p.elastic[0])
+
+    def ringing(frequency: float, damping: float) -> list[FloatArray]:
         angle = 2.0 * np.pi * frequency * p.record.step
-        radius = np.exp(-0.08 * angle)
+        radius = np.exp(-damping * angle)
         poles = [1.0, -2.0 * radius * np.cos(angle), radius**2]
-        change = np.diff(p.elastic, prepend=p.elastic[0])
-        ringing = lfilter([1.0], poles, change)
-        columns += [p.taken(ringing), p.taken(np.diff(ringing, prepend=0.0))]
-    return np.stack(columns, axis=1)
+        rings = lfilter([1.0], poles, change)
+        return [p.taken(rings), p.taken(np.diff(rings, prepend=0.0))]
+
+    lines = sorted({line for r in p.scene.records for line in r.outstanding.lines[:2]})
+    modes = [(line, damping) for line in lines for damping in DAMPINGS]
+    grid = np.geomspace(4.0 / p.scene.longest, 1.0 / (6.0 * p.scene.finest), RESONANCES)
+    modes += [(float(frequency), DAMPINGS[-1]) for frequency in grid]
+    return np.stack([column for mode in modes for column in ringing(*mode)], axis=1)
 
 
-LINES = 3
-"""Lines of a spectrum that are tried."""
+def _lines(p: Place, weight: FloatArray) -> FloatArray:
+    """Return sines and cosines, steady and swelling, at the lines that stand out of a recording, times `weight`."""
+    most = max(len(r.outstanding.lines) for r in p.scene.records)
+    found: list[FloatArray] = []
+    for line in p.record.outstanding.lines:
+        found += [np.asarray(weight * wave) for wave in waves(p.record.time, line).T]
+    return _own(p, _filled(found, most * (2 + 4 * SWELLINGS), weight))
 
-LOUD = 0.6
-"""Lines weaker than this part of the noise are left to the noise: a hum of the mains is no physics of a tire."""
 
-
-def _lines(p: Place, course: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return sine and cosine at the strongest lines of what the bare law leaves over the `course`, times `weight`."""
-    columns = []
-    for line, loudness in p.record.kept_lines(course, weight, LINES):
-        heard = weight if loudness > LOUD else 0.0 * weight
-        columns += [heard * f(2.0 * np.pi * line * course) for f in (np.sin, np.cos)]
-    return _own(p, columns)
+def _filled(columns: list[FloatArray], count: int, like: FloatArray) -> list[FloatArray]:
+    return columns + [np.zeros_like(like)] * (count - len(columns))
 
 
 def _periodic(p: Place) -> FloatArray:
-    return _lines(p, p.record.time, np.ones_like(p.elastic))
+    return _lines(p, np.ones_like(p.elastic))
 
 
 def _periodic_scale(p: Place) -> FloatArray:
-    return _lines(p, p.record.time, p.stiffness)
+    return _lines(p, p.stiffness)
 
 
 def _periodic_way(p: Place) -> FloatArray:
+    """A line over the way travelled, against the motion."""
     way = np.cumsum(np.abs(np.diff(p.record.motion.deflection, prepend=p.record.motion.deflection[0])))
-    return _lines(p, way, p.record.motion.direction)
+    direction = p.record.motion.direction
+    columns = []
+    for line, loudness in p.record.kept_lines(way, direction, 3):
+        heard = direction if loudness > LOUD else 0.0 * direction
+        columns += [heard * f(2.0 * np.pi * line * way) for f in (np.sin, np.cos)]
+    return _own(p, columns)
+
+
+def _span(p: Place) -> FloatArray:
+    """Within spans of time that stand out: an offset, and a part of the force (a channel that hangs has lost all)."""
+    place = np.arange(p.elastic.size)
+    columns = [
+        np.where((place >= first) & (place < last), values, 0.0)
+        for first, last in p.record.outstanding.spans
+        for values in (p.scene.strongest, p.elastic)
+    ]
+    most = max(len(r.outstanding.spans) for r in p.scene.records)
+    return _own(p, _filled(columns, 2 * most, p.elastic))
+
+
+def worth_trying(families: Sequence[Family], scene: Scene) -> tuple[Family, ...]:
+    """Return the families without those of lines and spans where no line or span stands out."""
+    lines = any(r.outstanding.lines for r in scene.records)
+    spans = any(r.outstanding.spans for r in scene.records)
+    gone = {*(() if lines else ("period", "period, added")), *(() if spans else ("span",))}
+    return tuple(f for f in families if f.name not in gone)
 
 
 AGNOSTIC_FAMILIES: tuple[Family, ...] = (
@@ -150,4 +184,5 @@ AGNOSTIC_FAMILIES: tuple[Family, ...] = (
     Family("history", _history, agnostic=True),
     Family("resonance", _resonance, pairs, agnostic=True, remembers=True),
     Family("way", _periodic_way, agnostic=True),
+    Family("span", _span, agnostic=True, after_lag=True),
 )

@@ -10,6 +10,7 @@ import numpy as np
 from radialtire import FLAT_RADIUS, TireModel
 
 from .motion import FloatArray, IndexArray, Motion, motion_of
+from .outstanding import Outstanding
 
 DEEP_IN_CM = 1e-2
 """Below this deflection [cm] the logarithm of the deflection is held: the force there is below every noise."""
@@ -40,6 +41,7 @@ class Record:
     number: int
     whole: Record | None = field(default=None, repr=False)
     memory: dict[str, FloatArray] = field(default_factory=dict, repr=False, compare=False)
+    standing: list[Outstanding] = field(default_factory=list, repr=False, compare=False)
 
     @cached_property
     def thin(self) -> Record:
@@ -48,9 +50,23 @@ class Record:
         if rows.size == self.time.size:
             return self
         motion = Motion(**{k: v if k == "noise" else v[rows] for k, v in self.motion.__dict__.items()})
-        arrays = (self.time, self.force, motion, self.surface, self.coefficient, self.exponent)
-        sliced = [a if isinstance(a, Motion) else a[rows] for a in arrays]
-        return Record(*sliced, np.arange(rows.size), self.number, self)  # type: ignore[arg-type, call-arg]
+        return Record(
+            self.time[rows],
+            self.force[rows],
+            motion,
+            self.surface[rows],
+            self.coefficient[rows],
+            self.exponent[rows],
+            np.arange(rows.size),
+            self.number,
+            self,
+            standing=self.standing,
+        )
+
+    @property
+    def outstanding(self) -> Outstanding:
+        """What stands out of the recording, once that has been looked for."""
+        return self.standing[0] if self.standing else Outstanding()
 
     def kept(self, name: str, compute: Callable[[Motion], Iterable[FloatArray]]) -> FloatArray:
         """Return what `compute` makes of the whole motion, one row each at this record's samples, computed once."""
