@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from radialtire import TireModel
 
 from .errors import TirelabError
 from .explain.background import background
-from .explain.beyond import AGNOSTIC_FAMILIES
+from .explain.beyond import AGNOSTIC_FAMILIES, worth_trying
 from .explain.columns import build, layout_of, lifted_from_force, measure
 from .explain.evidence import explain
 from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family
@@ -38,6 +38,7 @@ from .verdict import (
     confidence_of,
     named,
     one_constant_rate,
+    one_rate_rivals,
     rivals_of,
     summarise,
 )
@@ -54,6 +55,15 @@ FEWEST_STEPS = 8
 FORM_ERROR = 0.007
 LEAST_ERROR = 0.05
 """Errors of form that every family may have: part of its effect's size, and of the noise (see `coarsening`)."""
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """A recording's motion without the noise of its reading: time [s], deflection [m], surface radius [m]."""
+
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
 
 
 class PoorRecording(TirelabError):
@@ -90,6 +100,7 @@ def diagnose(
     zero = Point(np.zeros((len(scene.radii), 4)), lifted=lifted_from_force(scene))
     tell("finding the noise")
     noises = background(scene, families, zero)
+    families = worth_trying(families, scene)
     _check_signal(scene, noises)
     power = coarsening(scene, noises, families, zero)
     found = search(scene, noises, families, power, tell)
@@ -98,11 +109,18 @@ def diagnose(
     tell("fitting the parameters")
     believed = replace(tire, tracking_time=likeliest_tracking(recordings).tracking_time)
     cases = [
-        Case(recording, recording.force, noise, record.rows, np.zeros(record.rows.size))
+        Case(
+            recording,
+            Smooth(recording.time, record.motion.deflection, recording.surface_radius),
+            recording.force,
+            noise,
+            record.rows,
+            np.zeros(record.rows.size),
+        )
         for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
     ]
-    cleared = _cleared(best, cases, scene, families)
-    fitted = _refit(best, believed, cases, scene, families, power)
+    cleared = _cleared(best, cases, scene)
+    fitted = _refit(best, believed, cases, scene, power)
     before = [r.force - simulate(tire, r) for r in recordings]
     beyond = tuple(n for n in best.names if n in BEYOND)
     tell("judging the correction on what it was not fitted to")
@@ -115,12 +133,12 @@ def diagnose(
     fit = _figures(before, fitted, noises, kept)
     effects = _effects(best, fitted)
     rivals = tuple(r for r in rivals_of(found.settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
-    confidence = confidence_of(found.settled) / (1.0 + sum(r.log_odds >= 6.0 for r in rivals))
+    confidence = confidence_of(found.settled) / (1.0 + len(one_rate_rivals(named(best), scene)))
     test = None
     if rivals:
         tell("looking for the test that would tell")
         test = _separating(
-            best, fitted, rivals, found.settled, believed, cases, scene, families, power, fit.noise, limits
+            best, fitted, rivals, found.settled, believed, cases, scene, power, fit.noise, limits
         )
     return Verdict(
         effects,
@@ -204,10 +222,9 @@ def _check_signal(scene: Scene, noises: Sequence[Noise]) -> None:
             )
 
 
-def _parts(settled: Settled, scene: Scene, families: Sequence[Family]) -> dict[str, list[FloatArray]]:
+def _parts(settled: Settled, scene: Scene) -> dict[str, list[FloatArray]]:
     """Return what each family of a settled set adds [N], for each recording."""
-    by_name = {f.name: f for f in families}
-    built = build(scene, settled.point, [by_name[n] for n in settled.names])
+    built = build(scene, settled.point, [settled.layout.families[n] for n in settled.names])
     parts: dict[str, list[FloatArray]] = {}
     for name, group, values in zip(
         settled.names, settled.candidate.groups, settled.candidate.explained.coefficients, strict=True
@@ -222,12 +239,11 @@ def _refit(
     believed: TireModel,
     cases: Sequence[Case],
     scene: Scene,
-    families: Sequence[Family],
     power: float,
 ) -> Refit:
     names = [n for n in settled.names if n not in BEYOND and n != "shape"]
-    parts = _parts(settled, scene, families)
-    cleared = _cleared(settled, cases, scene, families)
+    parts = _parts(settled, scene)
+    cleared = _cleared(settled, cases, scene)
     middle = np.log(50.0 * scene.deepest)
     shape = settled.point.shape
     law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
@@ -245,9 +261,9 @@ def _refit(
     )
 
 
-def _cleared(settled: Settled, cases: Sequence[Case], scene: Scene, families: Sequence[Family]) -> list[Case]:
+def _cleared(settled: Settled, cases: Sequence[Case], scene: Scene) -> list[Case]:
     """Return the cases with what is beyond the catalogue taken out: no effect is bent to follow it."""
-    parts = _parts(settled, scene, families)
+    parts = _parts(settled, scene)
     beyond = [n for n in settled.names if n in BEYOND]
     return [
         replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
@@ -287,7 +303,6 @@ def _separating(
     believed: TireModel,
     cases: Sequence[Case],
     scene: Scene,
-    families: Sequence[Family],
     power: float,
     noise: float,
     limits: Limits | None,
@@ -298,7 +313,7 @@ def _separating(
         other = next((s for s in settled if named(s) == rival.names), None)
         if other is None:
             continue
-        second = _refit(other, believed, cases, scene, families, power)
+        second = _refit(other, believed, cases, scene, power)
         reach = limits or Limits(
             deepest=scene.deepest,
             fastest=max(0.1, 2.0 * max(float(np.abs(r.motion.rate).max()) for r in scene.records)),

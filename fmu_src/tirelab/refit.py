@@ -31,16 +31,23 @@ DETERMINED = 0.25
 """An extra freedom is determined where its standard deviation is below this part of its prior's, that of a value
 anywhere within its bounds."""
 
-OF_RATE = ("rate_exponent",)
+SHARP = 1e-5
+"""Tracking time [s] for deflections without noise: rate and acceleration are those of the last readings."""
+
+OF_RATE = ("rate_exponent", "thinning")
 """Parameters that say how a force changes with the rate: at one rate they are not determined, whatever the short
 reversals would have them be."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """One recording with its noise, the samples that are compared, and what of their force is not to be followed."""
+    """One recording with its noise, the samples that are compared, and what of their force is not to be followed.
+
+    smooth: the recording with the noise of its deflection taken out, to which parameters are fitted
+    """
 
     recording: Sampled
+    smooth: Sampled
     force: FloatArray
     noise: Noise
     rows: IndexArray
@@ -313,6 +320,10 @@ def _plain(knob: Knob) -> float:
     return CATALOGUE[knob.owner].parameters[knob.index].start
 
 
+AWAKE = {"gathering": 0.02, "thinning": 30.0}
+"""Where a freedom begins that has no slope where it is off: a stroke [m], and the inverse of a usual rate [s/m]."""
+
+
 def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit | None) -> float:
     if before is not None:
         for k, v in zip(before.knobs, before.values, strict=True):
@@ -322,7 +333,7 @@ def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit 
         return float(law.ravel()[knob.index])
     if knob.owner in starts and not _extra(knob):
         return float(starts[knob.owner][knob.index])
-    return float(CATALOGUE[knob.owner].parameters[knob.index].start)
+    return AWAKE.get(knob.label, float(CATALOGUE[knob.owner].parameters[knob.index].start))
 
 
 def _fit(
@@ -340,7 +351,8 @@ def _fit(
         nonlocal evaluations
         evaluations += 1
         tire = assemble(believed, knobs, scaled * scale, radii)
-        parts = [c.noise.whitened((c.force - simulate(tire, c.recording))[c.rows] - c.beyond) for c in cases]
+        exact = replace(tire, tracking_time=SHARP)
+        parts = [c.noise.whitened((c.force - simulate(exact, c.smooth))[c.rows] - c.beyond) for c in cases]
         return np.concatenate(parts)
 
     centre = np.clip(start / scale, low, high)
