@@ -106,7 +106,8 @@ def lifted_from_force(scene: Scene) -> tuple[BoolArray, ...]:
         record = whole.thin
         elastic = record.elastic(record.motion.deflection)
         sigma = first_guess(record.force - elastic).innovation
-        found.append((median_filter(record.force, 3) < 2.0 * sigma) & (elastic > 4.0 * sigma))
+        # A load cell whose zero is off reads less than nothing, a tire in the air reads nothing.
+        found.append((np.abs(median_filter(record.force, 3)) < 2.0 * sigma) & (elastic > 4.0 * sigma))
     return tuple(found)
 
 
@@ -141,7 +142,7 @@ def pointed(point: Point, name: str, columns: int) -> FloatArray:
     elif name == "deflection_offset":
         values = np.array([point.offset])
     elif name == "series_compliance":
-        values = np.array([-point.compliance])
+        values[0] = -point.compliance
     elif name == "force_lag":
         values = np.zeros(columns)
         values[0] = -point.lag

@@ -26,6 +26,10 @@ ROUNDS = 9
 """Fixed-point rounds for the scales (MacKay 1992); the evidence changes by less than 0.1 in the last ones."""
 
 
+STANDING = 0.02
+"""Relative change of every scale below which the rounds end: the evidence is flat there, it changes by the square."""
+
+
 @dataclass(frozen=True)
 class Products:
     """What every comparison needs: products of the whitened columns and the data, in units of the noise.
@@ -84,7 +88,9 @@ def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained
         taken = np.add.reduceat(np.diag(covariance), starts)
         squares = np.add.reduceat(mean**2, starts)
         known = np.maximum(counts - taken / variance, 1e-3)
-        variance = np.clip(squares / known, 1e-6, 1e8)
+        before, variance = variance, np.clip(squares / known, 1e-6, 1e8)
+        if np.all(np.abs(variance - before) < STANDING * before):
+            break
     precision = np.repeat(1.0 / variance, counts)
     covariance = np.linalg.inv(gram + np.diag(precision))
     mean = covariance @ moment

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+from radialtire.effects.gas_compression import LEAST_CURVATURE, WHEEL_RADIUS
 from scipy.signal import lfilter
 
 from .lag import lagged
@@ -163,17 +164,32 @@ def _mullins(p: Place) -> FloatArray:
     below = np.clip(1.0 - p.deflection / np.maximum(deepest, 1e-9), 0.0, 1.0)
     shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
     way = np.cumsum(np.abs(np.diff(p.deflection, prepend=p.deflection[0])) * (below > 0.0))
-    damage = -np.expm1(-way / p.scene.deepest)
-    return np.stack([p.taken(p.elastic * shape * part) for part in (1.0, damage) for shape in shapes], axis=1)
+    gathered = [1.0, *(-np.expm1(-way / (share * p.scene.deepest)) for share in (0.4, 1.5))]
+    return np.stack([p.taken(p.elastic * shape * part) for part in gathered for shape in shapes], axis=1)
+
+
+PATCHES = (0.0, 0.4, 0.8)
+"""Exponents of 1 + r_w / R by which a patch may be shorter (see `radialtire.effects.gas_compression`)."""
+
+
+def _compliance(p: Place) -> FloatArray:
+    """What gives way by so much for each newton, and less so under a larger force."""
+    return np.stack([p.stiffness * p.elastic * (p.elastic / p.scene.strongest) ** k for k in (0, 1)], axis=1)
 
 
 GAS_POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25)
 
 
 def _gas(p: Place) -> FloatArray:
-    """The air's volume falls with a power of the deflection; the pressure rises with that, and with its square."""
+    """The air's volume falls with a power of the deflection; the pressure rises with that, and with its square.
+
+    The volume lost at one deflection is the same on every surface, or as the patch is shorter on a convex one.
+    """
     depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
-    return np.stack([p.elastic * depth ** (power * k) for power in GAS_POWERS for k in (1, 2)], axis=1)
+    bends = [0.0 if np.isinf(r) else 1.0 / r for r in p.scene.radii]
+    bent = np.maximum(1.0 + WHEEL_RADIUS * (p.record.surface @ np.array(bends)), LEAST_CURVATURE)
+    lost = [bent**-s * depth**power for s in PATCHES for power in GAS_POWERS]
+    return np.stack([p.elastic * part**k for part in lost for k in (1, 2)], axis=1)
 
 
 def pairs(count: int) -> list[list[int]]:
@@ -256,7 +272,7 @@ def _warm(p: Place) -> FloatArray:
     """Stiffer by what the air or the rubber has warmed; less where the casing carries more of the force."""
     part = p.record.time / p.scene.longest
     depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
-    courses = [-np.expm1(-part / share) for share in (0.03, 0.1, 0.3)]
+    courses = [-np.expm1(-part / share) for share in (0.03, 0.1, 0.3, 1.0)]
     return np.stack([*(p.elastic * c for c in courses), p.elastic * depth * courses[1]], axis=1)
 
 
@@ -279,7 +295,7 @@ CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("rate_independent_hysteresis", _friction, _memories, sign=1.0),
     Family("viscous_damping", _viscous, sign=1.0),
     Family("viscoelastic_relaxation", _relaxation, sign=1.0, remembers=True),
-    Family("series_compliance", lambda p: (p.stiffness * p.elastic)[:, None], sign=-1.0),
+    Family("series_compliance", _compliance, sign=-1.0),
     Family("gas_compression", _gas, pairs, sign=1.0),
     Family("bottoming", _bottoming, _soft_knees, sign=1.0),
     Family("mullins_softening", _mullins, sign=-1.0, remembers=True),

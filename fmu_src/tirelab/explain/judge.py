@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import nnls
 
-from .beyond import AGNOSTIC_FAMILIES
 from .columns import Layout
 from .evidence import Explained, Products, explain
 from .families import STATIC, Family
-from .motion import IndexArray
+from .motion import FloatArray, IndexArray
 
 EFFECT_PRIOR = -4.0
 """Log prior odds of one more effect: one in fifty, the choice among fifteen and one in three that there is one more."""
@@ -25,27 +25,24 @@ AGNOSTIC_PRIOR = -8.0
 HIDDEN_PRIOR = -7.0
 """Log prior odds of an effect of the deflection alone beside a law whose shape is free: it explains what that can."""
 
-MATERIAL = 0.1
-"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by half a
-percent: it is not named, whatever its significance."""
+MATERIAL = 0.25
+"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by three
+percent, sqrt(1 + 0.25^2): it is not named, whatever its significance."""
+
+MATERIAL_CONFINED = 0.1
+"""The same for what acts in a few percent of the samples: there it is several times as large."""
+
+CONFINED = ("bottoming", "saturation")
+
+MATERIAL_SLOW = {"time": 0.5, "time, added": 0.6, "period, added": 0.6}
+"""The same for what slow noise and hum of the amplifier look like: up to half the noise they are noise."""
 
 FORM_ERROR = 0.03
 """What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
 
-MATERIAL_BEYOND = {f.name: 0.25 for f in AGNOSTIC_FAMILIES} | {"time": 0.5, "time, added": 0.6}
-"""The same for what is beyond the catalogue: slow noise and hum of the amplifier, up to half the noise, are noise."""
-
-MATERIAL_SLOW = {
-    "pressure_leak": 0.25,
-    "warm_up": 0.25,
-    "force_drift": 0.25,
-    "force_offset": 0.15,
-    "recalibration": 0.15,
-}
-"""The same for what changes slowly or not at all with the motion, as slow noise does."""
-
-UNKNOWN_FORM = 0.08
-"""The same for what is beyond the catalogue, whose form is anybody's."""
+UNKNOWN_FORM = 0.1
+"""The same beside or of what is beyond the catalogue: its form is anybody's, and a form that a known effect misses is
+no unknown one."""
 
 FEW_VARIANTS = 8
 """Up to so many variants of a family are compared as wholes, more by what their leading columns explain."""
@@ -82,7 +79,7 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
         groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
         explained = explain(p, groups, zeta)
     evidence = explained.log_evidence + prior
-    immaterial = _negligible(names, explained)
+    immaterial = _negligible(layout, names, explained)
     if immaterial or not np.isfinite(evidence) or not _signs_hold(p, layout, names, groups, explained):
         evidence = -np.inf
     return Candidate(names, evidence, groups, explained)
@@ -97,7 +94,7 @@ def _lag_is_one(names: SetName, groups: Sequence[IndexArray], explained: Explain
     return bool(abs(bend) <= 0.6 * slope**2)
 
 
-def _negligible(names: SetName, explained: Explained) -> list[str]:
+def _negligible(layout: Layout, names: SetName, explained: Explained) -> list[str]:
     """Return the families of a set whose own part is not material, or less than the form of another one may err."""
     found = []
     sizes = dict(zip(names, explained.size, strict=True))
@@ -107,16 +104,18 @@ def _negligible(names: SetName, explained: Explained) -> list[str]:
     for name in names:
         if name == "shape":
             continue
+        beyond = layout.families[name].agnostic
         doubt = max(
             (
-                (UNKNOWN_FORM if n in MATERIAL_BEYOND else FORM_ERROR) * size
+                (UNKNOWN_FORM if beyond or layout.families[n].agnostic else FORM_ERROR) * size
                 for n, size in sizes.items()
                 if n not in (name, "shape", "recalibration")
             ),
             default=0.0,
         )
         unique = law if name == "recalibration" else own[name]
-        if unique < max(MATERIAL_BEYOND.get(name, MATERIAL_SLOW.get(name, MATERIAL)), doubt):
+        usual = MATERIAL_CONFINED if name in CONFINED else MATERIAL
+        if unique < max(MATERIAL_SLOW.get(name, usual), doubt):
             found.append(name)
     return found
 
@@ -151,6 +150,19 @@ def _best_variant(p: Products, layout: Layout, others: Sequence[IndexArray], nam
     return variants[int(np.argmax(gain))]
 
 
+WHOLE_SIGN = (
+    "rate_independent_hysteresis",
+    "viscous_damping",
+    "pressure_leak",
+    "warm_up",
+    "mullins_softening",
+)
+"""Effects whose columns all have the sign; of others the leading column has it."""
+
+AGAINST = 0.5
+"""Part of a relaxation's power that may be due to shares below nothing: it is then no relaxation."""
+
+
 def _signs_hold(
     p: Products, layout: Layout, names: SetName, groups: Sequence[IndexArray], explained: Explained
 ) -> bool:
@@ -158,24 +170,24 @@ def _signs_hold(
         sign = layout.families[name].sign
         if not sign:
             continue
-        lead = (
-            group
-            if name
-            in (
-                "rate_independent_hysteresis",
-                "viscoelastic_relaxation",
-                "viscous_damping",
-                "pressure_leak",
-                "warm_up",
-                "mullins_softening",
-            )
-            else group[:1]
-        )
         scale = np.where(np.isfinite(p.scale[group]), p.scale[group], 0.0)
-        projection = float(np.sum(p.gram[np.ix_(lead, group)] @ (coefficients * scale)))
-        if sign * projection < 0.0:
+        amounts = coefficients * scale
+        if name == "viscoelastic_relaxation":
+            if _against(p.gram[np.ix_(group, group)], amounts) > AGAINST:
+                return False
+            continue
+        lead = group if name in WHOLE_SIGN else group[:1]
+        if sign * float(np.sum(p.gram[np.ix_(lead, group)] @ amounts)) < 0.0:
             return False
     return True
+
+
+def _against(gram: FloatArray, amounts: FloatArray) -> float:
+    """Return the part of a sum's power that no amounts above nothing can follow."""
+    root = np.linalg.cholesky(gram + 1e-9 * np.trace(gram) * np.eye(amounts.size)).T
+    wanted = root @ amounts
+    _, left = nnls(root, wanted, maxiter=100 * amounts.size)
+    return float(left**2 / max(wanted @ wanted, 1e-300))
 
 
 def law_whole(names: Iterable[str]) -> SetName:
@@ -184,7 +196,7 @@ def law_whole(names: Iterable[str]) -> SetName:
     return tuple(sorted(distinct | {"shape"} if "recalibration" in distinct else distinct))
 
 
-def material(candidate: Candidate) -> SetName:
+def material(candidate: Candidate, layout: Layout) -> SetName:
     """Return the set without the families that are not material in it."""
-    negligible = _negligible(candidate.names, candidate.explained)
+    negligible = _negligible(layout, candidate.names, candidate.explained)
     return law_whole(n for n in candidate.names if n not in negligible)

@@ -17,11 +17,13 @@ from .columns import Layout, build, layout_of, lifted_at, lifted_from_force, mea
 from .evidence import Products
 from .families import STATIC, Family
 from .judge import Candidate, SetName, judge, law_whole, material
+from .motion import IndexArray
 from .place import Point
 from .scene import Scene
 
 POOR = 1.15
-"""Where no settled set comes nearer to the noise than this chi square per sample, every effect is settled alone too."""
+"""Where no settled set comes nearer to the noise than this chi square per sample, every effect is settled beside a free
+law too."""
 
 BEAM = 6
 DEEPEST_SET = 6
@@ -64,7 +66,8 @@ def settle(
     start: Point,
 ) -> Settled:
     """Return the set `names` at the point where it stands still."""
-    stages = LAG_STAGES if "force_lag" in names else (0,)
+    # Once a lag has been found its kind is known too, and stays.
+    stages = LAG_STAGES if "force_lag" in names and start.lag <= 0.0 else (start.stages,)
     found = [_settle(scene, noises, families, names, zeta, replace(start, stages=s)) for s in stages]
     return max(found, key=lambda s: s.log_evidence)
 
@@ -98,9 +101,22 @@ def _settle(
             following = moved(following, name, values, group)
         if _same(point, following) or (turn > 1 and abs(gained) < 0.05):
             break
+        if turn == 1 and point.lag > 0.0:
+            # What is read late costs a filter for each column: the variants that were not chosen stay behind.
+            chosen = [_narrowed(f, group) for f, group in zip(chosen, own, strict=True)]
         point = following
     assert best is not None
     return best
+
+
+def _narrowed(family: Family, group: IndexArray) -> Family:
+    """Return the family with the columns of one variant alone; those that a point holds keep all of theirs."""
+    if len(group) == 0 or family.name in KEEP_COLUMNS:
+        return family
+    return replace(family, build=lambda p: family.build(p)[:, group], variants=lambda n: [list(range(n))])
+
+
+KEEP_COLUMNS = ("recalibration", "shape", "deflection_offset", "series_compliance", "force_lag")
 
 
 def _only(point: Point, names: SetName) -> Point:
@@ -196,7 +212,7 @@ class Screen:
         return [law_whole((*(n for n in names if n not in STATIC), "recalibration"))]
 
     def seeds(self) -> list[SetName]:
-        """Return every family of the catalogue alone and beside a free law."""
+        """Return every family of the catalogue alone, then beside a free law."""
         known = [
             n
             for n, f in self.layout.families.items()
@@ -224,6 +240,15 @@ class Screen:
         return [c for c in order[:count] if c.log_evidence > order[0].log_evidence - CLOSE]
 
 
+def _other_shapes(names: SetName, families: dict[str, Family]) -> list[SetName]:
+    """Return the set with each other function of deflection and surface in the place of its own ones."""
+    shapes = [n for n in ("recalibration", "series_compliance", "gas_compression") if n in families]
+    if not set(shapes) & set(names):
+        return []
+    rest = [n for n in names if n not in (*shapes, "shape")]
+    return [law_whole((*rest, n)) for n in shapes]
+
+
 def search(
     scene: Scene,
     noises: Sequence[Noise],
@@ -244,7 +269,7 @@ def search(
             if names in settled:
                 continue
             settled[names] = settle(scene, noises, by_name, names, zeta, start)
-            needed = material(settled[names].candidate)
+            needed = material(settled[names].candidate, settled[names].layout)
             if needed != names:
                 waiting.append(needed)
 
@@ -260,8 +285,11 @@ def search(
         compared += len(screen.seen)
         settle_all([c.names for c in screen.best(8)], point)
         settle_all(screen.instead_of_unknown(top), point)
-        if turn == 0 and min(s.candidate.explained.chi_square for s in settled.values()) > POOR:
-            settle_all(screen.seeds(), point)
+        if turn == 0:
+            alone = [s for s in screen.seeds() if len(s) == 1]
+            settle_all(alone, point)
+            if min(s.candidate.explained.chi_square for s in settled.values()) > POOR:
+                settle_all(screen.seeds(), point)
         best = max(settled.values(), key=lambda s: s.log_evidence)
         if progress is not None:
             progress(f"{compared} sets compared; best so far: {', '.join(best.names) or 'nothing'}")
@@ -271,5 +299,6 @@ def search(
     settle_all(
         [law_whole(n for n in best.names if n != gone) for gone in best.names if gone != "shape"], point
     )
+    settle_all(_other_shapes(max(settled.values(), key=lambda s: s.log_evidence).names, by_name), point)
     order = sorted(settled.values(), key=lambda s: -s.log_evidence)
     return Found(tuple(order), compared)
