@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from radialtire import SECOND_READING, Hull1996, PowerLaw, TireModel, read_tire
 from radialtire.curvature_law import CurvatureLaw
@@ -263,6 +263,8 @@ positive = st.floats(0.05, 0.95)
     st.floats(200.0, 2000.0), positive, st.floats(0.03, 0.6), st.floats(1e2, 1e4), st.floats(0.05, 0.2),
     st.floats(1.1, 1.6), positive, st.floats(0.03, 0.6), st.floats(0.05, 0.4), st.floats(0.01, 0.1),
 )  # fmt: skip
+# here the best point of the grid of rates has no concave rise of B
+@example(200.0, 0.5, 0.5, 100.0, 0.125, 1.5625, 0.6875, 0.03, 0.05078125, 0.0546875)
 def test_any_tire_of_the_articles_form_is_found(
     C: float,
     share: float,
