@@ -5,9 +5,19 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import Phase, settings
 
 if sys.prefix != sys.base_prefix:  # as the program does: nothing outside the checkout is touched
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
+
+# The ordinary run draws the same examples each time and shows the first that fails as it was drawn.
+settings.register_profile(
+    "steady", derandomize=True, deadline=None, print_blob=True, phases=(Phase.explicit, Phase.generate)
+)
+settings.register_profile(
+    "random", deadline=None, print_blob=True, phases=[phase for phase in Phase if phase is not Phase.explain]
+)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 

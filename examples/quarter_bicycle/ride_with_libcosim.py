@@ -48,7 +48,8 @@ def main() -> None:
         wanted.append((slave, [references[column] for column in columns]))
     rows: list[list[object]] = [["time", *(column for columns in COLUMNS.values() for column in columns)]]
     for i in range(1, round(1e9 * options.duration / nanoseconds) + 1):
-        if not execution.step():
+        execution.step()  # up to libcosimpy 0.0.4, the last for Python 3.10, this always returns False
+        if execution.status().current_time != i * nanoseconds:
             sys.exit(f"libcosim could not step beyond {(i - 1) * nanoseconds * 1e-9:g} s")
         values = [
             value for slave, references in wanted for value in observer.last_real_values(slave, references)

@@ -1,16 +1,14 @@
 """Compiles the physics of `radialtire` for whole recordings, and keeps what was compiled between runs.
 
-Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the folder of
-the environment variable TIRELAB_CACHE, else in the virtual environment, else in the user's cache folder
-(XDG_CACHE_HOME or ~/.cache), in a folder named after the content of `radialtire`: numba itself looks only at the file
-of a loop, not at those of the functions it calls.
+Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the cache, in a
+folder named after the content of `radialtire`: numba itself looks only at the file of a loop, not at those of the
+functions it calls.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib.util
-import os
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -19,6 +17,8 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 import radialtire
+
+from .cache_folder import keep, private_folder
 
 KERNEL = Path(__file__).with_name("kernel.py")
 
@@ -53,34 +53,18 @@ def _compiled_globals(function: FunctionType, compile_one: Callable[..., Any]) -
 
 def _copy_of_kernel(key: str) -> tuple[ModuleType, bool]:
     """Return a module of the kernel's code of its own, and whether it lies where its compilation can be kept."""
-    path, kept = KERNEL, False
-    try:
-        folder = _cache_folder() / _fingerprint()
-        folder.mkdir(parents=True, exist_ok=True)
+    path, folder = KERNEL, private_folder(_fingerprint())
+    if folder is not None:
         path = folder / f"{key}.py"
-        if not path.exists():
-            partial = folder / f"{key}.{os.getpid()}.partial"
-            partial.write_bytes(KERNEL.read_bytes())
-            partial.replace(path)
-        kept = os.access(folder, os.W_OK)
-    except (OSError, RuntimeError):
-        path = KERNEL
+        if not path.exists() and not keep(path, KERNEL.read_bytes()):
+            path, folder = KERNEL, None
     spec = importlib.util.spec_from_file_location(f"tirelab_kernel_{key}", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # numba looks there for what it kept
     spec.loader.exec_module(module)
-    return module, kept
-
-
-def _cache_folder() -> Path:
-    own = os.environ.get("TIRELAB_CACHE")
-    if own:
-        return Path(own)
-    if sys.prefix != sys.base_prefix:  # a virtual environment keeps what belongs to it
-        return Path(sys.prefix) / "var" / "tirelab"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tirelab"
+    return module, folder is not None
 
 
 @cache

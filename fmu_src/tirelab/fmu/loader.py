@@ -1,5 +1,10 @@
-"""Compiles the FMU's Linux binary, loader.c, with whatever C compiler there is."""
+"""Compiles the FMU's Linux binary, loader.c, with whatever C compiler there is.
 
+ziglang takes some seconds, so what it made is kept: it brings its own headers and libraries, and makes the same bytes
+of the same sources anywhere. The machine's own compiler is quick, and what it makes depends on more than can be told.
+"""
+
+import hashlib
 import importlib.metadata
 import importlib.util
 import os
@@ -12,6 +17,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from tirelab.cache_folder import keep, private_folder
 from tirelab.errors import TirelabError
 
 SOURCES = ("loader.c", "interpreter.c")
@@ -23,6 +29,9 @@ NO_COMPILER = (
     "Python themselves: install one with `python -m pip install ziglang`, or a cc, and build again."
 )
 """What to tell the user when `compile_loader` returns None."""
+
+_SWAYS = ("C_INCLUDE_PATH", "CPATH", "LIBRARY_PATH", "SOURCE_DATE_EPOCH", "ZIG_LIB_DIR")
+"""Environment variables that change what ziglang makes."""
 
 # No build id, paths or symbols: one compiler makes the same bytes of the same source, wherever it lies.
 _FLAGS = ("-std=c11", "-O2", "-shared", "-fPIC", "-pthread", "-s", "-Wl,--build-id=none")
@@ -57,7 +66,8 @@ def find_compiler() -> Compiler | None:
 def compile_loader(destination: Path, compiler: Compiler | None = None) -> Compiler | None:
     """Compile loader.c into the library `destination`, and say what compiled it.
 
-    The machine's own compiler counts on Linux on x86-64 only; ziglang makes the library on any machine.
+    The machine's own compiler counts on Linux on x86-64 only; ziglang makes the library on any machine, and where it
+    has made it before, that is taken.
 
     Parameters
     ----------
@@ -78,6 +88,10 @@ def compile_loader(destination: Path, compiler: Compiler | None = None) -> Compi
     compiler = compiler or find_compiler()
     if compiler is None:
         return None
+    kept = _kept(compiler)
+    if kept is not None and kept.is_file():
+        shutil.copyfile(kept, destination)
+        return compiler
     command = [*compiler.command, *_FLAGS, "-o", str(destination.resolve()), *SOURCES, "-ldl"]
     with tempfile.TemporaryDirectory(prefix="tirelab_") as cache:
         # ziglang would otherwise leave some 50 MB in the user's home.
@@ -92,4 +106,20 @@ def compile_loader(destination: Path, compiler: Compiler | None = None) -> Compi
         lines.append(f"exit status {result.returncode}")
         first = next((line for line in lines if "error" in line), lines[0]).strip()
         raise TirelabError(f"The C compiler {compiler.name} cannot compile the FMU's Linux binary: {first}")
+    if kept is not None:
+        keep(kept, destination.read_bytes())
     return compiler
+
+
+def _kept(compiler: Compiler) -> Path | None:
+    """Return where the library that `compiler` makes is kept, there or not yet, or None where it is not."""
+    folder = private_folder("loader") if compiler.glibc is not None else None
+    if folder is None:
+        return None
+    here = Path(__file__).parent
+    told = hashlib.sha256()
+    for path in sorted([*here.glob("*.c"), *here.glob("*.h")]):
+        told.update(path.name.encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+    sways = [f"{name}={os.environ.get(name)}" for name in _SWAYS]
+    told.update("\0".join([compiler.name, *compiler.command, *_FLAGS, *SOURCES, *sways]).encode())
+    return folder / f"{told.hexdigest()[:32]}.so"

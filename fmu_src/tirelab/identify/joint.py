@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from .forms import Form
+from .decay_search import Target, nearest
+from .forms import Form, HullForm
 from .noise import PowerFit
 from .power_fit import inner_products
 from .surfaces import Surface
@@ -24,6 +25,9 @@ from .surfaces import Surface
 Array = NDArray[np.float64]
 
 EVALUATIONS_MOST = 200
+
+START_PRECISION = 1e-6
+"""Precision to which the fit's start is sought."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,8 @@ def joint_fit(
     """Fit `form`, from the logarithms `start` (k,), to all samples of `surfaces`, whose own fits are `fits`."""
     weights = np.array([2.0 / np.trace(fit.products @ fit.covariance) for fit in fits])
     weights /= weights.sum() * max(s.weight_sum for s in surfaces)
+    if isinstance(form, HullForm):
+        start = nearest(_summary(form, fits, weights), start, START_PRECISION, EVALUATIONS_MOST)
     state: dict[str, Array] = {}
 
     def evaluate(logs: Array) -> None:
@@ -99,6 +105,17 @@ def joint_fit(
         max_nfev=EVALUATIONS_MOST,
     )
     return JointFit(found.x, *_covariance(form, found.x, fits, weights), int(found.nfev))
+
+
+def _summary(form: HullForm, fits: Sequence[PowerFit], weights: Array) -> Target:
+    """Return what the fit minimises, but for a constant, as far as the form's A and B are near the surfaces' own."""
+    return Target(
+        form,
+        pairs=np.array([(fit.coefficient, fit.exponent) for fit in fits]),
+        roots=np.stack(
+            [np.linalg.cholesky(w * fit.products).T for w, fit in zip(weights, fits, strict=True)]
+        ),
+    )
 
 
 def _covariance(

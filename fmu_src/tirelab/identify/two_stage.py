@@ -12,42 +12,22 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
+from .decay_search import Target, decays_tried, nearest
 from .forms import EDGE, RISE_LOWEST, HullForm
 from .surfaces import CM_PER_M
 
-GRID = 40
-"""Rates of decay tried on each side."""
-
-DECAYS_TRIED = 0.05, 5.0
-"""Their span, as multiples of 1/largest and 1/smallest radius of the side."""
+PRECISION, EVALUATIONS_MOST = 1e-14, 500
+"""When a search has come to rest, and when it is left."""
 
 Array = NDArray[np.float64]
 
 
 def second_stage(form: HullForm, pairs: Array) -> Array:
     """Return the logarithms (k,) that `form` searches, fitted to A and B of its surfaces `pairs` (n, 2)."""
-    return np.concatenate([_fit(form, pairs[:, i], i) for i in (0, 1)])
-
-
-def _fit(form: HullForm, values: Array, which: int) -> Array:
-    lower, upper = (bound[which * bound.size // 2 :][: bound.size // 2] for bound in form.bounds)
-    start = np.clip(_start(form, values), lower + 1e-9, upper - 1e-9)
-    scale = float(np.abs(values).max())
-    found = least_squares(
-        lambda logs: (form.one(logs)[0] - values) / scale,
-        start,
-        lambda logs: form.one(logs)[1] / scale,
-        bounds=(lower, upper),
-        x_scale="jac",
-        ftol=1e-15,
-        xtol=1e-13,
-        gtol=1e-15,
-        max_nfev=500,
-    )
-    logs: Array = found.x
-    return logs
+    start = np.concatenate([_start(form, pairs[:, i]) for i in (0, 1)])
+    roots = np.tile(np.diag(1.0 / np.abs(pairs).max(axis=0)), (len(pairs), 1, 1))
+    return nearest(Target(form, pairs, roots), start, PRECISION, EVALUATIONS_MOST)
 
 
 def _start(form: HullForm, values: Array) -> Array:
@@ -55,12 +35,7 @@ def _start(form: HullForm, values: Array) -> Array:
     radius = CM_PER_M * np.array(form.radii)
     convex, concave = (radius > 0.0) & np.isfinite(radius), radius < 0.0
     sides = [side for side, here in zip((convex, concave), form.sides, strict=True) if here]
-    decays = [
-        np.geomspace(
-            DECAYS_TRIED[0] / np.abs(radius[side]).max(), DECAYS_TRIED[1] / np.abs(radius[side]).min(), GRID
-        )
-        for side in sides
-    ]
+    decays = [decays_tried(radius[side]) for side in sides]
     grid = np.stack(np.meshgrid(*decays, indexing="ij"), axis=-1).reshape(-1, len(sides))
     columns = np.zeros((grid.shape[0], radius.size, 1 + len(sides)))
     columns[:, :, 0] = 1.0

@@ -56,15 +56,6 @@ def test_compiles_to_the_same_bytes_anywhere(
     assert (tmp_path / "one.so").read_bytes() == (tmp_path / "two.so").read_bytes()
 
 
-@pytest.mark.slow
-def test_ziglang_makes_the_same_bytes_twice(tmp_path: Path) -> None:
-    if importlib.util.find_spec("ziglang") is None:
-        pytest.skip("ziglang is not installed")
-    compile_loader(tmp_path / "one.so")
-    compile_loader(tmp_path / "two.so")
-    assert (tmp_path / "one.so").read_bytes() == (tmp_path / "two.so").read_bytes()
-
-
 def test_compiles_without_warnings(compiler: Compiler, tmp_path: Path) -> None:
     flags = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared"]
     command = [*compiler.command, *flags, "-o", str(tmp_path / "loader.so"), *SOURCES]

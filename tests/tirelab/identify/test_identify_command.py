@@ -1,0 +1,58 @@
+"""The command `tirelab identify`: recordings in, a tire file out, or a sentence."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from presses import triangle
+from radialtire import Hull1996, read_tire
+from tirelab import rig
+from tirelab.commands.identify import command
+from tirelab.recording import write_recording
+
+
+def test_the_command_closes_the_loop_through_files(tmp_path: Path) -> None:
+    files = []
+    for recording in rig.record_all():
+        files.append(str(tmp_path / f"{recording.name}.csv"))
+        write_recording(recording, files[-1])
+    out = tmp_path / "new" / "tire.json"
+    done = CliRunner().invoke(command, [*files, "--out", str(out), "--name", "the article's again"])
+    assert done.exit_code == 0, done.output
+    assert "convex 1.27 cm" in done.output
+    tire = read_tire(out)
+    assert tire.name == "the article's again"
+    for parameter in Hull1996.parameters:
+        # twelve digits in the files leave 1e-12 of 2000 N, and D1 moves by 0.035 of itself for each newton
+        assert getattr(tire.law, parameter.name) == pytest.approx(
+            getattr(Hull1996(), parameter.name), rel=1e-6
+        )
+    beside = json.loads((tmp_path / "new" / "tire.identification.json").read_text(encoding="utf-8"))
+    assert [c["name"] for c in beside["constants"]] == [p.name for p in Hull1996.parameters]
+    assert len(beside["surfaces"]) == 14
+    assert np.array(beside["correlation"]).shape == (10, 10)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["flat.csv", "--law", "hull1996"], "1 surface (flat) cannot tell the constants"),
+        (["absent.csv"], "absent.csv"),
+        (["flat.csv", "--out", "."], "cannot be written"),
+        (["flat.csv", "--law", "spline"], "'spline' is not one of"),
+        ([], "Missing argument"),
+    ],
+)
+def test_the_command_tells_bad_input_in_a_sentence(
+    arguments: list[str], sentence: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_recording(triangle(), "flat.csv")
+    done = CliRunner().invoke(command, arguments)
+    assert done.exit_code == 2
+    assert sentence in done.output
+    assert not Path("tire.json").exists()
