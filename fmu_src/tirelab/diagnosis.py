@@ -130,7 +130,7 @@ def diagnose(
         beyond,
         corrections,
         summarise(effects, rivals, beyond, confidence, fit),
-        locate(scene, before, noises),
+        locate(recordings, scene, before, noises),
         fit,
         fitted.tire,
         _table(found.settled),

@@ -149,12 +149,14 @@ def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> 
 def span(place: Mapping[str, Any]) -> str:
     """Return the span of an entry of `where` in words."""
     by, start, stop, unit = (place[key] for key in ("by", "from", "to", "unit"))
-    if place.get("label"):
-        return str(place["label"])
-    if by == "direction" and not isinstance(start, str) and not isinstance(stop, str):
-        return "loading" if start + stop > 0.0 else "unloading"
     if by == "radius" and start == stop:
         return surface(start)
+    if place.get("label"):
+        return str(place["label"])
+    if place.get("recording"):
+        return f"{span({**place, 'recording': None})} of {place['recording']}"
+    if by == "direction" and not isinstance(start, str) and not isinstance(stop, str):
+        return "loading" if start + stop > 0.0 else "unloading"
     factor, name = scaled(str(unit))
     if start == stop:
         return with_unit(_edge(start, factor), name)
