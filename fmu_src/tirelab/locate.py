@@ -1,11 +1,13 @@
 """Where simulation and recording part: the residual against everything that a recording knows.
 
-Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording the
-spans are looked for in which the squared error beyond the noise is denser than elsewhere: the spans of largest sum of
-excess less what so many samples have on average (Kadane's maximum sum, Bentley 1984), bounded where the residual says
-so and not by a grid. In time, cycles and history "on average" means at the same deflections and directions of the
-same recording, else every cycle's deep half would be a place. Places are ranked by concentration: their part of the
-excess error less their part of the samples.
+Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording two
+kinds of span are looked for: where the squared error beyond the noise is denser than elsewhere, and where the mean
+residual is another than elsewhere. They are spans of largest sum (Kadane's, Bentley 1984), bounded where the residual
+says so and not by a grid. In time, cycles and history "elsewhere" means at the same deflections and directions of the
+same recording, else every cycle's deep half would be a place.
+
+Places are ranked by concentration: their part of the excess error less their part of the samples, or the part of it
+that their own mean takes away, whichever is more.
 
 A span is told where noise alone would hardly show it anywhere: its squares, and the squares of its bins' means, are
 held against chi square with as many degrees of freedom as the noise has independent samples (a block as long as its
@@ -14,7 +16,7 @@ correlation counts once), and the chance is multiplied by the number of spans th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,11 +38,14 @@ noise alone carry an end away by more than some ten samples."""
 LOCATED = 1e-3
 """Chance, over all spans of all coordinates together, of telling any span where there is noise alone."""
 
-LEAST, DENSER = 0.03, 2.0
-"""A place holds at least so much more of the excess than so many samples have on average, so many times as densely as
-the samples outside: what holds its samples' share of the error is no place."""
+FAINT = 0.25
+"""Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
 
-MOST_SPANS = 3
+LEAST, DENSER = 0.03, 2.0
+"""A place has at least this concentration; where it has it for its share, that share is so many times as dense as the
+rest: what holds its samples' share of the error is no place."""
+
+MOST_SPANS = 4
 """Spans along one coordinate (in time: of one recording) at most."""
 
 
@@ -53,6 +58,7 @@ class Span:
     that is meant, where a time is told of one among several
     share: part of the squared error beyond the noise, 0 to 1; samples: part of the samples, 0 to 1
     mean_residual [N]: recording less simulation; chance: that noise alone shows such a place anywhere, 0 to 1
+    concentration: rank of the place, 0 to 1
     """
 
     by: str
@@ -65,11 +71,7 @@ class Span:
     samples: float
     mean_residual: float
     chance: float
-
-    @property
-    def concentration(self) -> float:
-        """Part of the excess error beyond the samples' part: the rank of a place."""
-        return self.share - self.samples
+    concentration: float
 
     def to_contract(self) -> dict[str, object]:
         """Return the span as the entry of `where` in diagnosis.json."""
@@ -108,15 +110,17 @@ def locate(
 class _Samples:
     """The compared samples of all recordings end to end, without spikes; arrays of one length.
 
-    residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike [N^2]: mean excess of samples like
-    this one; together: samples of the noise that count as one; kept: of each recording, indices into its rows
+    residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike_excess [N^2], alike_residual [N]:
+    means of the samples like this one; together: samples of the noise that count as one; kept: of each recording,
+    indices into its rows
     """
 
     residual: FloatArray
     variance: FloatArray
     excess: FloatArray
-    alike: FloatArray
-    together: FloatArray
+    alike_excess: FloatArray
+    alike_residual: FloatArray
+    together: float
     kept: tuple[IndexArray, ...]
 
     @property
@@ -126,46 +130,47 @@ class _Samples:
 
 
 def _samples(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> _Samples:
-    parts: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
-    kept = []
+    parts, kept = [], []
     for record, residual, noise in zip(scene.records, residuals, noises, strict=True):
         chosen = np.flatnonzero(noise.weight > 0.0)
         spread = noise.spread[chosen]
         variance = noise.level**2 * spread**2 / float(np.mean(spread**2))
         own = residual[record.rows][chosen]
         excess = own**2 - variance
-        parts.append(
-            (own, variance, _alike(record, chosen, excess), np.full(own.size, noise.correlation_samples))
-        )
+        parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
         kept.append(chosen)
-    residual, variance, alike, together = (np.concatenate(values) for values in zip(*parts, strict=True))
-    return _Samples(residual, variance, residual**2 - variance, alike, together, tuple(kept))
+    own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
+    together = max(n.correlation_samples for n in noises)
+    return _Samples(own, variance, excess, alike, level, together, tuple(kept))
 
 
-def _alike(record: Record, chosen: IndexArray, excess: FloatArray) -> FloatArray:
-    """Return the mean excess at the deflection and direction of each sample."""
+def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
+    """Return the means of `values` at the deflection and direction of each sample."""
     depth = record.thin.motion.deflection[chosen]
     edges = np.quantile(depth, np.linspace(0.0, 1.0, DEPTHS + 1)[1:-1])
     cell = 2 * np.searchsorted(edges, depth) + (record.thin.motion.direction[chosen] > 0.0)
     count = np.maximum(np.bincount(cell, minlength=2 * DEPTHS), 1)
-    return np.asarray((np.bincount(cell, excess, minlength=2 * DEPTHS) / count)[cell])
+    return [(np.bincount(cell, v, minlength=2 * DEPTHS) / count)[cell] for v in values]
 
 
 @dataclass(frozen=True)
 class _Bins:
     """What the bins of an axis hold; arrays of one value a bin.
 
-    numbers: of samples; total [N]: of the residual; variance [N^2]: of the noise, summed; squares: of the residual over
-    the noise, summed; excess, usual [N^2]: square beyond the noise, and what so many samples have on average
+    numbers: of samples; total [N]: of the residual; apart [N]: of what it has beyond the mean elsewhere
+    variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: square
+    beyond the noise, and what so many samples have elsewhere; whole [N^2]: excess of all bins
     together: samples of the noise that count as one
     """
 
     numbers: FloatArray
     total: FloatArray
+    apart: FloatArray
     variance: FloatArray
     squares: FloatArray
     excess: FloatArray
     usual: FloatArray
+    whole: float
     together: float
 
     @property
@@ -173,12 +178,19 @@ class _Bins:
         """Square of each bin's mean residual over that of its noise."""
         return self.total**2 / np.maximum(self.variance * self.together, 1e-300)
 
-    def scores(self) -> tuple[FloatArray, FloatArray]:
-        """Return what each bin adds to a span: by its samples, and by its mean, which shows a faint force sooner."""
+    def scores(self) -> tuple[FloatArray, ...]:
+        """Return what each bin adds to a span: by its samples' squares, by that of its mean, by its mean, by less it.
+
+        The mean's square shows a faint force sooner; half of the usual error parts the means from none.
+        """
         unit = self.variance * self.together / np.maximum(self.numbers, 1.0)
+        usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
+        least = np.maximum(0.5 * usual * self.numbers, FAINT * np.sqrt(self.variance * self.numbers))
         return (
             self.excess - np.maximum(self.usual, DENSE * self.variance),
             unit * (self.means - 1.0) - np.maximum(self.usual, DENSE * unit),
+            self.apart - least,
+            -self.apart - least,
         )
 
     def log_chance(self, a: int, b: int) -> float:
@@ -194,40 +206,60 @@ class _Bins:
         )
         return min(float(chi2.logsf(value, freedom)) for value, freedom in tests)
 
+    def share(self, a: int, b: int) -> float:
+        """Return the part of the excess error in the bins [a, b)."""
+        return float(np.clip(np.sum(self.excess[a:b]) / self.whole, 0.0, 1.0))
+
+    def concentration(self, a: int, b: int) -> float:
+        """Return the rank of the bins [a, b) as a place; 0 where they are none."""
+        share, usual = self.share(a, b), float(np.sum(self.usual[a:b])) / self.whole
+        number = float(np.sum(self.numbers[a:b]))
+        dense = share - number / float(np.sum(self.numbers))
+        if share - usual < LEAST or share * (1.0 - usual) < DENSER * usual * (1.0 - share):
+            dense = 0.0
+        apart = float(np.sum(self.apart[a:b]))
+        mean = min(apart**2 / number / self.whole, share)
+        if mean < LEAST or apart * float(np.sum(self.total[a:b])) <= 0.0:
+            mean = 0.0
+        return max(dense, mean)
+
 
 def _bins(axis: Axis, samples: _Samples) -> _Bins:
     def summed(values: FloatArray) -> FloatArray:
         return np.asarray(np.bincount(axis.bin_of, values, axis.start.size), dtype=np.float64)
 
-    whole = np.full(samples.excess.size, np.mean(samples.excess))
+    one = np.ones(samples.excess.size)
+    usual, level = (
+        (samples.alike_excess, samples.alike_residual)
+        if axis.slow
+        else (one * np.mean(samples.excess), one * np.mean(samples.residual))
+    )
     return _Bins(
-        summed(np.ones(whole.size)),
+        summed(one),
         summed(samples.residual),
+        summed(samples.residual - level),
         summed(samples.variance),
         summed(samples.residual**2 / samples.variance),
         summed(samples.excess),
-        summed(samples.alike if axis.slow else whole),
-        float(np.max(samples.together)),
+        summed(usual),
+        samples.whole,
+        samples.together,
     )
 
 
 def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
-    """Return the spans of an axis that noise alone does not show, at most `MOST_SPANS` of each part."""
+    """Return the places on an axis that noise alone does not show, at most `MOST_SPANS` in each part."""
     bins = _bins(axis, samples)
     scores, found = bins.scores(), []
     for part, bounds in enumerate(zip(axis.parts[:-1], axis.parts[1:], strict=True)):
         pieces = [bounds]
         for _ in range(MOST_SPANS):
-            best = _best(pieces, scores, bins.log_chance)
-            if best is None or best[0] + np.log(looked_at) > np.log(LOCATED):
+            best = _best(pieces, scores, bins, np.log(LOCATED / looked_at))
+            if best is None:
                 break
-            log_chance, a, b, piece = best
+            concentration, a, b, piece = best
             pieces.remove(piece)
             pieces += [p for p in ((piece[0], a), (b, piece[1])) if p[1] > p[0]]
-            share = float(np.clip(np.sum(bins.excess[a:b]) / samples.whole, 0.0, 1.0))
-            usual = float(np.sum(bins.usual[a:b])) / samples.whole
-            if share - usual < LEAST or share * (1.0 - usual) < DENSER * usual * (1.0 - share):
-                continue
             number = float(np.sum(bins.numbers[a:b]))
             found.append(
                 Span(
@@ -237,10 +269,11 @@ def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
                     axis.unit,
                     axis.label(a, b - 1),
                     axis.recordings[part] if axis.recordings else None,
-                    share,
+                    bins.share(a, b),
                     number / samples.residual.size,
                     float(np.sum(bins.total[a:b])) / number,
-                    float(np.exp(log_chance + np.log(looked_at))),
+                    float(np.exp(bins.log_chance(a, b) + np.log(looked_at))),
+                    concentration,
                 )
             )
     return found
@@ -250,15 +283,15 @@ _Piece = tuple[int, int]
 
 
 def _best(
-    pieces: Sequence[_Piece], scores: Sequence[FloatArray], log_chance: Callable[[int, int], float]
+    pieces: Sequence[_Piece], scores: Sequence[FloatArray], bins: _Bins, least: float
 ) -> tuple[float, int, int, _Piece] | None:
-    """Return the span of `pieces` that noise shows least: log of its chance, its bins [a, b), and its piece."""
+    """Return the most concentrated span in `pieces` whose log chance is below `least`: rank, bins [a, b), piece."""
     found = []
     for piece in pieces:
         for score in scores:
             sums = np.concatenate([[0.0], np.cumsum(score[piece[0] : piece[1]])])
-            b = int(np.argmax(sums - np.minimum.accumulate(sums)))
-            a = int(np.argmin(sums[: b + 1]))
-            if b > a:
-                found.append((log_chance(piece[0] + a, piece[0] + b), piece[0] + a, piece[0] + b, piece))
-    return min(found, default=None)
+            last = int(np.argmax(sums - np.minimum.accumulate(sums)))
+            a, b = piece[0] + int(np.argmin(sums[: last + 1])), piece[0] + last
+            if b > a and bins.log_chance(a, b) < least and (rank := bins.concentration(a, b)) > 0.0:
+                found.append((rank, a, b, piece))
+    return max(found, default=None)

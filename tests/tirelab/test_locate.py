@@ -103,6 +103,29 @@ def test_a_faint_force_that_lasts_is_found_by_its_mean():
     assert overlap(first(spans, "time"), 12.0, 13.5) > 0.7
 
 
+def test_a_loop_is_found_on_both_sides():
+    spans = located(lambda t, x, v: 25.0 * np.sign(v))
+    sides = {s.label: s for s in spans if s.by == "direction"}
+    # Its square is the same everywhere; its mean is not.
+    assert sides["loading"].mean_residual == pytest.approx(25.0, abs=3.0)
+    assert sides["unloading"].mean_residual == pytest.approx(-25.0, abs=3.0)
+    assert {s.by for s in spans} == {"direction", "rate"}
+
+
+def test_a_ripple_is_found_wave_by_wave():
+    spans = located(lambda t, x, v: 25.0 * np.sin(2.0 * np.pi * x / 0.0035))
+    waves = [s for s in spans if s.by == "deflection"]
+    assert len(waves) >= 3
+    for wave in waves:
+        # Half a wave is 1.75 mm, and its mean 2 / pi of its height; its foot is left out.
+        assert 1.1e-3 < wave.stop - wave.start < 1.75e-3
+        assert 16.0 < abs(wave.mean_residual) < 23.0
+
+
+def test_an_offset_is_everywhere():
+    assert located(lambda t, x, v: 20.0 + 0.0 * t) == ()
+
+
 def test_a_jump_is_found_from_where_it_jumps():
     spans = located(lambda t, x, v: np.where(t >= 17.0, 8.0, 0.0))
     assert spans[0].by == "time"
@@ -201,6 +224,9 @@ def test_the_contract_of_a_place():
 
 def test_places_are_told_by_concentration():
     spans = located(lambda t, x, v: 300.0 * v + np.where((t > 12.0) & (t < 12.6), 20.0, 0.0))
-    ranks = [s.share - s.samples for s in spans]
+    ranks = [s.concentration for s in spans]
     assert ranks == sorted(ranks, reverse=True)
-    assert min(ranks) > 0.0
+    # 300 v is the larger part of the error: fast motion comes first, the 20 N in time after it.
+    assert spans[0].by == "rate"
+    # Right after them the tire is pressed quickly: the same sign and size for a quarter of a second more.
+    assert overlap(first(spans, "time"), 12.0, 12.6) > 0.65
