@@ -71,7 +71,6 @@ def beside(verdict: Verdict) -> dict[str, Any]:
     """Return what `write_report` can take besides the contract (see there)."""
     test = verdict.separating_test
     return {
-        "where": [s.to_contract() for s in verdict.where],
         "evidence": [
             {
                 "effects": list(e.names),

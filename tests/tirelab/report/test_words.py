@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from tirelab import titles
 from tirelab.report import words
 
 
@@ -98,9 +99,9 @@ def test_headlines(names: list[str], unexplained: bool, rivals: list[list[str]],
 
 
 def test_sets_are_named_whether_known_or_not() -> None:
-    assert words.set_title([]) == "nothing missing"
-    assert words.set_title(["unknown", "inertia"]) == "something unknown and inertia"
-    assert words.set_title(["rate"]) == "something unknown over rate"
+    assert titles.set_title([]) == "nothing missing"
+    assert titles.set_title(["unknown", "inertia"]) == "something unknown and inertia"
+    assert titles.set_title(["rate"]) == "something unknown over the rate of deflection"
 
 
 def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
