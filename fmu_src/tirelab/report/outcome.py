@@ -76,7 +76,7 @@ def beside(verdict: Verdict) -> dict[str, Any]:
                 "effects": list(e.names),
                 "log_evidence": e.log_evidence,
                 "misfit": math.sqrt(max(e.chi_square, 0.0)),
-                "remark": "the verdict" if number == 0 else "",
+                "remark": _remark(number, e.log_evidence),
             }
             for number, e in enumerate(verdict.evidence)
         ],
@@ -86,6 +86,12 @@ def beside(verdict: Verdict) -> dict[str, Any]:
         if test is None
         else {"time": test.test.time.tolist(), "deflection": test.test.deflection.tolist()},
     }
+
+
+def _remark(number: int, log_evidence: float) -> str:
+    if number == 0:
+        return "the verdict"
+    return "" if math.isfinite(log_evidence) else "a part too small, or of a sign it cannot have"
 
 
 def _correction(found: Correction) -> dict[str, Any]:

@@ -39,7 +39,7 @@ Simulated = tuple[Sequence[Recording], Sequence[FloatArray], Sequence[FloatArray
 MOST_LOOPS = 4
 """Recordings whose loops are drawn, those with the largest misfit first."""
 
-MOST_PLACES = 12
+MOST_PLACES = 8
 """Rows of the table of places."""
 
 MOST_SETS = 15
@@ -139,7 +139,7 @@ def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:
     known = CATALOGUE.get(name)
     return {
         "title": titles.effect_title(name),
-        "statement": words.statement(name),
+        "statement": words.RECALIBRATED if name == titles.RECALIBRATION else "",
         "tell_tale": known.tell_tale if known else "",
         "imitators": titles.listed([titles.effect_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",

@@ -31,13 +31,6 @@ _COORDINATES = {
 }
 
 
-def statement(name: str) -> str:
-    """Return the sentence of the catalogue on an effect, or nothing where it has none."""
-    if name == RECALIBRATION:
-        return RECALIBRATED
-    return CATALOGUE[name].statement if name in CATALOGUE else ""
-
-
 def meaning(effect: str, parameter: str) -> str:
     """Return what a parameter means, from the catalogue, or nothing where it has none."""
     owner = CATALOGUE.get("elastic_shape" if effect == RECALIBRATION else effect)
