@@ -69,8 +69,13 @@ def _unseen(coordinate: Coordinate, kept: HeldOut) -> float:
 
 
 def _knots(at: FloatArray) -> FloatArray:
-    count = min(KNOTS, max(at.size // SAMPLES_PER_KNOT, 4))
-    return np.unique(np.quantile(at, np.linspace(0.0, 1.0, count)))
+    """Return the points of a curve over `at`: two of three where the samples are, one of three evenly between."""
+    count = min(KNOTS, max(at.size // SAMPLES_PER_KNOT, 6))
+    even = np.linspace(at.min(), at.max(), count // 3 + 1)
+    knots = np.sort(np.concatenate([np.quantile(at, np.linspace(0.0, 1.0, count - count // 3)), even]))
+    # Points that all but coincide would make a step.
+    apart = np.diff(knots, prepend=-np.inf) > 1e-6 * (even[-1] - even[0])
+    return np.asarray(knots[apart])
 
 
 def _curve(at: FloatArray, force: FloatArray, knots: FloatArray, wanted: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from radialtire import CATALOGUE
 
 from .separate import SeparatingTest
-from .titles import RECALIBRATION, dependence, headline, listed, set_title, sure
+from .titles import RECALIBRATION, dependence, headline, listed, newtons, set_title, sure
 from .verdict import Correction, Fit, NamedEffect, Rival
 
 REPEATS = 0.1
@@ -43,18 +43,16 @@ def summarise(
 
 def _errors(corrected: bool, unexplained: bool, fit: Fit) -> list[str]:
     """Return what the correction did to the error; nothing is said to fall that nothing was fitted to."""
-    noise = f"the noise is {fit.noise:.3g} N"
+    noise = f"the noise is {newtons(fit.noise)}"
     if not corrected:
         stays = " and stays there" if unexplained else ""
-        return [f"The error is {fit.before:.3g} N{stays}; {noise}."]
-    told = f"Corrected, the error falls from {fit.before:.3g} N to {fit.after:.3g} N; {noise}."
+        return [f"The error is {newtons(fit.before)}{stays}; {noise}."]
+    told = f"Corrected, the error falls from {newtons(fit.before)} to {newtons(fit.after)}; {noise}."
     if not math.isfinite(fit.held_out_after):
         return [told]
     better = "falls" if fit.held_out_after < fit.held_out_before else "does not fall, it goes"
-    return [
-        told,
-        f"On what the fit has not seen it {better} from {fit.held_out_before:.3g} N to {fit.held_out_after:.3g} N.",
-    ]
+    unseen = f"{better} from {newtons(fit.held_out_before)} to {newtons(fit.held_out_after)}"
+    return [told, f"On what the fit has not seen it {unseen}."]
 
 
 def _learned(corrections: Sequence[Correction]) -> str:
@@ -64,8 +62,10 @@ def _learned(corrections: Sequence[Correction]) -> str:
     if best.repeats < REPEATS:
         return f"What is left depends on {by}, but no curve learned from the recordings repeats on time not seen."
     over = "it" if len(corrections) == 1 else dependence(best.by)
-    told = f"What is left depends on {by}: a force learned over {over} brings the error to {best.after:.3g} N"
-    unseen = f", and to {best.held_out_after:.3g} N on what it has not seen"
+    told = (
+        f"What is left depends on {by}: a force learned over {over} brings the error to {newtons(best.after)}"
+    )
+    unseen = f", and to {newtons(best.held_out_after)} on what it has not seen"
     return f"{told}{unseen if math.isfinite(best.held_out_after) else ''}; it is a description, not physics."
 
 

@@ -76,3 +76,8 @@ def headline(names: Sequence[str], unexplained: bool, rivalled: bool) -> str:
 def sure(confidence: float) -> str:
     """Return the sentence on a confidence, 0 to 1."""
     return f"Confidence {100.0 * confidence:.0f} %."
+
+
+def newtons(force: float) -> str:
+    """Return a force [N] to three digits with its unit."""
+    return f"{force:.0f} N" if abs(force) >= 999.5 else f"{force:#.3g}".rstrip(".") + " N"

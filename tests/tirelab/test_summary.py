@@ -18,33 +18,33 @@ def learned(by, repeats, after=6.4, held_out_after=6.5):
 def test_nothing_missing_does_not_fall():
     fit = Fit(5.0, 5.1, 5.1, NAN, NAN, "recordings given")
     told = summarise((), (), (), 0.7, fit)
-    assert told == "Nothing is missing. The error is 5.1 N; the noise is 5 N. Confidence 70 %."
+    assert told == "Nothing is missing. The error is 5.10 N; the noise is 5.00 N. Confidence 70 %."
 
 
 def test_an_effect_is_told_with_the_improvement_on_what_was_not_fitted():
     told = summarise((FRICTION,), (), (), 0.85, FELL)
     assert told.startswith("Left out: rate-independent hysteresis. Friction: loading and unloading differ")
-    assert "falls from 26.4 N to 6.1 N" in told
-    assert "has not seen it falls from 26.5 N to 6.2 N" in told
+    assert "falls from 26.4 N to 6.10 N" in told
+    assert "has not seen it falls from 26.5 N to 6.20 N" in told
 
 
 def test_a_correction_that_does_worse_on_what_it_has_not_seen_is_not_said_to_fall():
     told = summarise((FRICTION,), (), (), 0.85, Fit(6.0, 26.4, 6.1, 26.5, 31.0, "recordings given"))
-    assert "it does not fall, it goes from 26.5 N to 31 N" in told
+    assert "it does not fall, it goes from 26.5 N to 31.0 N" in told
 
 
 def test_where_nothing_could_be_fitted_the_error_stays_and_the_curve_is_told():
     told = summarise((), (), (learned("deflection", 0.95),), 0.85, STAYED)
     assert "falls from" not in told
-    assert "The error is 32.5 N and stays there; the noise is 6 N." in told
-    assert "brings the error to 6.4 N, and to 6.5 N on what it has not seen" in told
+    assert "The error is 32.5 N and stays there; the noise is 6.00 N." in told
+    assert "brings the error to 6.40 N, and to 6.50 N on what it has not seen" in told
     assert "the deflection" in told
 
 
 def test_a_curve_that_does_not_repeat_is_not_offered():
     told = summarise((), (), (learned("time", -0.2),), 0.85, STAYED)
     assert "no curve learned from the recordings repeats" in told
-    assert "6.4 N" not in told
+    assert "6.40 N" not in told
 
 
 def test_of_several_curves_the_one_that_repeats_best_is_told():

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..recording import Recording
+from ..titles import newtons
 from ..verdict import Correction, Verdict
 
 FloatArray = NDArray[np.float64]
@@ -100,9 +101,9 @@ def _correction(found: Correction) -> dict[str, Any]:
     else:
         repeats = "It does not repeat on blocks of time not seen: do not use it."
     if math.isfinite(found.after):
-        repeats += f" With it the error is {found.after:.3g} N"
+        repeats += f" With it the error is {newtons(found.after)}"
         unseen = math.isfinite(found.held_out_after)
-        repeats += f", and {found.held_out_after:.3g} N on what was not fitted." if unseen else "."
+        repeats += f", and {newtons(found.held_out_after)} on what was not fitted." if unseen else "."
     return {
         "by": found.by,
         "unit": found.unit,

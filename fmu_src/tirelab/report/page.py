@@ -112,6 +112,11 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         evidence=_evidence(diagnosis["evidence"] or []),
         test=_test(verdict["separating_test"], diagnosis["waveform"]),
         corrections=_corrections(diagnosis["correction"]),
+        learned=[
+            (titles.dependence(c["by"]), c["after"], c["held_out_after"])
+            for c in sorted(verdict.get("corrections", []), key=lambda c: -c["repeats"])[:1]
+            if c["after"] is not None
+        ],
         sources=[("fitted", c.recording) for c in fitted] + [("held out", c.recording) for c in held_out],
         versions=_versions(),
     )
@@ -279,7 +284,9 @@ def _corrections(found: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None) 
     shown = []
     for i, c in enumerate(corrections):
         by = titles.dependence(c["by"])
-        picture = draw_correction(by, c["unit"], c["x"], c["force"], c.get("std"), f"c{i}x")
+        picture = draw_correction(
+            by.removeprefix("the "), c["unit"], c["x"], c["force"], c.get("std"), f"c{i}x"
+        )
         shown.append({"by": by, "repeats": c["repeats"], "picture": picture})
     return shown
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -98,20 +99,19 @@ def coordinate(by: str) -> str:
 
 
 def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
-    """Return the first entries of `where`, at most so many, and at most `of_one` over one coordinate.
+    """Return the first entries of `where`, at most so many; beyond `of_one` over one coordinate only to fill up.
 
     The elastic force is left out where the deflection tells the same.
     """
-    counts: dict[str, int] = {}
-    found = []
-    told = {place["by"] for place in where}
-    for place in where:
-        if place["by"] == "force" and "deflection" in told:
-            continue
-        counts[place["by"]] = counts.get(place["by"], 0) + 1
-        if counts[place["by"]] <= of_one:
-            found.append(place)
-    return found[:most]
+    by = {place["by"] for place in where}
+    shown = [place for place in where if not (place["by"] == "force" and "deflection" in by)]
+    counts: Counter[str] = Counter()
+    first: list[int] = []
+    spare: list[int] = []
+    for number, place in enumerate(shown):
+        counts[place["by"]] += 1
+        (first if counts[place["by"]] <= of_one else spare).append(number)
+    return [shown[number] for number in sorted([*first, *spare][:most])]
 
 
 def span(place: Mapping[str, Any]) -> str:
