@@ -25,10 +25,11 @@ from .noise import Noise
 from .refit import Case, Refit, refit
 from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
+from .summary import summarise
+from .titles import UNKNOWN
 from .tracking_time import likeliest_tracking
 from .verdict import (
     BEYOND,
-    UNKNOWN,
     Estimate,
     Evidence,
     Fit,
@@ -40,7 +41,6 @@ from .verdict import (
     one_constant_rate,
     one_rate_rivals,
     rivals_of,
-    summarise,
 )
 
 CATALOGUE_NAMES: tuple[str, ...] = ("recalibration", *(f.name for f in CATALOGUE_FAMILIES))
@@ -147,12 +147,12 @@ def diagnose(
         bool(beyond),
         beyond,
         corrections,
-        summarise(effects, rivals, beyond, confidence, fit),
-        locate(scene, before, noises),
+        summarise(effects, rivals, corrections, confidence, fit, test),
+        locate(recordings, scene, before, noises),
         fit,
         fitted.tire,
         _table(found.settled),
-        test,
+        test if test is not None and test.tells else None,
         found.compared,
         fitted.evaluations,
     )
@@ -307,6 +307,8 @@ def _separating(
     noise: float,
     limits: Limits | None,
 ) -> SeparatingTest | None:
+    """Return the test that tells the first rival that one tells; else the one that comes nearest to it."""
+    nearest: SeparatingTest | None = None
     for rival in rivals:
         if UNKNOWN in rival.names:
             continue
@@ -318,7 +320,7 @@ def _separating(
             deepest=scene.deepest,
             fastest=max(0.1, 2.0 * max(float(np.abs(r.motion.rate).max()) for r in scene.records)),
         )
-        return separate(
+        test = separate(
             (fitted.tire, named(best)),
             (second.tire, rival.names),
             believed,
@@ -328,7 +330,11 @@ def _separating(
             noise,
             reach,
         )
-    return None
+        if nearest is None or test.separation > nearest.separation:
+            nearest = test
+        if test.tells:
+            break
+    return nearest
 
 
 def _table(settled: Sequence[Settled]) -> tuple[Evidence, ...]:

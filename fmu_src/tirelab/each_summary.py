@@ -140,17 +140,17 @@ def _report(row: Row, out: Path) -> str:
 
 
 def _place(stated: Stated) -> str:
-    """The place in which the squared error is densest against an even spread over its coordinate, in words."""
+    """The first place, in which the error is most concentrated, in words."""
     if stated.names == NOTHING or not stated.places:
         return ""
-    spans = Counter(p.by for p in stated.places)
-    place = max(stated.places, key=lambda p: p.share * spans[p.by])
+    place = stated.places[0]
     ends = [
         end if isinstance(end, str) else "" if end is None else f"{end:.4g}"
         for end in (place.begin, place.end)
     ]
     unit = "" if place.unit == "1" else f" {place.unit}"
-    return f"{place.by} {ends[0]} to {ends[1]}{unit} ({100.0 * place.share:.0f} %)"
+    told = place.label or f"{ends[0]} to {ends[1]}{unit}"
+    return f"{place.by} {told} ({100.0 * place.share:.0f} %)"
 
 
 def in_words(stated: Stated) -> str:

@@ -1,8 +1,17 @@
 """Where simulation and recording part: the residual against everything that a recording knows.
 
-Time, direction, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, and recording are cut
-into spans. Each span has its mean residual, its share of the squared error beyond the noise, and how significant its
-mean is: the residual is cut into blocks longer than the noise's correlation, and blocks are counted, not samples.
+Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording two
+kinds of span are looked for: where the squared error beyond the noise is denser than elsewhere, and where the mean
+residual is another than elsewhere. They are spans of largest sum (Kadane's, Bentley 1984), bounded where the residual
+says so and not by a grid. In time, cycles and history "elsewhere" means at the same deflections and directions of the
+same recording, else every cycle's deep half would be a place.
+
+Places are ranked by concentration: their part of the excess error less their part of the samples, or the part of it
+that their own mean takes away, whichever is more.
+
+A span is told where noise alone would hardly show it anywhere: its squares, and the squares of its bins' means, are
+held against chi square with as many degrees of freedom as the noise has independent samples (a block as long as its
+correlation counts once), and the chance is multiplied by the number of spans that were looked at.
 """
 
 from __future__ import annotations
@@ -11,29 +20,45 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.stats import chi2
 
+from .coordinates import Axis, axes_of
 from .explain.motion import FloatArray, IndexArray
-from .explain.scene import Scene
+from .explain.scene import Record, Scene
+from .held_out import Recorded
 from .noise import Noise
 
-SPANS = 10
-"""Spans into which a continuous coordinate is cut, of equal numbers of samples."""
+DEPTHS = 12
+"""Spans of deflection which, loading and unloading apart, tell what error a sample has on average."""
 
-BLOCKS = 400
-"""Blocks of time at most, over all recordings; fewer where the noise is correlated for longer."""
+DENSE = 0.5
+"""Samples belong to a span where their excess is at least this part of the noise's variance: less would let a walk of
+noise alone carry an end away by more than some ten samples."""
 
-SIGNIFICANT = 1e-3
-"""Chance, over all spans of all coordinates together, of calling a span significant where there is noise alone."""
+LOCATED = 1e-3
+"""Chance, over all spans of all coordinates together, of telling any span where there is noise alone."""
+
+FAINT = 0.25
+"""Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
+
+LEAST, DENSER = 0.03, 2.0
+"""A place has at least this concentration; where it has it for its share, that share is so many times as dense as the
+rest: what holds its samples' share of the error is no place."""
+
+MOST_SPANS = 4
+"""Spans along one coordinate (in time: of one recording) at most."""
 
 
 @dataclass(frozen=True)
 class Span:
     """One place of the misfit.
 
-    by: coordinate; start, stop: its span in `unit`; label: what it is called where it has no numbers
-    share: part of the squared error beyond the noise, 0 to 1; mean_residual [N]: recording less simulation
-    z: mean over its standard error from blocks; significant: after correction for all spans looked at
+    by: coordinate; start, stop: its bounds in `unit` (direction: -1 unloading, +1 loading; cycle and recording: numbers
+    from 1; radius [m]: infinite is flat); label: what it is called where numbers do not say it; recording: the one
+    that is meant, where a time is told of one among several
+    share: part of the squared error beyond the noise, 0 to 1; samples: part of the samples, 0 to 1
+    mean_residual [N]: recording less simulation; chance: that noise alone shows such a place anywhere, 0 to 1
+    concentration: rank of the place, 0 to 1
     """
 
     by: str
@@ -41,21 +66,27 @@ class Span:
     stop: float
     unit: str
     label: str
+    recording: str | None
     share: float
+    samples: float
     mean_residual: float
-    z: float
-    significant: bool
+    chance: float
+    concentration: float
 
     def to_contract(self) -> dict[str, object]:
         """Return the span as the entry of `where` in diagnosis.json."""
-        return {
+        entry: dict[str, object] = {
             "by": self.by,
             "from": _finite(self.start),
             "to": _finite(self.stop),
             "unit": self.unit,
+            "label": self.label,
             "share": self.share,
+            "samples": self.samples,
             "mean_residual": self.mean_residual,
+            "chance": self.chance,
         }
+        return entry if self.recording is None else {**entry, "recording": self.recording}
 
 
 def _finite(value: float) -> float | str:
@@ -64,94 +95,203 @@ def _finite(value: float) -> float | str:
     return "inf" if value > 0.0 else "-inf"
 
 
-def locate(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> tuple[Span, ...]:
-    """Return the spans of the residuals [N] of each recording, those with the largest share first."""
-    residual = np.concatenate(residuals)
-    floor = np.concatenate([np.full(r.size, n.level**2) for r, n in zip(residuals, noises, strict=True)])
-    beyond = residual**2 - floor
-    whole = max(float(np.sum(beyond)), 1e-12)
-    strides = [max(r.time.size // r.rows.size, 1) for r in scene.records]
-    blocks = _blocks(residuals, noises, strides)
-    found = []
-    for by, unit, values, edges, labels in _coordinates(scene):
-        for i in range(len(edges) - 1):
-            last = i == len(edges) - 2
-            inside = (values >= edges[i]) & ((values <= edges[i + 1]) if last else (values < edges[i + 1]))
-            if int(inside.sum()) < 5:
-                continue
-            mean = float(np.mean(residual[inside]))
-            z = _block_z(residual, inside, blocks)
-            share = float(np.clip(np.sum(beyond[inside]) / whole, 0.0, 1.0))
-            label = labels[i] if labels else ""
-            found.append(Span(by, float(edges[i]), float(edges[i + 1]), unit, label, share, mean, z, False))
-    limit = float(norm.isf(SIGNIFICANT / 2.0 / max(len(found), 1)))
-    judged = [Span(**{**s.__dict__, "significant": abs(s.z) > limit}) for s in found]
-    return tuple(sorted(judged, key=lambda s: (-int(s.significant), -s.share)))
+def locate(
+    recordings: Sequence[Recorded], scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]
+) -> tuple[Span, ...]:
+    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone."""
+    samples = _samples(scene, residuals, noises)
+    axes = axes_of(recordings, scene, samples.kept)
+    looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis in axes)
+    found = [span for axis in axes for span in _spans(axis, samples, looked_at)]
+    return tuple(sorted(found, key=lambda s: -s.concentration))
 
 
-def _blocks(residuals: Sequence[FloatArray], noises: Sequence[Noise], strides: Sequence[int]) -> IndexArray:
-    """Return the number of the block of each sample: at least four correlation lengths of the noise long."""
-    total = sum(r.size for r in residuals)
-    numbers, at = [], 0
-    for r, n, stride in zip(residuals, noises, strides, strict=True):
-        length = max(int(np.ceil(4.0 * stride * n.correlation_samples)), -(-total // BLOCKS), 2)
-        numbers.append(at + np.arange(r.size) // length)
-        at = int(numbers[-1][-1]) + 1
-    return np.concatenate(numbers)
+@dataclass(frozen=True)
+class _Samples:
+    """The compared samples of all recordings end to end, without spikes; arrays of one length.
+
+    residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike_excess [N^2], alike_residual [N]:
+    means of the samples like this one; together: samples of the noise that count as one; kept: of each recording,
+    indices into its rows
+    """
+
+    residual: FloatArray
+    variance: FloatArray
+    excess: FloatArray
+    alike_excess: FloatArray
+    alike_residual: FloatArray
+    together: float
+    kept: tuple[IndexArray, ...]
+
+    @property
+    def whole(self) -> float:
+        """Excess of all samples together [N^2]."""
+        return max(float(np.sum(self.excess)), 1e-12)
 
 
-def _block_z(residual: FloatArray, inside: np.ndarray, blocks: IndexArray) -> float:
-    """Return the mean inside over its standard error, with the blocks as the independent draws."""
-    count = int(blocks[-1]) + 1
-    sums = np.bincount(blocks[inside], residual[inside], minlength=count)
-    sizes = np.bincount(blocks[inside], minlength=count).astype(float)
-    used = sizes > 0
-    if int(used.sum()) < 3:
-        return 0.0
-    mean = float(sums.sum() / sizes.sum())
-    spread = float(np.sqrt(np.sum((sums[used] - mean * sizes[used]) ** 2) * used.sum() / (used.sum() - 1)))
-    return mean * float(sizes.sum()) / max(spread, 1e-12)
+def _samples(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> _Samples:
+    parts, kept = [], []
+    for record, residual, noise in zip(scene.records, residuals, noises, strict=True):
+        chosen = np.flatnonzero(noise.weight > 0.0)
+        spread = noise.spread[chosen]
+        variance = noise.level**2 * spread**2 / float(np.mean(spread**2))
+        own = residual[record.rows][chosen]
+        excess = own**2 - variance
+        parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
+        kept.append(chosen)
+    own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
+    together = max(n.correlation_samples for n in noises)
+    return _Samples(own, variance, excess, alike, level, together, tuple(kept))
 
 
-_Coordinate = tuple[str, str, FloatArray, FloatArray, list[str]]
+def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
+    """Return the means of `values` at the deflection and direction of each sample."""
+    depth = record.thin.motion.deflection[chosen]
+    edges = np.quantile(depth, np.linspace(0.0, 1.0, DEPTHS + 1)[1:-1])
+    cell = 2 * np.searchsorted(edges, depth) + (record.thin.motion.direction[chosen] > 0.0)
+    count = np.maximum(np.bincount(cell, minlength=2 * DEPTHS), 1)
+    return [(np.bincount(cell, v, minlength=2 * DEPTHS) / count)[cell] for v in values]
 
 
-def _coordinates(scene: Scene) -> list[_Coordinate]:
-    records = scene.records
+@dataclass(frozen=True)
+class _Bins:
+    """What the bins of an axis hold; arrays of one value a bin.
 
-    def joined(values: Sequence[FloatArray]) -> FloatArray:
-        return np.concatenate(values)
+    numbers: of samples; total [N]: of the residual; apart [N]: of what it has beyond the mean elsewhere
+    variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: square
+    beyond the noise, and what so many samples have elsewhere; whole [N^2]: excess of all bins
+    together: samples of the noise that count as one
+    """
 
-    found: list[_Coordinate] = []
+    numbers: FloatArray
+    total: FloatArray
+    apart: FloatArray
+    variance: FloatArray
+    squares: FloatArray
+    excess: FloatArray
+    usual: FloatArray
+    whole: float
+    together: float
 
-    def spread(by: str, unit: str, values: FloatArray) -> None:
-        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, SPANS + 1)))
-        if edges.size >= 3:
-            found.append((by, unit, values, edges, []))
+    @property
+    def means(self) -> FloatArray:
+        """Square of each bin's mean residual over that of its noise."""
+        return self.total**2 / np.maximum(self.variance * self.together, 1e-300)
 
-    spread("deflection", "m", joined([r.motion.deflection for r in records]))
-    spread("rate", "m/s", joined([r.motion.rate for r in records]))
-    spread("acceleration", "m/s^2", joined([r.motion.acceleration for r in records]))
-    spread("time", "s", joined([r.time for r in records]))
-    spread("force", "N", joined([r.elastic(r.motion.deflection) for r in records]))
-    spread("history", "m", joined([r.motion.deepest for r in records]))
-    direction = joined([r.motion.direction for r in records])
-    found.append(("direction", "1", direction, np.array([-1.5, 0.0, 1.5]), ["unloading", "loading"]))
-    cycle = joined([r.motion.cycle for r in records])
-    if cycle.max() >= 1.0:
-        found.append(
-            ("cycle", "1", cycle, np.array([-0.5, 0.5, cycle.max() + 0.5]), ["first cycle", "later cycles"])
+    def scores(self) -> tuple[FloatArray, ...]:
+        """Return what each bin adds to a span: by its samples' squares, by that of its mean, by its mean, by less it.
+
+        The mean's square shows a faint force sooner; half of the usual error parts the means from none.
+        """
+        unit = self.variance * self.together / np.maximum(self.numbers, 1.0)
+        usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
+        least = np.maximum(0.5 * usual * self.numbers, FAINT * np.sqrt(self.variance * self.numbers))
+        return (
+            self.excess - np.maximum(self.usual, DENSE * self.variance),
+            unit * (self.means - 1.0) - np.maximum(self.usual, DENSE * unit),
+            self.apart - least,
+            -self.apart - least,
         )
-    if len(scene.radii) > 1:
-        nearest = joined([np.argmax(r.surface, axis=1).astype(float) for r in records])
-        edges = np.arange(len(scene.radii) + 1, dtype=np.float64) - 0.5
-        found.append(("radius", "m", nearest, edges, [_radius(r) for r in scene.radii]))
-    if len(records) > 1:
-        number = joined([np.full(r.time.size, float(i)) for i, r in enumerate(records)])
-        edges = np.arange(len(records) + 1, dtype=np.float64) - 0.5
-        found.append(("recording", "1", number, edges, [f"recording {i + 1}" for i in range(len(records))]))
+
+    def log_chance(self, a: int, b: int) -> float:
+        """Return the logarithm of the chance that noise alone fills the bins [a, b) so: the least of three tests."""
+        squares, means, total, variance = (
+            float(np.sum(v[a:b])) for v in (self.squares, self.means, self.total, self.variance)
+        )
+        blocks = float(np.sum(self.numbers[a:b])) / self.together
+        tests = (
+            (squares / self.together, blocks),
+            (means, float(b - a)),
+            (total**2 / (variance * self.together), 1.0),
+        )
+        return min(float(chi2.logsf(value, freedom)) for value, freedom in tests)
+
+    def share(self, a: int, b: int) -> float:
+        """Return the part of the excess error in the bins [a, b)."""
+        return float(np.clip(np.sum(self.excess[a:b]) / self.whole, 0.0, 1.0))
+
+    def concentration(self, a: int, b: int) -> float:
+        """Return the rank of the bins [a, b) as a place; 0 where they are none."""
+        share, usual = self.share(a, b), float(np.sum(self.usual[a:b])) / self.whole
+        number = float(np.sum(self.numbers[a:b]))
+        dense = share - number / float(np.sum(self.numbers))
+        if share - usual < LEAST or share * (1.0 - usual) < DENSER * usual * (1.0 - share):
+            dense = 0.0
+        apart = float(np.sum(self.apart[a:b]))
+        mean = min(apart**2 / number / self.whole, share)
+        if mean < LEAST or apart * float(np.sum(self.total[a:b])) <= 0.0:
+            mean = 0.0
+        return max(dense, mean)
+
+
+def _bins(axis: Axis, samples: _Samples) -> _Bins:
+    def summed(values: FloatArray) -> FloatArray:
+        return np.asarray(np.bincount(axis.bin_of, values, axis.start.size), dtype=np.float64)
+
+    one = np.ones(samples.excess.size)
+    usual, level = (
+        (samples.alike_excess, samples.alike_residual)
+        if axis.slow
+        else (one * np.mean(samples.excess), one * np.mean(samples.residual))
+    )
+    return _Bins(
+        summed(one),
+        summed(samples.residual),
+        summed(samples.residual - level),
+        summed(samples.variance),
+        summed(samples.residual**2 / samples.variance),
+        summed(samples.excess),
+        summed(usual),
+        samples.whole,
+        samples.together,
+    )
+
+
+def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
+    """Return the places on an axis that noise alone does not show, at most `MOST_SPANS` in each part."""
+    bins = _bins(axis, samples)
+    scores, found = bins.scores(), []
+    for part, bounds in enumerate(zip(axis.parts[:-1], axis.parts[1:], strict=True)):
+        pieces = [bounds]
+        for _ in range(MOST_SPANS):
+            best = _best(pieces, scores, bins, np.log(LOCATED / looked_at))
+            if best is None:
+                break
+            concentration, a, b, piece = best
+            pieces.remove(piece)
+            pieces += [p for p in ((piece[0], a), (b, piece[1])) if p[1] > p[0]]
+            number = float(np.sum(bins.numbers[a:b]))
+            found.append(
+                Span(
+                    axis.by,
+                    float(np.min(axis.start[a:b])),
+                    float(np.max(axis.stop[a:b])),
+                    axis.unit,
+                    axis.label(a, b - 1),
+                    axis.recordings[part] if axis.recordings else None,
+                    bins.share(a, b),
+                    number / samples.residual.size,
+                    float(np.sum(bins.total[a:b])) / number,
+                    float(np.exp(bins.log_chance(a, b) + np.log(looked_at))),
+                    concentration,
+                )
+            )
     return found
 
 
-def _radius(radius: float) -> str:
-    return "flat" if not np.isfinite(radius) else f"{radius:.4g} m"
+_Piece = tuple[int, int]
+
+
+def _best(
+    pieces: Sequence[_Piece], scores: Sequence[FloatArray], bins: _Bins, least: float
+) -> tuple[float, int, int, _Piece] | None:
+    """Return the most concentrated span in `pieces` whose log chance is below `least`: rank, bins [a, b), piece."""
+    found = []
+    for piece in pieces:
+        for score in scores:
+            sums = np.concatenate([[0.0], np.cumsum(score[piece[0] : piece[1]])])
+            last = int(np.argmax(sums - np.minimum.accumulate(sums)))
+            a, b = piece[0] + int(np.argmin(sums[: last + 1])), piece[0] + last
+            if b > a and bins.log_chance(a, b) < least and (rank := bins.concentration(a, b)) > 0.0:
+                found.append((rank, a, b, piece))
+    return max(found, default=None)

@@ -16,6 +16,11 @@ from radialtire import TireModel
 from .explain.motion import FloatArray
 from .refit import Knob, assemble
 from .simulate import simulate
+from .titles import listed, set_title
+
+DECISIVE = 5.7
+"""Least separation S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
+and deviation S; from here S^2/2 - 1.645 S > ln 1000, odds of 1000 to 1 in nineteen of twenty such tests."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,7 @@ class SeparatingTest:
     """The test that separates two sets of effects most.
 
     between: the two sets; separation: expected distance in units of the noise, over all samples together; typical: root
-    mean square distance of one sample in units of the noise; sentence: what to do
+    mean square distance of one sample in units of the noise; sentence: what to do, or that nothing would tell
     """
 
     test: Test
@@ -53,6 +58,11 @@ class SeparatingTest:
     separation: float
     typical: float
     sentence: str
+
+    @property
+    def tells(self) -> bool:
+        """Whether the test would tell the two sets apart."""
+        return self.separation >= DECISIVE
 
     def to_contract(self) -> dict[str, object]:
         """Return the entry `separating_test` of diagnosis.json."""
@@ -181,24 +191,29 @@ def separate(
             typical = float(np.sqrt(np.mean(gap**2))) / noise
             separation = typical * float(np.sqrt(gap.size))
             if best is None or separation > best.separation:
-                place = (
-                    "flat ground"
-                    if not np.isfinite(radius)
-                    else f"a surface of radius {100.0 * radius:.4g} cm"
-                )
-                sentence = (
-                    f"Drive {name} to {1e3 * path.max():.1f} mm on {place}, up to "
-                    f"{1e3 * np.abs(np.diff(path)).max() / limits.step:.0f} mm/s for {limits.longest:.0f} s: "
-                    f"{_and(first[1])} and {_and(second[1])} then differ by {typical:.2g} times the noise in a typical "
-                    f"sample, {separation:.3g} times over all of them."
-                )
+                sentence = _sentence(test, (first[1], second[1]), separation, typical)
                 best = SeparatingTest(test, (first[1], second[1]), separation, typical, sentence)
     assert best is not None
     return best
 
 
-def _and(names: tuple[str, ...]) -> str:
-    return " with ".join(n.replace("_", " ") for n in names) or "nothing missing"
+def _sentence(
+    test: Test, between: tuple[tuple[str, ...], tuple[str, ...]], separation: float, typical: float
+) -> str:
+    radius, path = float(test.surface_radius[0]), test.deflection
+    place = "flat ground" if not np.isfinite(radius) else f"a surface of radius {100.0 * radius:.4g} cm"
+    sets = listed([set_title(names) for names in between])
+    if separation < DECISIVE:
+        return (
+            f"No motion within the rig's limits would tell {sets} apart: the best one tried, {test.name} on {place}, "
+            f"sets them {separation:.2g} times the noise apart over all its samples, and {DECISIVE:g} are needed."
+        )
+    rate = 1e3 * float(np.abs(np.diff(path) / np.diff(test.time)).max())
+    return (
+        f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, up to {rate:.0f} mm/s for "
+        f"{test.time[-1] - test.time[0]:.0f} s: {sets} then differ by {typical:.2g} times the noise in a typical "
+        f"sample, {separation:.0f} times over all of them."
+    )
 
 
 def _jacobian(

@@ -28,7 +28,8 @@ class DiagnosisFileError(TirelabError):
 
 @dataclass(frozen=True)
 class StatedPlace:
-    """One place of the misfit: coordinate, span in `unit` (None: no end), share of the squared error, recording."""
+    """One place of the misfit: coordinate, span in `unit` (None: no end), share of the squared error, recording, and
+    what the place is called where numbers do not say it."""
 
     by: str
     begin: float | str | None
@@ -36,6 +37,7 @@ class StatedPlace:
     unit: str
     share: float
     recording: str | None
+    label: str = ""
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,7 @@ def _place(place: Mapping[str, Any]) -> StatedPlace:
         unit=str(place["unit"]),
         share=float(place["share"]),
         recording=None if recording is None else str(recording),
+        label=str(place.get("label", "")),
     )
 
 

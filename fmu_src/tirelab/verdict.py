@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from radialtire import CATALOGUE, TireModel
+from radialtire import TireModel
 
 from .explain.beyond import AGNOSTIC_FAMILIES
 from .explain.judge import MATERIAL
@@ -15,8 +15,8 @@ from .explain.scene import Scene
 from .explain.search import Settled
 from .locate import Span
 from .separate import SeparatingTest
+from .titles import UNKNOWN
 
-UNKNOWN = "unknown"
 BEYOND = frozenset(f.name for f in AGNOSTIC_FAMILIES)
 
 DECIDABLE = 6.0
@@ -122,7 +122,8 @@ class Verdict:
     effects: what is missing, empty where nothing is; confidence: 0 to 1; rivals: other sets, likeliest first
     unexplained: whether something acts that no effect explains, by `unexplained_by` (coordinates)
     summary: sentences for a reader; where: spans of the misfit before the correction; tire: the corrected one
-    evidence: all sets that were compared to the end; separating_test: what would tell the first rival apart
+    evidence: all sets that were compared to the end; separating_test: what would tell a rival apart, None where no
+    motion within the rig's limits does (the summary then says so)
     compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
     """
 
@@ -386,43 +387,3 @@ def reason_of(names: tuple[str, ...], other: tuple[str, ...], scene: Scene) -> s
     if UNKNOWN in apart:
         return "a smooth function of the coordinates follows the misfit as well"
     return " and ".join(lacks) if lacks else "the difference is smaller than these recordings can show"
-
-
-def summarise(
-    effects: Sequence[NamedEffect],
-    rivals: Sequence[Rival],
-    unexplained_by: Sequence[str],
-    confidence: float,
-    fit: Fit,
-) -> str:
-    """Return the verdict in two or three sentences."""
-    if not effects and not unexplained_by:
-        first = f"Nothing is missing: the error is {fit.before:.3g} N, the noise {fit.noise:.3g} N."
-    else:
-        told = [_statement(e.name) for e in effects]
-        if unexplained_by:
-            told.append(
-                f"something that no effect of the catalogue explains, depending on {' and '.join(unexplained_by)}"
-            )
-        first = (
-            f"Left out: {'; '.join(told)}. The error falls from {fit.before:.3g} N to {fit.after:.3g} N, "
-            f"the noise is {fit.noise:.3g} N."
-        )
-    sure = f"Confidence {100.0 * confidence:.0f} %."
-    if not rivals:
-        return f"{first} {sure}"
-    others = "; or ".join(_and(r.names) for r in rivals)
-    return f"{first} {sure} It could also be {others}: {rivals[0].reason}."
-
-
-def _and(names: tuple[str, ...]) -> str:
-    return (
-        " with ".join("something unknown" if n == UNKNOWN else n.replace("_", " ") for n in names)
-        or "nothing"
-    )
-
-
-def _statement(name: str) -> str:
-    if name == "recalibration":
-        return "the elastic law is another tire's (recalibration)"
-    return f"{CATALOGUE[name].statement} ({name.replace('_', ' ')})"

@@ -39,15 +39,16 @@ def content(names: Sequence[str], confidence: float = 0.8, report: str | None = 
             "separating_test": None,
         },
         "where": [
-            {"by": "time", "from": 1.0, "to": 2.0, "unit": "s", "share": 0.25, "mean_residual": 3.0},
             {
                 "by": "direction",
-                "from": "unloading",
-                "to": "unloading",
+                "from": -1.0,
+                "to": -1.0,
                 "unit": "1",
+                "label": "unloading",
                 "share": 0.7,
                 "mean_residual": -1.0,
             },
+            {"by": "time", "from": 1.0, "to": 2.0, "unit": "s", "share": 0.25, "mean_residual": 3.0},
         ],
         "fit": {"noise": 2.0, "before": 9.0, "after": 2.1, "held_out_before": None, "held_out_after": None},
         "tire": "tire.json",
@@ -126,7 +127,7 @@ def test_the_summary_tells_what_is_missing_how_often_and_how_sure(shelf: Path, t
     assert rows["shelf/day"]["error"] == ""
     assert rows["shelf/nothing_1"]["missing"] == "nothing"
     assert rows["shelf/nothing_1"]["error"] == rows["shelf/nothing_1"]["rivals"] == ""
-    assert rows["shelf/lag_1"]["most of it in"] == "direction unloading to unloading (70 %)"
+    assert rows["shelf/lag_1"]["most of it in"] == "direction unloading (70 %)"
     assert float(rows["shelf/lag_1"]["before [N]"]) == 9.0
     assert (tmp_path / "out" / rows["shelf/lag_1"]["report"]).read_text() == "<p>report</p>"
 

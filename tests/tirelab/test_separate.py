@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
+from scipy.stats import norm
 from tirelab.refit import assemble, knobs_of
-from tirelab.separate import WAVEFORMS, Limits, separate
+from tirelab.separate import DECISIVE, WAVEFORMS, Limits, separate
 
 FRICTION = knobs_of(("rate_independent_hysteresis",), (np.inf,), False, 0.025)
 
@@ -50,3 +51,24 @@ def test_the_contract_of_a_test():
     entry = fitted(6.0).to_contract()
     assert entry["surfaces"] == ["inf"]
     assert "sentence" in entry
+
+
+def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_thousand():
+    ratio = norm(DECISIVE**2 / 2.0, DECISIVE)
+    assert ratio.sf(np.log(1000.0)) == pytest.approx(0.95, abs=0.005)
+
+
+def test_the_same_force_under_other_names_cannot_be_told_apart():
+    """Friction against itself: whatever is driven, the refit takes up all of the difference."""
+    values = np.array([30.0, 0.0, 1e-3])
+    tire = assemble(TireModel(), FRICTION, values, (np.inf,))
+    names = (("rate_independent_hysteresis",), ("viscous_damping",))
+    found = separate(
+        (tire, names[0]), (tire, names[1]), TireModel(), FRICTION, values, (np.inf,), 6.0, Limits()
+    )
+    assert not found.tells
+    assert found.sentence.startswith(
+        "No motion within the rig's limits would tell rate-independent hysteresis and"
+    )
+    assert "5.7 are needed" in found.sentence
+    assert fitted(6.0).tells

@@ -1,10 +1,9 @@
 """What is said, how sure, and what else it could be."""
 
-import numpy as np
 from drives import flat_force, read, ride, triangle
 from radialtire import TireModel
 from tirelab.explain.scene import scene_of
-from tirelab.verdict import Fit, Rival, one_constant_rate, one_rate_rivals, poverty, reason_of, summarise
+from tirelab.verdict import one_constant_rate, one_rate_rivals, poverty, reason_of
 
 
 def scene(time, deflection):
@@ -33,12 +32,3 @@ def test_what_a_triangle_lacks():
 def test_the_reason_for_rivals_of_the_deflection_alone():
     reason = reason_of(("series_compliance",), ("recalibration",), scene(*ride(1)[:2]))
     assert "deflection and surface alone" in reason
-
-
-def test_the_summary_names_rivals_and_their_reason():
-    fit = Fit(5.0, 20.0, 5.1, float("nan"), float("nan"), "recordings given")
-    text = summarise((), (Rival(("recalibration",), 1.0, "one surface"),), (), 0.7, fit)
-    assert "Nothing is missing" in text
-    assert "one surface" in text
-    assert "70 %" in text
-    assert np.isnan(fit.held_out_after)

@@ -73,7 +73,7 @@ VISCOUS_DAMPING = Effect(
     ),
     rest=(),
     respond=respond,
-    statement="a force that grows with the speed of compression",
+    statement="the force grows with the speed of compression",
     tell_tale="the loop's area grows with the frequency",
     imitators=("rate_independent_hysteresis", "viscoelastic_relaxation", "force_lag", "deflection_lag"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Wang & Hull on rates from 3.2 to 63.5 mm/s",

@@ -125,10 +125,9 @@ def command(
         on_fitted, on_kept = replayed(fitted), replayed(kept)
         tell("writing the report")
         diagnosis = contract_of(verdict, on_fitted, on_kept)
-        more = beside(verdict)
         report = {
             **diagnosis,
-            **more,
+            **beside(verdict),
             "tire_before": believed.name,
             "tire_after": corrected.name,
             "warnings": warnings,
@@ -153,7 +152,7 @@ def command(
             _echo(f"note: {printable(f'{recording.name}: {note}')}")
     for warning in warnings:
         _echo(f"note: {printable(warning)}")
-    _report(diagnosis, more, out)
+    _report(diagnosis, out)
 
 
 def _files(given: Sequence[Path]) -> list[Path]:
@@ -245,14 +244,14 @@ def _progress(quiet: bool) -> Iterator[Any]:
         yield lambda sentence: progress.update(task, description=printable(sentence))
 
 
-def _report(diagnosis: dict[str, Any], more: dict[str, Any], out: Path) -> None:
+def _report(diagnosis: dict[str, Any], out: Path) -> None:
     if sys.stdout.isatty():
         console = Console(markup=False, highlight=False, emoji=False)
-        print_diagnosis(console, diagnosis, more["where"], more["reasons"], out)
+        print_diagnosis(console, diagnosis, out)
         return
     text = io.StringIO()
     plain = Console(file=text, width=COLUMNS, color_system=None, markup=False, highlight=False, emoji=False)
-    print_diagnosis(plain, diagnosis, more["where"], more["reasons"], out)
+    print_diagnosis(plain, diagnosis, out)
     for line in text.getvalue().splitlines():
         _echo(line.rstrip())
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..recording import Recording
+from ..titles import newtons
 from ..verdict import Correction, Verdict
 
 FloatArray = NDArray[np.float64]
@@ -71,13 +72,12 @@ def beside(verdict: Verdict) -> dict[str, Any]:
     """Return what `write_report` can take besides the contract (see there)."""
     test = verdict.separating_test
     return {
-        "where": [{**s.to_contract(), "label": s.label} for s in verdict.where if s.significant],
         "evidence": [
             {
                 "effects": list(e.names),
                 "log_evidence": e.log_evidence,
                 "misfit": math.sqrt(max(e.chi_square, 0.0)),
-                "remark": "the verdict" if number == 0 else "",
+                "remark": _remark(number, e.log_evidence),
             }
             for number, e in enumerate(verdict.evidence)
         ],
@@ -89,15 +89,21 @@ def beside(verdict: Verdict) -> dict[str, Any]:
     }
 
 
+def _remark(number: int, log_evidence: float) -> str:
+    if number == 0:
+        return "the verdict"
+    return "" if math.isfinite(log_evidence) else "a part too small, or of a sign it cannot have"
+
+
 def _correction(found: Correction) -> dict[str, Any]:
     if found.repeats > 0.0:
         repeats = f"It repeats: it explains {100.0 * found.repeats:.0f} % of what is left on blocks of time not seen."
     else:
         repeats = "It does not repeat on blocks of time not seen: do not use it."
     if math.isfinite(found.after):
-        repeats += f" With it the error is {found.after:.3g} N"
+        repeats += f" With it the error is {newtons(found.after)}"
         unseen = math.isfinite(found.held_out_after)
-        repeats += f", and {found.held_out_after:.3g} N on what was not fitted." if unseen else "."
+        repeats += f", and {newtons(found.held_out_after)} on what was not fitted." if unseen else "."
     return {
         "by": found.by,
         "unit": found.unit,

@@ -16,6 +16,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
+from .. import titles
 from ..errors import TirelabError
 from ..recording import Recording
 from . import words
@@ -38,7 +39,7 @@ Simulated = tuple[Sequence[Recording], Sequence[FloatArray], Sequence[FloatArray
 MOST_LOOPS = 4
 """Recordings whose loops are drawn, those with the largest misfit first."""
 
-MOST_PLACES = 12
+MOST_PLACES = 8
 """Rows of the table of places."""
 
 MOST_SETS = 15
@@ -92,7 +93,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.globals["words"] = words
+    environment.globals |= {"words": words, "titles": titles}
     environment.filters |= {"number": words.number, "percent": words.percent}
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
@@ -111,6 +112,11 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         evidence=_evidence(diagnosis["evidence"] or []),
         test=_test(verdict["separating_test"], diagnosis["waveform"]),
         corrections=_corrections(diagnosis["correction"]),
+        learned=[
+            (titles.dependence(c["by"]), c["after"], c["held_out_after"])
+            for c in sorted(verdict.get("corrections", []), key=lambda c: -c["repeats"])[:1]
+            if c["after"] is not None
+        ],
         sources=[("fitted", c.recording) for c in fitted] + [("held out", c.recording) for c in held_out],
         versions=_versions(),
     )
@@ -137,15 +143,15 @@ def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:
     name = effect["name"]
     known = CATALOGUE.get(name)
     return {
-        "title": words.effect_title(name),
-        "statement": words.statement(name),
+        "title": titles.effect_title(name),
+        "statement": words.RECALIBRATED if name == titles.RECALIBRATION else "",
         "tell_tale": known.tell_tale if known else "",
-        "imitators": words.listed([words.effect_title(n) for n in known.imitators]) if known else "",
+        "imitators": titles.listed([titles.effect_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",
         "share": effect["share"],
         "parameters": [
             (
-                words.effect_title(parameter),
+                titles.effect_title(parameter),
                 words.estimate(e["value"], e["std"], e["unit"]),
                 words.meaning(name, parameter),
             )
@@ -217,7 +223,7 @@ def _maps(cases: Sequence[Case], noise: float) -> dict[str, Any]:
 
 _EVIDENCE_COLUMNS = (
     ("log_evidence", "Log evidence below the best"),
-    ("misfit", "Misfit / noise"),
+    ("misfit", "What it leaves / noise"),
     ("rmse", "Error [N]"),
     ("held_out_rmse", "Error held out [N]"),
     ("remark", "Remark"),
@@ -230,7 +236,7 @@ def _evidence(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     ]
     shown = [
         (
-            words.set_title(row["effects"]),
+            titles.set_title(row["effects"]),
             [row.get(key) or "" if key == "remark" else words.number(row.get(key), 3) for key, _ in columns],
         )
         for row in rows[:MOST_SETS]
@@ -258,7 +264,7 @@ def _test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None) ->
         if value is None:
             continue
         if key == "surfaces":
-            text = words.listed([words.surface(radius) for radius in value])
+            text = titles.listed([words.surface(radius) for radius in value])
         elif isinstance(value, (int, float)):
             factor, name = words.scaled(unit)
             text = words.with_unit(words.number(factor * value), remark or name)
@@ -266,10 +272,8 @@ def _test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None) ->
             text = str(value)
         facts.append((title, text))
     drawn = draw_waveform(waveform["time"], waveform["deflection"], "w") if waveform else None
-    weak = test.get("separation", words.CLEAR) < words.CLEAR
     return {
         "sentence": test.get("sentence", ""),
-        "weak": words.TOO_WEAK if weak else "",
         "facts": facts,
         "picture": drawn,
     }
@@ -277,14 +281,14 @@ def _test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None) ->
 
 def _corrections(found: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None) -> list[dict[str, Any]]:
     corrections = [found] if isinstance(found, Mapping) else list(found or [])
-    return [
-        {
-            "by": c["by"],
-            "repeats": c["repeats"],
-            "picture": draw_correction(c["by"], c["unit"], c["x"], c["force"], c.get("std"), f"c{i}x"),
-        }
-        for i, c in enumerate(corrections)
-    ]
+    shown = []
+    for i, c in enumerate(corrections):
+        by = titles.dependence(c["by"])
+        picture = draw_correction(
+            by.removeprefix("the "), c["unit"], c["x"], c["force"], c.get("std"), f"c{i}x"
+        )
+        shown.append({"by": by, "repeats": c["repeats"], "picture": picture})
+    return shown
 
 
 def _versions() -> str:

@@ -19,8 +19,8 @@ from .words import number
 
 FloatArray = NDArray[np.float64]
 
-BINS = 32
-"""Bins of a coordinate: a mean in each."""
+BINS, FINE = 32, 64
+"""Bins of a coordinate, and of the deflection, whose ripples are finer: a mean in each."""
 
 CELLS = (40, 28)
 """Cells of a map, across and up."""
@@ -100,7 +100,7 @@ def draw_over_time(m: Misfit, noise: float, mark: str) -> Markup:
 
 def draw_over_deflection(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the mean residual over the deflection, loading and unloading apart."""
-    edges = np.linspace(m.deflection.min(), m.deflection.max(), BINS + 1)
+    edges = np.linspace(m.deflection.min(), m.deflection.max(), FINE + 1)
     with drawing() as (figure, axes):
         _noise_band(axes, noise)
         for residual, colour in _courses(m):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,26 +10,25 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from .. import titles
 from . import words
 
-MOST_PLACES = 5
+MOST_PLACES = 6
 """Places that are told."""
 
 
 def print_diagnosis(
     console: Console,
     diagnosis: Mapping[str, Any],
-    where: Sequence[Mapping[str, Any]],
-    reasons: Sequence[str],
     out: Path,
 ) -> None:
-    """Print the verdict, where, parameters, rivals, the test, the errors and the files.
+    """Print the verdict with its rivals, the errors, where, parameters, what was learned, the test and the files.
 
-    diagnosis: the content of diagnosis.json; where: its places, those to be told first; reasons: one for each rival
+    diagnosis: the content of diagnosis.json
     """
     verdict, fit = diagnosis["verdict"], diagnosis["fit"]
     console.print(Text(words.headline(verdict), style="bold"))
-    console.print(Text(verdict["summary"]))
+    console.print(Text(words.besides(verdict)))
     console.print()
     errors = _table("error [N]", "before", "after", "noise")
     noise = words.number(fit["noise"])
@@ -41,9 +40,9 @@ def print_diagnosis(
     console.print(errors)
     console.print()
 
-    if where:
+    if diagnosis["where"]:
         places = _table("where they part", "", "part of the error", "mean residual [N]")
-        for place in words.foremost(where, MOST_PLACES, of_one=1):
+        for place in words.foremost(diagnosis["where"], MOST_PLACES):
             mean = words.residual(place["mean_residual"], fit["noise"])
             places.add_row(
                 words.coordinate(place["by"]),
@@ -55,22 +54,26 @@ def print_diagnosis(
         console.print()
 
     for effect in verdict["effects"]:
-        title = f"{words.effect_title(effect['name'])}, {words.percent(effect['share'])} of the error"
+        title = f"{titles.effect_title(effect['name'])}, {words.percent(effect['share'])} of the error"
         console.print(Text(title, style="dim"))
         parameters = _table("", "", "")
         parameters.show_header = False
         for name, e in effect["parameters"].items():
             value = words.estimate(e["value"], e["std"], e["unit"])
-            parameters.add_row(words.effect_title(name), value, words.meaning(effect["name"], name))
+            parameters.add_row(titles.effect_title(name), value, words.meaning(effect["name"], name))
         console.print(parameters)
         console.print()
 
-    for names, reason in zip(verdict["alternatives"], reasons, strict=True):
-        console.print(Text(f"it could also be {words.set_title(names)}: {reason}"))
+    if verdict.get("corrections"):
+        learned = _table("what is left, learned over", "error [N]", "not seen [N]", "explained, not seen")
+        for c in verdict["corrections"]:
+            errors_with = (words.number(c["after"]), words.number(c["held_out_after"]))
+            learned.add_row(titles.dependence(c["by"]), *errors_with, words.percent(max(c["repeats"], 0.0)))
+        console.print(learned)
+        console.print()
+
     if verdict["separating_test"] is not None:
         console.print(Text(f"the test that would tell: {verdict['separating_test']['sentence']}"))
-        if verdict["separating_test"]["separation"] < words.CLEAR:
-            console.print(Text(words.TOO_WEAK))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
     if verdict["separating_test"] is not None:
         files.append(verdict["separating_test"]["file"])

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from radialtire import CATALOGUE, FLAT_RADIUS
 
-RECALIBRATION = "recalibration"
+from .. import titles
+from ..titles import RECALIBRATION
+
 RECALIBRATED = "the coefficients of the elastic law are another tire's; no physics is missing"
-UNKNOWN = "unknown"
-
-CLEAR = 5.0
-"""Separation, in units of the noise, from which a test would tell two sets apart without doubt."""
-
-TOO_WEAK = (
-    "Within the rig's limits this is the best motion that was tried, but it would hardly tell them apart."
-)
 
 _SCALES = {
     "m": (1e3, "mm"),
@@ -35,38 +30,6 @@ _COORDINATES = {
     "radius": "surface",
     "rate": "rate of deflection",
 }
-
-
-def effect_title(name: str) -> str:
-    """Return the name of an effect, or of one of its parameters, as a reader says it."""
-    if name == UNKNOWN:
-        return "something unknown"
-    return (
-        name.replace("_", " ").replace("rate independent", "rate-independent").replace("mullins", "Mullins")
-    )
-
-
-def set_title(names: Sequence[str]) -> str:
-    """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
-    known = {*CATALOGUE, RECALIBRATION, UNKNOWN}
-    return (
-        listed([effect_title(n) if n in known else f"something unknown over {n}" for n in names])
-        or "nothing missing"
-    )
-
-
-def listed(words: Sequence[str]) -> str:
-    """Return "a", "a and b", "a, b and c"."""
-    if len(words) < 2:
-        return "".join(words)
-    return f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def statement(name: str) -> str:
-    """Return the sentence of the catalogue on an effect, or nothing where it has none."""
-    if name == RECALIBRATION:
-        return RECALIBRATED
-    return CATALOGUE[name].statement if name in CATALOGUE else ""
 
 
 def meaning(effect: str, parameter: str) -> str:
@@ -136,25 +99,32 @@ def coordinate(by: str) -> str:
 
 
 def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
-    """Return the first entries of `where`, at most so many, and at most `of_one` over one coordinate."""
-    counts: dict[str, int] = {}
-    found = []
-    for place in where:
-        counts[place["by"]] = counts.get(place["by"], 0) + 1
-        if counts[place["by"]] <= of_one:
-            found.append(place)
-    return found[:most]
+    """Return the first entries of `where`, at most so many; beyond `of_one` over one coordinate only to fill up.
+
+    The elastic force is left out where the deflection tells the same.
+    """
+    by = {place["by"] for place in where}
+    shown = [place for place in where if not (place["by"] == "force" and "deflection" in by)]
+    counts: Counter[str] = Counter()
+    first: list[int] = []
+    spare: list[int] = []
+    for number, place in enumerate(shown):
+        counts[place["by"]] += 1
+        (first if counts[place["by"]] <= of_one else spare).append(number)
+    return [shown[number] for number in sorted([*first, *spare][:most])]
 
 
 def span(place: Mapping[str, Any]) -> str:
     """Return the span of an entry of `where` in words."""
     by, start, stop, unit = (place[key] for key in ("by", "from", "to", "unit"))
-    if place.get("label"):
-        return str(place["label"])
-    if by == "direction" and not isinstance(start, str) and not isinstance(stop, str):
-        return "loading" if start + stop > 0.0 else "unloading"
     if by == "radius" and start == stop:
         return surface(start)
+    if place.get("label"):
+        return str(place["label"])
+    if place.get("recording"):
+        return f"{span({**place, 'recording': None})} of {place['recording']}"
+    if by == "direction" and not isinstance(start, str) and not isinstance(stop, str):
+        return "loading" if start + stop > 0.0 else "unloading"
     factor, name = scaled(str(unit))
     if start == stop:
         return with_unit(_edge(start, factor), name)
@@ -181,22 +151,12 @@ def surface(radius: float | str) -> str:
 def headline(verdict: Mapping[str, Any]) -> str:
     """Return the verdict in one line."""
     names = [effect["name"] for effect in verdict["effects"]]
-    physics = [name for name in names if name != RECALIBRATION]
-    unexplained = bool(verdict["unexplained"])
-    if not physics and not unexplained:
-        told = "No physics is missing: the elastic law is another tire's" if names else "Nothing is missing"
-    elif not names:
-        told = "Something is missing that no known effect explains"
-    else:
-        parts = [effect_title(name) for name in physics]
-        if unexplained:
-            parts.append("something that no known effect explains")
-        told = f"Left out: {listed(parts)}"
-        if RECALIBRATION in names:
-            told += ", and the elastic law is another tire's"
-    if verdict["alternatives"]:
-        told += " – or something that these recordings cannot tell from it"
-    return f"{told}."
+    return titles.headline(names, bool(verdict["unexplained"]), bool(verdict["alternatives"]))
+
+
+def besides(verdict: Mapping[str, Any], but: str = "") -> str:
+    """Return what the summary says after the headline, without the sentence `but`."""
+    return " ".join(str(verdict["summary"]).removeprefix(headline(verdict)).replace(but, "").split())
 
 
 def held_out_part(by: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from tirelab import titles
 from tirelab.report import words
 
 
@@ -67,8 +68,11 @@ def test_spans_are_told_in_the_readers_units(entry: dict[str, Any], told: str) -
 
 def test_the_foremost_places_do_not_crowd_each_other_out() -> None:
     where = [place("time", i, i + 1, "s") for i in range(5)] + [place("rate", 0, 1, "m/s")]
-    assert [p["by"] for p in words.foremost(where, 12)] == ["time", "time", "rate"]
+    assert [p["by"] for p in words.foremost(where, 3)] == ["time", "time", "rate"]
+    assert [p["by"] for p in words.foremost(where, 4)] == ["time", "time", "time", "rate"]
     assert len(words.foremost(where, 1)) == 1
+    bands = [place("force", i, i + 1, "N") for i in range(2)] + [place("deflection", 0, 1, "m")]
+    assert [p["by"] for p in words.foremost(bands, 12)] == ["deflection"]
 
 
 @pytest.mark.parametrize(
@@ -98,9 +102,9 @@ def test_headlines(names: list[str], unexplained: bool, rivals: list[list[str]],
 
 
 def test_sets_are_named_whether_known_or_not() -> None:
-    assert words.set_title([]) == "nothing missing"
-    assert words.set_title(["unknown", "inertia"]) == "something unknown and inertia"
-    assert words.set_title(["rate"]) == "something unknown over rate"
+    assert titles.set_title([]) == "nothing missing"
+    assert titles.set_title(["unknown", "inertia"]) == "something unknown and inertia"
+    assert titles.set_title(["rate"]) == "something unknown over the rate of deflection"
 
 
 def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:

@@ -1,0 +1,81 @@
+"""The verdict in a few sentences, for a reader who reads nothing else: what, how much better, how sure, what else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from radialtire import CATALOGUE
+
+from .separate import SeparatingTest
+from .titles import RECALIBRATION, dependence, headline, listed, newtons, set_title, sure
+from .verdict import Correction, Fit, NamedEffect, Rival
+
+REPEATS = 0.1
+"""Part of what is left that a learned curve explains on time not seen, from which it is worth telling."""
+
+
+def summarise(
+    effects: Sequence[NamedEffect],
+    rivals: Sequence[Rival],
+    corrections: Sequence[Correction],
+    confidence: float,
+    fit: Fit,
+    test: SeparatingTest | None = None,
+) -> str:
+    """Return the verdict in sentences, the first of them `titles.headline`.
+
+    corrections: what was learned of something unknown, none where nothing is; test: the best one against the rivals
+    """
+    names = [e.name for e in effects]
+    said = [headline(names, bool(corrections), bool(rivals))]
+    said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != RECALIBRATION]
+    said += _errors(bool(names), bool(corrections), fit)
+    if corrections:
+        said.append(_learned(corrections))
+    said.append(sure(confidence))
+    if rivals:
+        said.append(_rivalled(rivals))
+    if test is not None and not test.tells:
+        said.append(test.sentence)
+    return " ".join(said)
+
+
+def _errors(corrected: bool, unexplained: bool, fit: Fit) -> list[str]:
+    """Return what the correction did to the error; nothing is said to fall that nothing was fitted to."""
+    noise = f"the noise is {newtons(fit.noise)}"
+    if not corrected:
+        stays = " and stays there" if unexplained else ""
+        return [f"The error is {newtons(fit.before)}{stays}; {noise}."]
+    told = f"Corrected, the error falls from {newtons(fit.before)} to {newtons(fit.after)}; {noise}."
+    if not math.isfinite(fit.held_out_after):
+        return [told]
+    better = "falls" if fit.held_out_after < fit.held_out_before else "does not fall, it goes"
+    unseen = f"{better} from {newtons(fit.held_out_before)} to {newtons(fit.held_out_after)}"
+    return [told, f"On what the fit has not seen it {unseen}."]
+
+
+def _learned(corrections: Sequence[Correction]) -> str:
+    """Return what something unknown depends on, and what the best curve that was learned of it brings."""
+    by = listed([dependence(c.by) for c in corrections])
+    best = max(corrections, key=lambda c: c.repeats)
+    if best.repeats < REPEATS:
+        return f"What is left depends on {by}, but no curve learned from the recordings repeats on time not seen."
+    over = "it" if len(corrections) == 1 else dependence(best.by)
+    told = (
+        f"What is left depends on {by}: a force learned over {over} brings the error to {newtons(best.after)}"
+    )
+    unseen = f", and to {newtons(best.held_out_after)} on what it has not seen"
+    return f"{told}{unseen if math.isfinite(best.held_out_after) else ''}; it is a description, not physics."
+
+
+def _rivalled(rivals: Sequence[Rival]) -> str:
+    """Return what else it could be, the reason said once where it is one."""
+    if len({r.reason for r in rivals}) == 1:
+        return f"It could also be {listed([set_title(r.names) for r in rivals], 'or')}: {rivals[0].reason}."
+    told = listed([f"{set_title(r.names)} ({r.reason})" for r in rivals], "or")
+    return f"It could also be {told}."
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

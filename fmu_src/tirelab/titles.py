@@ -1,0 +1,83 @@
+"""What effects, sets of them and coordinates are called in a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from radialtire import CATALOGUE
+
+RECALIBRATION = "recalibration"
+UNKNOWN = "unknown"
+
+DEPENDENCE = {
+    "deflection": "the deflection",
+    "direction": "loading and unloading",
+    "rate": "the rate of deflection",
+    "rate and deflection": "rate and deflection",
+    "acceleration": "the acceleration",
+    "resonance": "the acceleration (a resonance)",
+    "history": "the way since the last reversal",
+    "way": "the whole way travelled",
+    "time, added": "time (an added force)",
+    "jump": "time (a jump)",
+    "period": "time (a period)",
+    "period, added": "time (a period of an added force)",
+}
+"""Coordinates of something unknown as a reader calls them; what is not here is called by its name."""
+
+
+def effect_title(name: str) -> str:
+    """Return the name of an effect, or of one of its parameters, as a reader says it."""
+    if name == UNKNOWN:
+        return "something unknown"
+    return (
+        name.replace("_", " ").replace("rate independent", "rate-independent").replace("mullins", "Mullins")
+    )
+
+
+def set_title(names: Sequence[str]) -> str:
+    """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
+    known = {*CATALOGUE, RECALIBRATION, UNKNOWN}
+    titles = [effect_title(n) if n in known else f"something unknown over {dependence(n)}" for n in names]
+    return listed(titles) or "nothing missing"
+
+
+def dependence(by: str) -> str:
+    """Return the coordinate of something unknown as a reader calls it."""
+    return DEPENDENCE.get(by, by)
+
+
+def listed(words: Sequence[str], last: str = "and") -> str:
+    """Return "a", "a and b", "a, b and c"."""
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {last} {words[-1]}"
+
+
+def headline(names: Sequence[str], unexplained: bool, rivalled: bool) -> str:
+    """Return the verdict in one line, from the names of its effects."""
+    physics = [name for name in names if name != RECALIBRATION]
+    if not physics and not unexplained:
+        told = "No physics is missing: the elastic law is another tire's" if names else "Nothing is missing"
+    elif not names:
+        told = "Something is missing that no known effect explains"
+    else:
+        parts = [effect_title(name) for name in physics]
+        if unexplained:
+            parts.append("something that no known effect explains")
+        told = f"Left out: {listed(parts)}"
+        if RECALIBRATION in names:
+            told += ", and the elastic law is another tire's"
+    if rivalled:
+        told += " – or something that these recordings cannot tell from it"
+    return f"{told}."
+
+
+def sure(confidence: float) -> str:
+    """Return the sentence on a confidence, 0 to 1."""
+    return f"Confidence {100.0 * confidence:.0f} %."
+
+
+def newtons(force: float) -> str:
+    """Return a force [N] to three digits with its unit."""
+    return f"{force:.0f} N" if abs(force) >= 999.5 else f"{force:#.3g}".rstrip(".") + " N"
