@@ -168,8 +168,9 @@ def _mullins(p: Place) -> FloatArray:
     return np.stack([p.taken(p.elastic * shape * part) for part in gathered for shape in shapes], axis=1)
 
 
-PATCHES = (0.0, 0.4, 0.8)
-"""Exponents of 1 + r_w / R by which a patch may be shorter (see `radialtire.effects.gas_compression`)."""
+PATCHES = (0.0, 0.3)
+"""Exponents of 1 + r_w / R by which a patch may be shorter (see `radialtire.effects.gas_compression`): a sum of both
+follows those between and a little beyond."""
 
 
 def _compliance(p: Place) -> FloatArray:
@@ -188,8 +189,14 @@ def _gas(p: Place) -> FloatArray:
     depth = np.maximum(p.deflection, 0.0) / p.scene.deepest
     bends = [0.0 if np.isinf(r) else 1.0 / r for r in p.scene.radii]
     bent = np.maximum(1.0 + WHEEL_RADIUS * (p.record.surface @ np.array(bends)), LEAST_CURVATURE)
-    lost = [bent**-s * depth**power for s in PATCHES for power in GAS_POWERS]
+    lost = [bent**-s * depth**power for power in GAS_POWERS for s in PATCHES]
     return np.stack([p.elastic * part**k for part in lost for k in (1, 2)], axis=1)
+
+
+def _of_one_power(count: int) -> list[list[int]]:
+    """Return one variant for each power of the deflection, with every patch."""
+    width = 2 * len(PATCHES)
+    return [list(range(first, first + width)) for first in range(0, count, width)]
 
 
 def pairs(count: int) -> list[list[int]]:
@@ -296,7 +303,7 @@ CATALOGUE_FAMILIES: tuple[Family, ...] = (
     Family("viscous_damping", _viscous, sign=1.0),
     Family("viscoelastic_relaxation", _relaxation, sign=1.0, remembers=True),
     Family("series_compliance", _compliance, sign=-1.0),
-    Family("gas_compression", _gas, pairs, sign=1.0),
+    Family("gas_compression", _gas, _of_one_power, sign=1.0),
     Family("bottoming", _bottoming, _soft_knees, sign=1.0),
     Family("mullins_softening", _mullins, sign=-1.0, remembers=True),
     Family("pressure_leak", _leak, sign=-1.0),
