@@ -15,15 +15,19 @@ def ridden(seed, tire, noise=5.0):
 
 
 def test_extra_freedoms_that_nothing_asks_for_stay_plain():
-    verdict = diagnose([ridden(1, TireModel(effects=((CATALOGUE["viscous_damping"], (600.0, 1.0, 0.0, 0.0)),)))])
+    verdict = diagnose(
+        [ridden(1, TireModel(effects=((CATALOGUE["viscous_damping"], (600.0, 1.0, 0.0, 0.0)),)))]
+    )
     assert verdict.names == ("viscous_damping",)
     assert set(verdict.effects[0].parameters) == {"damping"}
     values = next(v for e, v in verdict.tire.effects if e.name == "viscous_damping")
-    assert values[1:] == (1.0, 0.0)
+    assert values[1:] == (1.0, 0.0, 0.0)
 
 
 def test_an_extra_freedom_that_is_needed_is_found():
-    verdict = diagnose([ridden(2, TireModel(effects=((CATALOGUE["viscous_damping"], (900.0, 0.5, 0.0, 0.0)),)))])
+    verdict = diagnose(
+        [ridden(2, TireModel(effects=((CATALOGUE["viscous_damping"], (900.0, 0.5, 0.0, 0.0)),)))]
+    )
     assert verdict.names == ("viscous_damping",)
     exponent = verdict.effects[0].parameters["rate_exponent"]
     # A root of the rate is steep at its zeros, where the rate is tracked late: a tenth.

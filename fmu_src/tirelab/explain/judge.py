@@ -29,8 +29,11 @@ MATERIAL = 0.25
 """An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by three
 percent, sqrt(1 + 0.25^2): it is not named, whatever its significance."""
 
-MATERIAL_CONFINED = 0.1
+MATERIAL_CONFINED = 0.05
 """The same for what acts in a few percent of the samples: there it is several times as large."""
+
+CONFINED_FORM = 0.4
+"""Part of another effect's error of form that may lie where a confined one acts: the root of a sixth of the samples."""
 
 CONFINED = ("bottoming", "saturation")
 
@@ -114,7 +117,9 @@ def _negligible(layout: Layout, names: SetName, explained: Explained) -> list[st
             default=0.0,
         )
         unique = law if name == "recalibration" else own[name]
-        usual = MATERIAL_CONFINED if name in CONFINED else MATERIAL
+        usual = MATERIAL
+        if name in CONFINED:
+            usual, doubt = MATERIAL_CONFINED, CONFINED_FORM * doubt
         if unique < max(MATERIAL_SLOW.get(name, usual), doubt):
             found.append(name)
     return found

@@ -10,8 +10,9 @@ fit: a residual r of leverage h has left out the variance s^2 (1 - h) of the rea
     log p = 1/2 log(1 - h) - r^2 / (2 s^2 (1 - h))
 
 Summed over a stretch around each sample this weighs the splines (Wahba, "Spline Models for Observational Data", SIAM
-1990, on leaving one out; the mean over models is Bayes'): long ones on smooth stretches, short ones at corners. Being a
-mean given the data and not the data themselves, rate and acceleration do not bias what is fitted to them towards zero.
+1990, on leaving one out; the mean over models is Bayes'), together with how often each serves in the whole recording:
+long ones on smooth stretches, short ones at corners. Being a mean given the data and not the data themselves, rate and
+acceleration do not bias what is fitted to them towards zero.
 """
 
 from __future__ import annotations
@@ -28,6 +29,9 @@ CUTOFFS = np.pi * np.geomspace(0.02, 2.0, 14)
 
 STRETCH = 12.0
 """Standard deviation [samples] of the stretch over which splines are weighed: some forty samples together."""
+
+ROUNDS = 6
+"""Rounds in which the splines' shares are found: an expectation and a maximisation each."""
 
 PADDING = 400
 """Samples that are turned over at each end, so that value and slope go on there."""
@@ -55,28 +59,29 @@ def smoothed(
     angle = 2.0 * np.pi * rfftfreq(whole)
     spectrum = rfft(filled)
     inside = slice(pad, pad + count)
-    best = np.full(count, -np.inf)
-    weight = np.zeros(count)
-    sums = np.zeros((4, count))
-    for cutoff in CUTOFFS:
-        passed = 1.0 / (1.0 + (angle / cutoff) ** 6)
-        leverage = min(float(np.mean(passed)), LEVERAGE)
-        kept = spectrum * passed
-        found = np.stack(
-            [
-                irfft(kept, whole)[inside],
-                irfft(1j * angle * kept, whole)[inside] + slope,
-                irfft(-(angle**2) * kept, whole)[inside],
-                np.full(count, leverage),
-            ]
-        )
-        left = (level - found[0]) / noise
+    splines = [1.0 / (1.0 + (angle / cutoff) ** 6) for cutoff in CUTOFFS]
+    leverages = [min(float(np.mean(passed)), LEVERAGE) for passed in splines]
+    scores = np.empty((len(splines), count), dtype=np.float32)
+    for i, (passed, leverage) in enumerate(zip(splines, leverages, strict=True)):
+        left = (level - irfft(spectrum * passed, whole)[inside]) / noise
         score = 0.5 * (np.log(1.0 - leverage) - left**2 / (1.0 - leverage))
-        score = gaussian_filter1d(score, STRETCH, mode="nearest") * np.sqrt(4.0 * np.pi) * STRETCH
-        higher = np.maximum(best, score)
-        fade, share = np.exp(best - higher), np.exp(score - higher)
-        sums = sums * fade + found * share
-        weight = weight * fade + share
-        best = higher
-    mean = sums / weight
-    return mean[0] + line, mean[1] / step, mean[2] / step**2, mean[3]
+        scores[i] = gaussian_filter1d(score, STRETCH, mode="nearest") * np.sqrt(4.0 * np.pi) * STRETCH
+    sums = np.zeros((4, count))
+    for passed, leverage, weight in zip(splines, leverages, _weights(scores), strict=True):
+        kept = spectrum * passed
+        sums[0] += weight * irfft(kept, whole)[inside]
+        sums[1] += weight * (irfft(1j * angle * kept, whole)[inside] + slope)
+        sums[2] -= weight * irfft(angle**2 * kept, whole)[inside]
+        sums[3] += weight * leverage
+    return sums[0] + line, sums[1] / step, sums[2] / step**2, sums[3]
+
+
+def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return each spline's weight at every sample, (splines, n): those that serve often are likelier beforehand."""
+    scores -= scores.max(axis=0)
+    often = np.full((scores.shape[0], 1), 1.0 / scores.shape[0], dtype=np.float32)
+    for _ in range(ROUNDS):
+        weights = often * np.exp(scores)
+        weights /= weights.sum(axis=0)
+        often = weights.mean(axis=1, keepdims=True)
+    return weights
