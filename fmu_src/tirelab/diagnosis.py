@@ -16,6 +16,7 @@ from .explain.evidence import explain
 from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family
 from .explain.motion import FloatArray
 from .explain.place import Point
+from .explain.plainer import noise_of_less
 from .explain.scene import Scene, scene_of
 from .explain.search import Settled, search
 from .held_out import HeldOut, Recorded, given, rmse, split
@@ -51,6 +52,9 @@ FEWEST_SAMPLES = 100
 
 FEWEST_STEPS = 8
 """Fewest distinct deflections: a cycle seen in fewer has no shape."""
+
+LESS = 2
+"""Times that a diagnosis is repeated with more of the misfit taken for noise."""
 
 FORM_ERROR = 0.007
 LEAST_ERROR = 0.05
@@ -104,6 +108,13 @@ def diagnose(
     _check_signal(scene, noises)
     power = coarsening(scene, noises, families, zero)
     found = search(scene, noises, families, power, tell)
+    for _ in range(LESS):
+        tell("asking whether less would do")
+        wider = noise_of_less(found.settled[0], scene, noises, families, power)
+        if wider is None:
+            break
+        noises = wider
+        found = search(scene, noises, families, power, tell)
     best = found.settled[0]
 
     tell("fitting the parameters")

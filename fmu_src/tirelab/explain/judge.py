@@ -37,7 +37,7 @@ CONFINED_FORM = 0.4
 
 CONFINED = ("bottoming", "saturation")
 
-MATERIAL_SLOW = {"time": 0.5, "time, added": 0.6, "period, added": 0.6}
+MATERIAL_SLOW = {"time": 0.5, "jump": 0.5, "time, added": 0.6, "period, added": 0.6}
 """The same for what slow noise and hum of the amplifier look like: up to half the noise they are noise."""
 
 FORM_ERROR = 0.03

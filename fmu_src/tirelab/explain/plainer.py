@@ -1,0 +1,71 @@
+"""Whether less would do: an effect that slow noise can stand for is not believed.
+
+The noise is first measured on what a model with every freedom leaves, and such a model follows slow noise too. So each
+family of the best set is taken out once more, the noise measured on what is then left, and both sets compared with that
+noise: where the smaller one is now as likely, the difference was noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..noise import Noise, noise_of
+from .columns import build, pointed
+from .families import Family
+from .judge import law_whole
+from .motion import FloatArray
+from .outstanding import LOUD
+from .scene import Scene
+from .search import Settled, settle
+
+
+def noise_of_less(
+    best: Settled, scene: Scene, noises: Sequence[Noise], families: Sequence[Family], zeta: float
+) -> tuple[Noise, ...] | None:
+    """Return the noise with which a smaller set does as well as the best one, None where none does."""
+    by_name = {f.name: f for f in families}
+    for gone in best.names:
+        if gone == "shape":
+            continue
+        names = law_whole(n for n in best.names if n != gone)
+        less = settle(scene, noises, by_name, names, zeta, best.point)
+        if not np.isfinite(less.log_evidence):
+            continue
+        wider = tuple(_wider(less, scene, noises))
+        if _power(wider) > (1.0 + LOUD**2) * _power(noises):
+            continue
+        more = settle(scene, wider, by_name, best.names, zeta, best.point)
+        less = settle(scene, wider, by_name, names, zeta, less.point)
+        if less.log_evidence >= more.log_evidence:
+            return wider
+    return None
+
+
+def _power(noises: Sequence[Noise]) -> float:
+    return float(np.sum([n.level**2 * n.weight.size for n in noises]))
+
+
+def _wider(less: Settled, scene: Scene, noises: Sequence[Noise]) -> list[Noise]:
+    """Return the noise of each recording on what a settled set leaves."""
+    built = build(scene, less.point, [less.layout.families[n] for n in less.names])
+    found = []
+    for b, record, noise in zip(built, scene.records, noises, strict=True):
+        left = _left(less, b.residual, b.columns)
+        through = b.place.stiffness * record.thin.motion.blur
+        share = less.candidate.explained.freedom * left.size / less.products.samples
+        own = noise_of(left, through, share, record.thin.motion.resolved)
+        found.append(own if own.level > noise.level else noise)
+    return found
+
+
+def _left(less: Settled, residual: FloatArray, columns: dict[str, FloatArray]) -> FloatArray:
+    left = np.array(residual)
+    for name, group, values in zip(
+        less.names, less.candidate.groups, less.candidate.explained.coefficients, strict=True
+    ):
+        own = group - less.layout.start[name]
+        # What the point already holds has left the residual: only the last step is still in the columns.
+        left = left - columns[name][:, own] @ (values - pointed(less.point, name, columns[name].shape[1])[own])
+    return np.asarray(left)
