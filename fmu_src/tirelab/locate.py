@@ -17,9 +17,10 @@ correlation counts once), and the chance is multiplied by the number of spans th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from radialtire import TireModel
 from scipy.stats import chi2
 
 from .coordinates import Axis, axes_of
@@ -27,21 +28,22 @@ from .explain.motion import FloatArray, IndexArray
 from .explain.scene import Record, Scene
 from .held_out import Recorded
 from .noise import Noise
+from .simulate import simulate
 
 DEPTHS = 12
 """Spans of deflection which, loading and unloading apart, tell what error a sample has on average."""
 
-DENSE = 0.5
+DENSE = 1.0
 """Samples belong to a span where their excess is at least this part of the noise's variance: less would let a walk of
-noise alone carry an end away by more than some ten samples."""
+noise alone carry an end away by more than a few samples that count as one."""
 
 LOCATED = 1e-3
 """Chance, over all spans of all coordinates together, of telling any span where there is noise alone."""
 
-FAINT = 0.25
+FAINT = 0.35
 """Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
 
-LEAST, DENSER = 0.03, 2.0
+LEAST, DENSER = 0.03, 1.5
 """A place has at least this concentration; where it has it for its share, that share is so many times as dense as the
 rest: what holds its samples' share of the error is no place."""
 
@@ -96,14 +98,49 @@ def _finite(value: float) -> float | str:
 
 
 def locate(
-    recordings: Sequence[Recorded], scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]
+    recordings: Sequence[Recorded],
+    scene: Scene,
+    residuals: Sequence[FloatArray],
+    noises: Sequence[Noise],
+    left: Sequence[FloatArray] | None = None,
 ) -> tuple[Span, ...]:
-    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone."""
-    samples = _samples(scene, residuals, noises)
-    axes = axes_of(recordings, scene, samples.kept)
-    looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis in axes)
-    found = [span for axis in axes for span in _spans(axis, samples, looked_at)]
+    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
+
+    left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
+    """
+    samples = _samples(scene, residuals, noises, left)
+    axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, scene, samples.kept)]
+    looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
+    # Where the noise was taken for too large, the densest span has more than all samples together.
+    whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-12)
+    found = [s for axis, bins in axes for s in _spans(axis, replace(bins, whole=whole), looked_at)]
     return tuple(sorted(found, key=lambda s: -s.concentration))
+
+
+def beyond_law(
+    recordings: Sequence[Recorded], before: Sequence[FloatArray], believed: TireModel, corrected: TireModel
+) -> list[FloatArray]:
+    """Return the residuals [N] in which physics has its place: what the corrected elastic law alone leaves.
+
+    before [N]: of the believed tire, returned where its law was not corrected, or nothing but its law
+    """
+    if corrected.law == believed.law or corrected.effects == believed.effects:
+        return list(before)
+    law = replace(believed, law=corrected.law)
+    return [r.force - simulate(law, r) for r in recordings]
+
+
+def _most(axis: Axis, values: FloatArray) -> float:
+    """Return the largest sum of neighbouring bins of an axis."""
+    bounds = zip(axis.parts[:-1], axis.parts[1:], strict=True)
+    return max(float(np.sum(values[slice(*_largest(values[a:b], a))])) for a, b in bounds)
+
+
+def _largest(values: FloatArray, offset: int) -> tuple[int, int]:
+    """Return the bounds of the largest sum of neighbouring values, counted from `offset` on."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    last = int(np.argmax(sums - np.minimum.accumulate(sums)))
+    return offset + int(np.argmin(sums[: last + 1])), offset + last
 
 
 @dataclass(frozen=True)
@@ -123,13 +160,13 @@ class _Samples:
     together: float
     kept: tuple[IndexArray, ...]
 
-    @property
-    def whole(self) -> float:
-        """Excess of all samples together [N^2]."""
-        return max(float(np.sum(self.excess)), 1e-12)
 
-
-def _samples(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> _Samples:
+def _samples(
+    scene: Scene,
+    residuals: Sequence[FloatArray],
+    noises: Sequence[Noise],
+    left: Sequence[FloatArray] | None,
+) -> _Samples:
     parts, kept = [], []
     for record, residual, noise in zip(scene.records, residuals, noises, strict=True):
         chosen = np.flatnonzero(noise.weight > 0.0)
@@ -141,7 +178,23 @@ def _samples(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noi
         kept.append(chosen)
     own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
     together = max(n.correlation_samples for n in noises)
+    if left is not None:
+        for record, residual, chosen in zip(scene.records, left, kept, strict=True):
+            together = max(together, _together(residual[record.rows][chosen]))
     return _Samples(own, variance, excess, alike, level, together, tuple(kept))
+
+
+def _together(noise: FloatArray) -> float:
+    """Return how many samples of a noise count as one, from the means of blocks of every length.
+
+    The variance of the mean of n samples that count as n/c is c/n times theirs; with 12 blocks it is known to a third.
+    """
+    found, length, power = 1.0, 2, float(np.mean(noise**2))
+    while noise.size >= 12 * length and power > 0.0:
+        blocks = noise[: noise.size // length * length].reshape(-1, length)
+        found = max(found, length * float(np.mean(np.mean(blocks, axis=1) ** 2)) / power)
+        length *= 2
+    return found
 
 
 def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
@@ -242,14 +295,13 @@ def _bins(axis: Axis, samples: _Samples) -> _Bins:
         summed(samples.residual**2 / samples.variance),
         summed(samples.excess),
         summed(usual),
-        samples.whole,
+        float(np.sum(samples.excess)),
         samples.together,
     )
 
 
-def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
+def _spans(axis: Axis, bins: _Bins, looked_at: int) -> list[Span]:
     """Return the places on an axis that noise alone does not show, at most `MOST_SPANS` in each part."""
-    bins = _bins(axis, samples)
     scores, found = bins.scores(), []
     for part, bounds in enumerate(zip(axis.parts[:-1], axis.parts[1:], strict=True)):
         pieces = [bounds]
@@ -270,7 +322,7 @@ def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
                     axis.label(a, b - 1),
                     axis.recordings[part] if axis.recordings else None,
                     bins.share(a, b),
-                    number / samples.residual.size,
+                    number / float(np.sum(bins.numbers)),
                     float(np.sum(bins.total[a:b])) / number,
                     float(np.exp(bins.log_chance(a, b) + np.log(looked_at))),
                     concentration,
@@ -289,9 +341,7 @@ def _best(
     found = []
     for piece in pieces:
         for score in scores:
-            sums = np.concatenate([[0.0], np.cumsum(score[piece[0] : piece[1]])])
-            last = int(np.argmax(sums - np.minimum.accumulate(sums)))
-            a, b = piece[0] + int(np.argmin(sums[: last + 1])), piece[0] + last
+            a, b = _largest(score[piece[0] : piece[1]], piece[0])
             if b > a and bins.log_chance(a, b) < least and (rank := bins.concentration(a, b)) > 0.0:
                 found.append((rank, a, b, piece))
     return max(found, default=None)
