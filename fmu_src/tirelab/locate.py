@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from radialtire import TireModel
@@ -148,8 +149,8 @@ class _Samples:
     """The compared samples of all recordings end to end, without spikes; arrays of one length.
 
     residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike_excess [N^2], alike_residual [N]:
-    means of the samples like this one; together: samples of the noise that count as one; kept: of each recording,
-    indices into its rows
+    means of the samples like this one; together: of each recording, numbers of samples and how many of the noise then
+    count as one; kept: of each recording, indices into its rows
     """
 
     residual: FloatArray
@@ -157,7 +158,7 @@ class _Samples:
     excess: FloatArray
     alike_excess: FloatArray
     alike_residual: FloatArray
-    together: float
+    together: tuple[tuple[FloatArray, FloatArray], ...]
     kept: tuple[IndexArray, ...]
 
 
@@ -177,24 +178,26 @@ def _samples(
         parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
         kept.append(chosen)
     own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
-    together = max(n.correlation_samples for n in noises)
+    together = [(np.ones(1), np.array([n.correlation_samples])) for n in noises]
     if left is not None:
-        for record, residual, chosen in zip(scene.records, left, kept, strict=True):
-            together = max(together, _together(residual[record.rows][chosen]))
-    return _Samples(own, variance, excess, alike, level, together, tuple(kept))
+        rows = zip(scene.records, left, kept, strict=True)
+        together = [_wander(values[record.rows][chosen]) for record, values, chosen in rows]
+    return _Samples(own, variance, excess, alike, level, tuple(together), tuple(kept))
 
 
-def _together(noise: FloatArray) -> float:
-    """Return how many samples of a noise count as one, from the means of blocks of every length.
+def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return lengths n of blocks, and how many samples of a noise count as one in means of so many.
 
     The variance of the mean of n samples that count as n/c is c/n times theirs; with 12 blocks it is known to a third.
     """
-    found, length, power = 1.0, 2, float(np.mean(noise**2))
-    while noise.size >= 12 * length and power > 0.0:
-        blocks = noise[: noise.size // length * length].reshape(-1, length)
-        found = max(found, length * float(np.mean(np.mean(blocks, axis=1) ** 2)) / power)
+    length, power, found = 1, float(np.mean(noise**2)), [(1.0, 1.0)]
+    while noise.size >= 24 * length and power > 0.0:
         length *= 2
-    return found
+        blocks = noise[: noise.size // length * length].reshape(-1, length)
+        counted = length * float(np.mean(np.mean(blocks, axis=1) ** 2)) / power
+        found.append((float(length), max(found[-1][1], counted)))
+    lengths, counts = zip(*found, strict=True)
+    return np.array(lengths), np.array(counts)
 
 
 def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
@@ -213,7 +216,7 @@ class _Bins:
     numbers: of samples; total [N]: of the residual; apart [N]: of what it has beyond the mean elsewhere
     variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: square
     beyond the noise, and what so many samples have elsewhere; whole [N^2]: excess of all bins
-    together: samples of the noise that count as one
+    together: as in `_Samples`
     """
 
     numbers: FloatArray
@@ -224,19 +227,23 @@ class _Bins:
     excess: FloatArray
     usual: FloatArray
     whole: float
-    together: float
+    together: tuple[tuple[FloatArray, FloatArray], ...]
 
-    @property
+    def counted(self, number: FloatArray | float) -> FloatArray:
+        """Return how many samples of the noise count as one among so many, those of the worst recording."""
+        return np.asarray(np.max([np.interp(number, *curve) for curve in self.together], axis=0))
+
+    @cached_property
     def means(self) -> FloatArray:
         """Square of each bin's mean residual over that of its noise."""
-        return self.total**2 / np.maximum(self.variance * self.together, 1e-300)
+        return self.total**2 / np.maximum(self.variance * self.counted(self.numbers), 1e-300)
 
     def scores(self) -> tuple[FloatArray, ...]:
         """Return what each bin adds to a span: by its samples' squares, by that of its mean, by its mean, by less it.
 
         The mean's square shows a faint force sooner; half of the usual error parts the means from none.
         """
-        unit = self.variance * self.together / np.maximum(self.numbers, 1.0)
+        unit = self.variance * self.counted(self.numbers) / np.maximum(self.numbers, 1.0)
         usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
         least = np.maximum(0.5 * usual * self.numbers, FAINT * np.sqrt(self.variance * self.numbers))
         return (
@@ -251,11 +258,13 @@ class _Bins:
         squares, means, total, variance = (
             float(np.sum(v[a:b])) for v in (self.squares, self.means, self.total, self.variance)
         )
-        blocks = float(np.sum(self.numbers[a:b])) / self.together
+        number = float(np.sum(self.numbers[a:b]))
+        together = float(self.counted(number))
+        bins_together = together / float(self.counted(number / (b - a)))
         tests = (
-            (squares / self.together, blocks),
-            (means, float(b - a)),
-            (total**2 / (variance * self.together), 1.0),
+            (squares / together, number / together),
+            (means / bins_together, (b - a) / bins_together),
+            (total**2 / (variance * together), 1.0),
         )
         return min(float(chi2.logsf(value, freedom)) for value, freedom in tests)
 
