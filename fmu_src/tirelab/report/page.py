@@ -98,7 +98,6 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
     alternatives = verdict["alternatives"]
-    names = [effect["name"] for effect in verdict["effects"]]
     return page.render(
         style=Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
@@ -109,7 +108,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
         places=(places := words.foremost(diagnosis["where"], MOST_PLACES)),
-        law_apart=titles.RECALIBRATION in names and len(names) > 1,
+        law_apart=words.law_apart(verdict),
         more_places=len(diagnosis["where"]) - len(places),
         evidence=_evidence(diagnosis["evidence"] or []),
         test=_test(verdict["separating_test"], diagnosis["waveform"]),
