@@ -50,7 +50,7 @@ def axes_of(recordings: Sequence[Recorded], scene: Scene, kept: Sequence[IndexAr
         _even("deflection", "m", joined(lambda r: r.motion.deflection)),
         _even("rate", "m/s", joined(lambda r: r.motion.rate)),
         _even("acceleration", "m/s^2", joined(lambda r: r.motion.acceleration)),
-        _even("force", "N", joined(lambda r: r.elastic(r.motion.deflection))),
+        _force(joined(lambda r: r.elastic(r.motion.deflection)), joined(lambda r: r.force)),
         _even("history", "m", joined(lambda r: r.motion.deepest), slow=True),
         _time(recordings, records),
         _classes("direction", joined(lambda r: r.motion.direction), {-1.0: "unloading", 1.0: "loading"}),
@@ -78,6 +78,12 @@ def _nothing(first: int, last: int) -> str:
 def _even(by: str, unit: str, values: FloatArray, slow: bool = False) -> Axis:
     bin_of, start, stop = _bins(values)
     return Axis(by, unit, bin_of, start, stop, (0, start.size), _nothing, slow)
+
+
+def _force(elastic: FloatArray, recorded: FloatArray) -> Axis:
+    """Return the force: bins of the believed one, which noise does not sort, bounded by the recorded one in them."""
+    bin_of, start, stop = _bounded(_bins(elastic)[0], recorded)
+    return Axis("force", "N", bin_of, start, stop, (0, start.size), _nothing)
 
 
 def _bins(values: FloatArray) -> tuple[IndexArray, FloatArray, FloatArray]:

@@ -21,7 +21,7 @@ from .explain.scene import Scene, scene_of
 from .explain.search import Settled, search
 from .held_out import HeldOut, Recorded, given, rmse, split
 from .learn import learned
-from .locate import locate
+from .locate import beyond_law, locate
 from .noise import Noise
 from .refit import Case, Refit, refit
 from .separate import Limits, SeparatingTest, separate
@@ -145,6 +145,8 @@ def diagnose(
     effects = _effects(best, fitted)
     rivals = tuple(r for r in rivals_of(found.settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
     confidence = confidence_of(found.settled) / (1.0 + len(one_rate_rivals(named(best), scene)))
+    apart = beyond_law(recordings, before, believed, fitted.tire)
+    places = locate(recordings, scene, apart, noises, None if beyond else fitted.residuals)
     test = None
     if rivals:
         tell("looking for the test that would tell")
@@ -159,7 +161,7 @@ def diagnose(
         beyond,
         corrections,
         summarise(effects, rivals, corrections, confidence, fit, test),
-        locate(recordings, scene, before, noises),
+        places,
         fit,
         fitted.tire,
         _table(found.settled),

@@ -17,9 +17,11 @@ correlation counts once), and the chance is multiplied by the number of spans th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from radialtire import TireModel
 from scipy.stats import chi2
 
 from .coordinates import Axis, axes_of
@@ -27,21 +29,22 @@ from .explain.motion import FloatArray, IndexArray
 from .explain.scene import Record, Scene
 from .held_out import Recorded
 from .noise import Noise
+from .simulate import simulate
 
 DEPTHS = 12
 """Spans of deflection which, loading and unloading apart, tell what error a sample has on average."""
 
-DENSE = 0.5
+DENSE = 1.0
 """Samples belong to a span where their excess is at least this part of the noise's variance: less would let a walk of
-noise alone carry an end away by more than some ten samples."""
+noise alone carry an end away by more than a few samples that count as one."""
 
 LOCATED = 1e-3
 """Chance, over all spans of all coordinates together, of telling any span where there is noise alone."""
 
-FAINT = 0.25
+FAINT = 0.35
 """Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
 
-LEAST, DENSER = 0.03, 2.0
+LEAST, DENSER = 0.03, 1.5
 """A place has at least this concentration; where it has it for its share, that share is so many times as dense as the
 rest: what holds its samples' share of the error is no place."""
 
@@ -96,14 +99,49 @@ def _finite(value: float) -> float | str:
 
 
 def locate(
-    recordings: Sequence[Recorded], scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]
+    recordings: Sequence[Recorded],
+    scene: Scene,
+    residuals: Sequence[FloatArray],
+    noises: Sequence[Noise],
+    left: Sequence[FloatArray] | None = None,
 ) -> tuple[Span, ...]:
-    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone."""
-    samples = _samples(scene, residuals, noises)
-    axes = axes_of(recordings, scene, samples.kept)
-    looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis in axes)
-    found = [span for axis in axes for span in _spans(axis, samples, looked_at)]
+    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
+
+    left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
+    """
+    samples = _samples(scene, residuals, noises, left)
+    axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, scene, samples.kept)]
+    looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
+    # Where the noise was taken for too large, the densest span has more than all samples together.
+    whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-12)
+    found = [s for axis, bins in axes for s in _spans(axis, replace(bins, whole=whole), looked_at)]
     return tuple(sorted(found, key=lambda s: -s.concentration))
+
+
+def beyond_law(
+    recordings: Sequence[Recorded], before: Sequence[FloatArray], believed: TireModel, corrected: TireModel
+) -> list[FloatArray]:
+    """Return the residuals [N] in which physics has its place: what the corrected elastic law alone leaves.
+
+    before [N]: of the believed tire, returned where its law was not corrected, or nothing but its law
+    """
+    if corrected.law == believed.law or corrected.effects == believed.effects:
+        return list(before)
+    law = replace(believed, law=corrected.law)
+    return [r.force - simulate(law, r) for r in recordings]
+
+
+def _most(axis: Axis, values: FloatArray) -> float:
+    """Return the largest sum of neighbouring bins of an axis."""
+    bounds = zip(axis.parts[:-1], axis.parts[1:], strict=True)
+    return max(float(np.sum(values[slice(*_largest(values[a:b], a))])) for a, b in bounds)
+
+
+def _largest(values: FloatArray, offset: int) -> tuple[int, int]:
+    """Return the bounds of the largest sum of neighbouring values, counted from `offset` on."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    last = int(np.argmax(sums - np.minimum.accumulate(sums)))
+    return offset + int(np.argmin(sums[: last + 1])), offset + last
 
 
 @dataclass(frozen=True)
@@ -111,8 +149,8 @@ class _Samples:
     """The compared samples of all recordings end to end, without spikes; arrays of one length.
 
     residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike_excess [N^2], alike_residual [N]:
-    means of the samples like this one; together: samples of the noise that count as one; kept: of each recording,
-    indices into its rows
+    means of the samples like this one; together: of each recording, numbers of samples and how many of the noise then
+    count as one; kept: of each recording, indices into its rows
     """
 
     residual: FloatArray
@@ -120,16 +158,16 @@ class _Samples:
     excess: FloatArray
     alike_excess: FloatArray
     alike_residual: FloatArray
-    together: float
+    together: tuple[tuple[FloatArray, FloatArray], ...]
     kept: tuple[IndexArray, ...]
 
-    @property
-    def whole(self) -> float:
-        """Excess of all samples together [N^2]."""
-        return max(float(np.sum(self.excess)), 1e-12)
 
-
-def _samples(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noise]) -> _Samples:
+def _samples(
+    scene: Scene,
+    residuals: Sequence[FloatArray],
+    noises: Sequence[Noise],
+    left: Sequence[FloatArray] | None,
+) -> _Samples:
     parts, kept = [], []
     for record, residual, noise in zip(scene.records, residuals, noises, strict=True):
         chosen = np.flatnonzero(noise.weight > 0.0)
@@ -140,8 +178,26 @@ def _samples(scene: Scene, residuals: Sequence[FloatArray], noises: Sequence[Noi
         parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
         kept.append(chosen)
     own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
-    together = max(n.correlation_samples for n in noises)
-    return _Samples(own, variance, excess, alike, level, together, tuple(kept))
+    together = [(np.ones(1), np.array([n.correlation_samples])) for n in noises]
+    if left is not None:
+        rows = zip(scene.records, left, kept, strict=True)
+        together = [_wander(values[record.rows][chosen]) for record, values, chosen in rows]
+    return _Samples(own, variance, excess, alike, level, tuple(together), tuple(kept))
+
+
+def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return lengths n of blocks, and how many samples of a noise count as one in means of so many.
+
+    The variance of the mean of n samples that count as n/c is c/n times theirs; with 12 blocks it is known to a third.
+    """
+    length, power, found = 1, float(np.mean(noise**2)), [(1.0, 1.0)]
+    while noise.size >= 24 * length and power > 0.0:
+        length *= 2
+        blocks = noise[: noise.size // length * length].reshape(-1, length)
+        counted = length * float(np.mean(np.mean(blocks, axis=1) ** 2)) / power
+        found.append((float(length), max(found[-1][1], counted)))
+    lengths, counts = zip(*found, strict=True)
+    return np.array(lengths), np.array(counts)
 
 
 def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
@@ -160,7 +216,7 @@ class _Bins:
     numbers: of samples; total [N]: of the residual; apart [N]: of what it has beyond the mean elsewhere
     variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: square
     beyond the noise, and what so many samples have elsewhere; whole [N^2]: excess of all bins
-    together: samples of the noise that count as one
+    together: as in `_Samples`
     """
 
     numbers: FloatArray
@@ -171,19 +227,23 @@ class _Bins:
     excess: FloatArray
     usual: FloatArray
     whole: float
-    together: float
+    together: tuple[tuple[FloatArray, FloatArray], ...]
 
-    @property
+    def counted(self, number: FloatArray | float) -> FloatArray:
+        """Return how many samples of the noise count as one among so many, those of the worst recording."""
+        return np.asarray(np.max([np.interp(number, *curve) for curve in self.together], axis=0))
+
+    @cached_property
     def means(self) -> FloatArray:
         """Square of each bin's mean residual over that of its noise."""
-        return self.total**2 / np.maximum(self.variance * self.together, 1e-300)
+        return self.total**2 / np.maximum(self.variance * self.counted(self.numbers), 1e-300)
 
     def scores(self) -> tuple[FloatArray, ...]:
         """Return what each bin adds to a span: by its samples' squares, by that of its mean, by its mean, by less it.
 
         The mean's square shows a faint force sooner; half of the usual error parts the means from none.
         """
-        unit = self.variance * self.together / np.maximum(self.numbers, 1.0)
+        unit = self.variance * self.counted(self.numbers) / np.maximum(self.numbers, 1.0)
         usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
         least = np.maximum(0.5 * usual * self.numbers, FAINT * np.sqrt(self.variance * self.numbers))
         return (
@@ -198,11 +258,13 @@ class _Bins:
         squares, means, total, variance = (
             float(np.sum(v[a:b])) for v in (self.squares, self.means, self.total, self.variance)
         )
-        blocks = float(np.sum(self.numbers[a:b])) / self.together
+        number = float(np.sum(self.numbers[a:b]))
+        together = float(self.counted(number))
+        bins_together = together / float(self.counted(number / (b - a)))
         tests = (
-            (squares / self.together, blocks),
-            (means, float(b - a)),
-            (total**2 / (variance * self.together), 1.0),
+            (squares / together, number / together),
+            (means / bins_together, (b - a) / bins_together),
+            (total**2 / (variance * together), 1.0),
         )
         return min(float(chi2.logsf(value, freedom)) for value, freedom in tests)
 
@@ -242,14 +304,13 @@ def _bins(axis: Axis, samples: _Samples) -> _Bins:
         summed(samples.residual**2 / samples.variance),
         summed(samples.excess),
         summed(usual),
-        samples.whole,
+        float(np.sum(samples.excess)),
         samples.together,
     )
 
 
-def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
+def _spans(axis: Axis, bins: _Bins, looked_at: int) -> list[Span]:
     """Return the places on an axis that noise alone does not show, at most `MOST_SPANS` in each part."""
-    bins = _bins(axis, samples)
     scores, found = bins.scores(), []
     for part, bounds in enumerate(zip(axis.parts[:-1], axis.parts[1:], strict=True)):
         pieces = [bounds]
@@ -270,7 +331,7 @@ def _spans(axis: Axis, samples: _Samples, looked_at: int) -> list[Span]:
                     axis.label(a, b - 1),
                     axis.recordings[part] if axis.recordings else None,
                     bins.share(a, b),
-                    number / samples.residual.size,
+                    number / float(np.sum(bins.numbers)),
                     float(np.sum(bins.total[a:b])) / number,
                     float(np.exp(bins.log_chance(a, b) + np.log(looked_at))),
                     concentration,
@@ -289,9 +350,7 @@ def _best(
     found = []
     for piece in pieces:
         for score in scores:
-            sums = np.concatenate([[0.0], np.cumsum(score[piece[0] : piece[1]])])
-            last = int(np.argmax(sums - np.minimum.accumulate(sums)))
-            a, b = piece[0] + int(np.argmin(sums[: last + 1])), piece[0] + last
+            a, b = _largest(score[piece[0] : piece[1]], piece[0])
             if b > a and bins.log_chance(a, b) < least and (rank := bins.concentration(a, b)) > 0.0:
                 found.append((rank, a, b, piece))
     return max(found, default=None)

@@ -121,7 +121,8 @@ class Verdict:
 
     effects: what is missing, empty where nothing is; confidence: 0 to 1; rivals: other sets, likeliest first
     unexplained: whether something acts that no effect explains, by `unexplained_by` (coordinates)
-    summary: sentences for a reader; where: spans of the misfit before the correction; tire: the corrected one
+    summary: sentences for a reader; where: places of the misfit before the correction, of what the corrected law leaves
+    of it where other effects are missing too; tire: the corrected one
     evidence: all sets that were compared to the end; separating_test: what would tell a rival apart, None where no
     motion within the rig's limits does (the summary then says so)
     compared: number of sets compared; evaluations: simulations of whole recordings in the final fit

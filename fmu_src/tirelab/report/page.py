@@ -108,6 +108,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
         places=(places := words.foremost(diagnosis["where"], MOST_PLACES)),
+        law_apart=words.law_apart(verdict),
         more_places=len(diagnosis["where"]) - len(places),
         evidence=_evidence(diagnosis["evidence"] or []),
         test=_test(verdict["separating_test"], diagnosis["waveform"]),

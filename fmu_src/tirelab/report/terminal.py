@@ -41,7 +41,12 @@ def print_diagnosis(
     console.print()
 
     if diagnosis["where"]:
-        places = _table("where they part", "", "part of the error", "mean residual [N]")
+        places = _table(
+            "where they part",
+            "with the law corrected" if words.law_apart(verdict) else "",
+            "part of the error",
+            "mean residual [N]",
+        )
         for place in words.foremost(diagnosis["where"], MOST_PLACES):
             mean = words.residual(place["mean_residual"], fit["noise"])
             places.add_row(

@@ -98,6 +98,12 @@ def coordinate(by: str) -> str:
     return _COORDINATES.get(by, by)
 
 
+def law_apart(verdict: Mapping[str, Any]) -> bool:
+    """Return whether the places of a verdict are those that the corrected law leaves (`locate.beyond_law`)."""
+    names = [effect["name"] for effect in verdict["effects"]]
+    return RECALIBRATION in names and len(names) > 1
+
+
 def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
     """Return the first entries of `where`, at most so many; beyond `of_one` over one coordinate only to fill up.
 
