@@ -67,5 +67,7 @@ def _left(less: Settled, residual: FloatArray, columns: dict[str, FloatArray]) -
     ):
         own = group - less.layout.start[name]
         # What the point already holds has left the residual: only the last step is still in the columns.
-        left = left - columns[name][:, own] @ (values - pointed(less.point, name, columns[name].shape[1])[own])
+        left = left - columns[name][:, own] @ (
+            values - pointed(less.point, name, columns[name].shape[1])[own]
+        )
     return np.asarray(left)
