@@ -20,6 +20,9 @@ from .outstanding import LOUD
 from .scene import Scene
 from .search import Settled, settle
 
+QUICK = ("inertia", "force_lag", "saturation", "span", "resonance", "period", "period, added", "acceleration")
+"""What slow noise cannot stand for, but its measure can swallow: what is quick, or there for a moment."""
+
 
 def noise_of_less(
     best: Settled, scene: Scene, noises: Sequence[Noise], families: Sequence[Family], zeta: float
@@ -27,7 +30,7 @@ def noise_of_less(
     """Return the noise with which a smaller set does as well as the best one, None where none does."""
     by_name = {f.name: f for f in families}
     for gone in best.names:
-        if gone == "shape":
+        if gone == "shape" or gone in QUICK:
             continue
         names = law_whole(n for n in best.names if n != gone)
         less = settle(scene, noises, by_name, names, zeta, best.point)
