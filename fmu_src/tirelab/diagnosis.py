@@ -28,7 +28,7 @@ from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
 from .summary import summarise
 from .titles import UNKNOWN
-from .tracking_time import likeliest_tracking
+from .tracking_time import likeliest_tracking, serving_tracking
 from .verdict import (
     BEYOND,
     Estimate,
@@ -132,6 +132,10 @@ def diagnose(
     ]
     cleared = _cleared(best, cases, scene)
     fitted = _refit(best, believed, cases, scene, power)
+    motions = [r.motion for r in scene.records]
+    noise, resolved = max(m.noise for m in motions), [m.resolved for m in motions]
+    believed = replace(believed, tracking_time=serving_tracking(fitted.tire, recordings, resolved, noise))
+    fitted = _tracked(fitted, believed, recordings)
     before = [r.force - simulate(tire, r) for r in recordings]
     beyond = tuple(n for n in best.names if n in BEYOND)
     tell("judging the correction on what it was not fitted to")
@@ -272,6 +276,12 @@ def _refit(
         power,
         one_constant_rate(scene),
     )
+
+
+def _tracked(fitted: Refit, believed: TireModel, recordings: Sequence[Recorded]) -> Refit:
+    """Return the fit with the believed tire's tracking time."""
+    tire = replace(fitted.tire, tracking_time=believed.tracking_time)
+    return replace(fitted, tire=tire, residuals=tuple(r.force - simulate(tire, r) for r in recordings))
 
 
 def _cleared(settled: Settled, cases: Sequence[Case], scene: Scene) -> list[Case]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tirelab.simulate import track
-from tirelab.tracking_time import RIDE_JERK, SETTLING, likeliest_tracking
+from radialtire import CATALOGUE, TireModel
+from tirelab.simulate import simulate, track
+from tirelab.tracking_time import RIDE_JERK, SETTLING, likeliest_tracking, of_a_ride, serving_tracking
 
 
 def recording(time: np.ndarray, deflection: np.ndarray) -> SimpleNamespace:
@@ -76,3 +78,18 @@ def test_a_short_recording_beside_a_long_one_says_nothing() -> None:
     both = likeliest_tracking([recording(time, x), recording(time[:5], x[:5])])
     assert both.tracking_time == alone.tracking_time
     assert both.noise == (*alone.noise, 0.0)
+
+
+def test_the_tracking_time_that_serves_is_the_longest_that_does_as_well() -> None:
+    # Read every 20 ms, T of a ride (1 ms or so) changes nothing: only what is far beyond the interval would.
+    time = np.arange(0.0, 20.0, 0.02)
+    x = 0.01 + 0.004 * np.sin(2.0 * math.pi * time)
+    tire = TireModel(effects=((CATALOGUE["inertia"], (5.0,)),))
+    read = recording(time, x + 2e-6 * np.random.default_rng(6).standard_normal(time.size))
+    read.force = simulate(replace(tire, tracking_time=1e-5), recording(time, x))
+    read.name = "sine"
+    assert serving_tracking(tire, [read], [np.ones(time.size, dtype=bool)], 2e-6) == of_a_ride(2e-6)
+
+
+def test_a_tire_that_looks_at_no_rate_keeps_its_tracking_time() -> None:
+    assert serving_tracking(TireModel(tracking_time=0.004), [], [], 1e-5) == 0.004
