@@ -22,27 +22,16 @@ from .explain.search import Settled, search
 from .held_out import HeldOut, Recorded, given, rmse, split
 from .learn import learned
 from .locate import beyond_law, locate
+from .naming import BEYOND, confidence_of, named
 from .noise import Noise
 from .refit import Case, Refit, refit
+from .rivals import one_constant_rate, one_rate_rivals, rivals_of
 from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
 from .summary import summarise
 from .titles import UNKNOWN
 from .tracking_time import likeliest_tracking, serving_tracking
-from .verdict import (
-    BEYOND,
-    Estimate,
-    Evidence,
-    Fit,
-    NamedEffect,
-    Rival,
-    Verdict,
-    confidence_of,
-    named,
-    one_constant_rate,
-    one_rate_rivals,
-    rivals_of,
-)
+from .verdict import Estimate, Evidence, Fit, NamedEffect, Rival, Verdict
 
 CATALOGUE_NAMES: tuple[str, ...] = ("recalibration", *(f.name for f in CATALOGUE_FAMILIES))
 """Every effect that a verdict may name."""

@@ -3,7 +3,7 @@
 from drives import flat_force, read, ride, triangle
 from radialtire import TireModel
 from tirelab.explain.scene import scene_of
-from tirelab.verdict import one_constant_rate, one_rate_rivals, poverty, reason_of
+from tirelab.rivals import one_constant_rate, one_rate_rivals, poverty, reason_of
 
 
 def scene(time, deflection):

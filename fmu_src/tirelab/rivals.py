@@ -1,0 +1,160 @@
+"""What else it could be: the sets of effects that the recordings cannot rule out, and what they lack for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .explain.judge import MATERIAL
+from .explain.motion import FloatArray
+from .explain.scene import Scene
+from .explain.search import Settled
+from .naming import named
+from .titles import UNKNOWN
+from .verdict import Rival
+
+DECIDABLE = 6.0
+"""Sets within this log evidence of the best one are rivals: odds of 400 to 1, by evidence that is itself uncertain by
+the form of the effects."""
+
+MOST_RIVALS = 4
+
+STATIC = frozenset(
+    {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
+)
+
+
+def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
+    """Return the sets of other names within DECIDABLE of the first one, and those that one rate cannot rule out."""
+    best = settled[0]
+    found: dict[tuple[str, ...], float] = {}
+    for s in settled[1:]:
+        gap = best.log_evidence - s.log_evidence
+        if not np.isfinite(gap) or _adds_nothing(s, best):
+            continue
+        if gap < DECIDABLE and named(s) != named(best) and named(s) not in found:
+            found[named(s)] = gap
+    for names in one_rate_rivals(named(best), scene):
+        found.setdefault(names, DECIDABLE)
+    for names, gap in static_rivals(settled):
+        found.setdefault(names, gap)
+    order = sorted(found.items(), key=lambda item: item[1])[:MOST_RIVALS]
+    return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
+
+
+HIDING = ("series_compliance", "gas_compression")
+"""What a law that is free on every surface can stand for, at one pressure and on one rig."""
+
+SHAPE_DOUBT = 30.0
+"""Sets that differ in functions of deflection and surface alone are rivals within this log evidence: each has a form of
+its own for what the law's shape, itself wrong by up to 13.5 %, may be."""
+
+
+def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], float]]:
+    """Return the sets with another function of deflection and surface in the place of the first one's, and their gap.
+
+    Beside a free law a compliance or the air's compression can always be there, unseen.
+    """
+    best = settled[0]
+    names = named(best)
+    statics = {"recalibration", *HIDING} & set(names)
+    if not statics or UNKNOWN in names:
+        return []
+    rest = set(names) - statics
+    found = []
+    for s in settled[1:]:
+        gap = best.log_evidence - s.log_evidence
+        others = set(named(s))
+        if gap < SHAPE_DOUBT and others != set(names) and others - {"recalibration", *HIDING} == rest:
+            found.append((named(s), gap))
+    if "recalibration" in names:
+        found += [(tuple(sorted({*names, h})), DECIDABLE) for h in HIDING if h not in names]
+    return found
+
+
+def _adds_nothing(settled: Settled, best: Settled) -> bool:
+    """Return whether a set is the best one with something beside it that is not material."""
+    more = set(named(settled)) - set(named(best))
+    if not more or not set(named(best)) < set(named(settled)):
+        return False
+    own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
+    law = (
+        settled.candidate.explained.together(
+            [i for i, n in enumerate(settled.names) if n in ("recalibration", "shape")]
+        )
+        if "recalibration" in settled.names
+        else 0.0
+    )
+    return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
+
+
+LOOPS = ("rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "force_lag")
+"""What makes a loop; at one constant rate on one surface any one of them can be the cause."""
+
+SAME_RATE = 0.06
+"""Rates within this part of their median count as one."""
+
+AT_CORNERS = 0.12
+"""Part of the samples that may stand at the corners of a triangle, where the rate is on its way."""
+
+
+def one_constant_rate(scene: Scene) -> bool:
+    """Return whether all recordings run at one rate up and down on one surface."""
+    if len(scene.radii) > 1:
+        return False
+    # Steps of the smoothed deflection: its derivative rings around corners.
+    rates = np.abs(np.concatenate([np.diff(r.motion.deflection) / np.diff(r.time) for r in scene.records]))
+    middle = float(np.median(rates))
+    return middle > 0.0 and float(np.mean(np.abs(rates / middle - 1.0) > SAME_RATE)) < AT_CORNERS
+
+
+def one_rate_rivals(names: tuple[str, ...], scene: Scene) -> list[tuple[str, ...]]:
+    """Return the sets in which another loop takes the place of the only one, where one rate cannot tell."""
+    loops = [n for n in names if n in LOOPS]
+    if len(loops) != 1 or not one_constant_rate(scene):
+        return []
+    return [tuple(sorted({*names, other} - set(loops))) for other in LOOPS if other != loops[0]]
+
+
+def poverty(scene: Scene) -> list[str]:
+    """Return what the recordings lack that tells effects apart."""
+    lacks = []
+    if one_constant_rate(scene):
+        lacks.append("there is one constant rate only")
+    if len(scene.radii) == 1:
+        lacks.append("there is one surface only")
+    rates = [np.abs(r.motion.rate) for r in scene.records]
+    typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
+    held = max(_longest_rest(r.time, np.abs(r.motion.rate) < 0.02 * typical) for r in scene.records)
+    if held < 1.0:
+        lacks.append("nothing is held still for a second")
+    if max(float(r.motion.cycle.max()) for r in scene.records) < 1.0:
+        lacks.append("no cycle is repeated")
+    return lacks
+
+
+def _longest_rest(time: FloatArray, still: np.ndarray) -> float:
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
+    return max(
+        (float(time[b - 1] - time[a]) for a, b in zip(ends[::2], ends[1::2], strict=True)), default=0.0
+    )
+
+
+SLOW = frozenset({"pressure_leak", "warm_up", "mullins_softening", "force_drift"})
+
+
+def reason_of(names: tuple[str, ...], other: tuple[str, ...], scene: Scene) -> str:
+    """Return why the recordings cannot tell two sets apart, in a clause."""
+    apart = set(names) ^ set(other)
+    lacks = poverty(scene)
+    if apart <= STATIC:
+        return "all of them are functions of deflection and surface alone, at one pressure and stiffness of the rig"
+    if apart <= set(LOOPS):
+        told = [x for x in lacks if "surface" not in x]
+        return " and ".join(told) if told else "their loops are alike at the rates driven"
+    if apart <= SLOW:
+        return "all of them change slowly with time, and no cycle from the beginning comes again after a rest"
+    if UNKNOWN in apart:
+        return "a smooth function of the coordinates follows the misfit as well"
+    return " and ".join(lacks) if lacks else "the difference is smaller than these recordings can show"
