@@ -37,6 +37,11 @@ CONFINED_FORM = 0.4
 
 CONFINED = ("bottoming", "saturation")
 
+MATERIAL_OFFSET = 0.12
+"""The same for an offset beside a free law: that law imitates all of it but its sharp end where the tire lifts off."""
+
+OFFSETS = ("deflection_offset", "force_offset")
+
 MATERIAL_SLOW = {"time": 0.5, "jump": 0.5, "time, added": 0.6, "period, added": 0.6}
 """The same for what slow noise and hum of the amplifier look like: up to half the noise they are noise."""
 
@@ -120,6 +125,8 @@ def _negligible(layout: Layout, names: SetName, explained: Explained) -> list[st
         usual = MATERIAL
         if name in CONFINED:
             usual, doubt = MATERIAL_CONFINED, CONFINED_FORM * doubt
+        elif name in OFFSETS and "recalibration" in names:
+            usual = MATERIAL_OFFSET
         if unique < max(MATERIAL_SLOW.get(name, usual), doubt):
             found.append(name)
     return found
