@@ -17,7 +17,7 @@ FORM_DOUBT = 0.5
 
 SUREST = 0.9
 """No verdict is surer than this: of 89 verdicts that nothing rivalled, on 140 trials of the independent rig, 81 were
-right (`concealed` seeds 6400 to 6539)."""
+right (its seeds 6400 to 6539)."""
 
 
 CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
