@@ -20,17 +20,23 @@ from .outstanding import LOUD
 from .scene import Scene
 from .search import Settled, settle
 
-QUICK = ("inertia", "force_lag", "saturation", "span", "resonance", "period", "period, added", "acceleration")
-"""What slow noise cannot stand for, but its measure can swallow: what is quick, or there for a moment."""
+QUICK = ("inertia", "force_lag", "saturation")
+"""What slow noise cannot stand for, but its measure can swallow: what is quick, or there for a moment. The same holds
+for what is beyond the catalogue, which has to be louder than slow noise anyway (`judge.MATERIAL_SLOW`)."""
 
 
 def noise_of_less(
     best: Settled, scene: Scene, noises: Sequence[Noise], families: Sequence[Family], zeta: float
 ) -> tuple[Noise, ...] | None:
-    """Return the noise with which a smaller set does as well as the best one, None where none does."""
+    """Return the noise with which a smaller set does as well as the best one, None where none does.
+
+    Nor is it asked where a line or a span stands out: noise that is measured across it is none.
+    """
+    if any(r.outstanding.lines or r.outstanding.spans for r in scene.records):
+        return None
     by_name = {f.name: f for f in families}
     for gone in best.names:
-        if gone == "shape" or gone in QUICK:
+        if gone == "shape" or gone in QUICK or by_name[gone].agnostic:
             continue
         names = law_whole(n for n in best.names if n != gone)
         less = settle(scene, noises, by_name, names, zeta, best.point)
