@@ -76,6 +76,17 @@ def motions(seed: int) -> list[tuple[float, FloatArray, FloatArray]]:
     ]
 
 
+def forces(name: str, bare: Drive) -> FloatArray:
+    """Return the force [N] of the tire with the effect `name`, without noise.
+
+    A mass feels the acceleration of its own moment; a tire that is stepped knows that of its last samples only.
+    """
+    if name == "inertia":
+        acceleration = np.gradient(np.gradient(bare.deflection, bare.time), bare.time)
+        return simulate(TireModel(), bare) + PARAMETERS[name]["mass"] * acceleration
+    return simulate(left_out(name), bare)
+
+
 def recordings(name: str, seed: int) -> list[Drive]:
     """Return two recordings of the tire with the effect `name`."""
     rng = np.random.default_rng(seed + 1)
@@ -83,7 +94,7 @@ def recordings(name: str, seed: int) -> list[Drive]:
     for radius, time, deflection in motions(seed):
         radii = np.full(time.size, radius)
         bare = Drive("", time, deflection, radii, np.zeros(time.size))
-        force = simulate(left_out(name), bare) + NOISE * rng.standard_normal(time.size)
+        force = forces(name, bare) + NOISE * rng.standard_normal(time.size)
         shown = deflection + 1e-6 * rng.standard_normal(time.size)
         found.append(Drive(f"{name} {radius:g}", time, shown, radii, force))
     return found

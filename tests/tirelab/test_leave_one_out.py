@@ -15,14 +15,7 @@ deflection adds 1 %."""
 said = cache(outcome)
 
 
-BLURRED = pytest.mark.xfail(
-    reason="the acceleration is smoothed from a noisy reading: at 25 kg its error is named a lag beside the inertia"
-)
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=BLURRED) if n == "inertia" else n for n in CATALOGUE_NAMES]
-)
+@pytest.mark.parametrize("name", CATALOGUE_NAMES)
 def test_what_the_catalogue_has_is_named(name: str) -> None:
     assert said(name).whole.names == (name,), said(name).row
 
