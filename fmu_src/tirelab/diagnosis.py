@@ -10,7 +10,7 @@ from radialtire import TireModel
 
 from .errors import TirelabError
 from .explain.background import background
-from .explain.beyond import AGNOSTIC_FAMILIES, worth_trying
+from .explain.beyond import AGNOSTIC_FAMILIES, SURFACE, worth_trying
 from .explain.columns import build, layout_of, lifted_from_force, measure
 from .explain.evidence import explain
 from .explain.families import CATALOGUE_FAMILIES, LAW_FAMILIES, Family
@@ -182,7 +182,7 @@ def coarsening(scene: Scene, noises: Sequence[Noise], families: Sequence[Family]
 
 def _families(catalogue: Sequence[str]) -> tuple[Family, ...]:
     known = [f for f in CATALOGUE_FAMILIES if f.name in catalogue]
-    law = LAW_FAMILIES if "recalibration" in catalogue else ()
+    law = LAW_FAMILIES if "recalibration" in catalogue else (SURFACE,)
     return (*law, *known, *AGNOSTIC_FAMILIES)
 
 

@@ -23,6 +23,7 @@ Coordinate = Callable[[Record], FloatArray]
 
 COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "deflection": ("m", lambda r: r.motion.deflection),
+    "surface": ("m", lambda r: r.motion.deflection),
     "direction": ("m", lambda r: r.motion.deflection * r.motion.direction),
     "rate": ("m/s", lambda r: r.motion.rate),
     "rate and deflection": ("m/s", lambda r: r.motion.rate),

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .explain.beyond import AGNOSTIC_FAMILIES
+from .explain.beyond import AGNOSTIC_FAMILIES, SURFACE
 from .explain.search import Settled
 from .titles import UNKNOWN
 
-BEYOND = frozenset(f.name for f in AGNOSTIC_FAMILIES)
+BEYOND = frozenset(f.name for f in (*AGNOSTIC_FAMILIES, SURFACE))
 
 FORM_DOUBT = 0.5
 """Power to which odds between sets are taken: the forms of two sets err independently, each as allowed for."""
@@ -22,7 +22,7 @@ right (its seeds 6400 to 6539)."""
 
 CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (
-        frozenset({"deflection", "direction"}),
+        frozenset({"deflection", "direction", "surface"}),
         frozenset(
             {
                 "recalibration",

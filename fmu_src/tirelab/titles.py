@@ -17,6 +17,8 @@ DEPENDENCE = {
     "acceleration": "the acceleration",
     "resonance": "the acceleration (a resonance)",
     "history": "the way since the last reversal",
+    "surface": "deflection and surface",
+    "span": "time (within a span)",
     "way": "the whole way travelled",
     "time, added": "time (an added force)",
     "jump": "time (a jump)",

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import lfilter
 
-from .families import Family, one_each, pairs, scale_of
+from .families import Family, law_columns, one_each, pairs, scale_of
 from .motion import FloatArray
 from .outstanding import LOUD, SWELLINGS, waves
 from .place import Place
@@ -169,6 +169,9 @@ def worth_trying(families: Sequence[Family], scene: Scene) -> tuple[Family, ...]
     gone = {*(() if lines else ("period", "period, added")), *(() if spans else ("span",))}
     return tuple(f for f in families if f.name not in gone)
 
+
+SURFACE = Family("surface", law_columns((0, 1, 2, 3)), agnostic=True)
+"""A function of deflection and surface, for a catalogue in which the law may not be another tire's."""
 
 AGNOSTIC_FAMILIES: tuple[Family, ...] = (
     Family("period, added", _periodic, agnostic=True, after_lag=True),

@@ -52,7 +52,9 @@ def one_each(count: int) -> list[list[int]]:
     return [[i] for i in range(count)]
 
 
-def _law(powers: tuple[int, ...]) -> Builder:
+def law_columns(powers: tuple[int, ...]) -> Builder:
+    """Return what builds the elastic force times these powers of the deflection's logarithm, on each surface."""
+
     def build(p: Place) -> FloatArray:
         return np.stack([w * p.elastic * p.logarithm**k for w in p.record.surface.T for k in powers], axis=1)
 
@@ -317,4 +319,7 @@ CATALOGUE_FAMILIES: tuple[Family, ...] = (
 STATIC = ("deflection_offset", "series_compliance", "gas_compression")
 """Effects that depend on deflection and radius alone and everywhere: they compete with the law's own shape."""
 
-LAW_FAMILIES: tuple[Family, ...] = (Family("recalibration", _law((0, 1))), Family("shape", _law((2, 3))))
+LAW_FAMILIES: tuple[Family, ...] = (
+    Family("recalibration", law_columns((0, 1))),
+    Family("shape", law_columns((2, 3))),
+)
