@@ -180,10 +180,15 @@ def refit(
     kept = earned(whole, power)
     if len(kept) == len(plain):
         return replace(fitted, evaluations=fitted.evaluations + whole.evaluations)
-    if len(kept) == len(knobs):
-        return replace(whole, evaluations=fitted.evaluations + whole.evaluations)
-    final = _fit(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
-    return replace(final, evaluations=fitted.evaluations + whole.evaluations + final.evaluations)
+    final = whole
+    evaluations = fitted.evaluations + whole.evaluations
+    if len(kept) < len(knobs):
+        final = _fit(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
+        evaluations += final.evaluations
+    # Two freedoms may end in a valley of their own, away from the plain fit's: the whole gain has to pay for them.
+    gain = power * (fitted.cost - final.cost)
+    chosen = final if gain > (len(kept) - len(plain)) * _price(final, power) else fitted
+    return replace(chosen, evaluations=evaluations)
 
 
 def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequence[float]) -> Refit:
@@ -203,8 +208,7 @@ def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
     where the samples determine it (see DETERMINED) and, counted by `power`, the log likelihood gains more than half the
     logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978).
     """
-    count = whole.jacobian.shape[0]
-    price = 0.5 * math.log(max(power * count, math.e))
+    price = _price(whole, power)
     knobs = list(whole.knobs)
     scale = np.array([k.scale for k in knobs])
     values = whole.values / scale
@@ -223,6 +227,11 @@ def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
         left = [i for i in range(len(knobs)) if i != least]
         information, values = information[np.ix_(left, left)], values[left]
         del knobs[least]
+
+
+def _price(fitted: Refit, power: float) -> float:
+    """Return what one more parameter has to gain in log likelihood."""
+    return 0.5 * math.log(max(power * fitted.jacobian.shape[0], math.e))
 
 
 def _need(knob: Knob, value: float, variance: float, power: float, price: float) -> float:
