@@ -92,29 +92,48 @@ def _adds_nothing(settled: Settled, best: Settled) -> bool:
 LOOPS = ("rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "force_lag")
 """What makes a loop; at one constant rate on one surface any one of them can be the cause."""
 
-SAME_RATE = 0.06
+SAME_RATE = 0.1
 """Rates within this part of their median count as one."""
 
-AT_CORNERS = 0.12
+AT_CORNERS = 0.15
 """Part of the samples that may stand at the corners of a triangle, where the rate is on its way."""
+
+NOTICED = 0.03
+"""Rates are taken over this part of the largest deflection, that the noise of the reading does not make them many."""
 
 
 def one_constant_rate(scene: Scene) -> bool:
-    """Return whether all recordings run at one rate up and down on one surface."""
+    """Return whether all recordings run at one rate up and at one rate down, on one surface.
+
+    Two rates will not do where one of them is always up: the law takes up what loading and unloading have in common.
+    """
     if len(scene.radii) > 1:
         return False
     # Steps of the smoothed deflection: its derivative rings around corners.
-    rates = np.abs(np.concatenate([np.diff(r.motion.deflection) / np.diff(r.time) for r in scene.records]))
+    rates = np.concatenate([_rates(r.time, r.motion.deflection, scene.deepest) for r in scene.records])
+    return all(_is_one(rates[way * rates > 0.0]) for way in (1.0, -1.0))
+
+
+def _rates(time: FloatArray, deflection: FloatArray, deepest: float) -> FloatArray:
+    """Return the rates [m/s] over as many samples as it takes to move a noticed part of the largest deflection [m]."""
+    travel = float(np.median(np.abs(np.diff(deflection))))
+    apart = min(max(int(np.ceil(NOTICED * deepest / max(travel, 1e-12))), 1), max(time.size // 20, 1))
+    return np.asarray((deflection[apart:] - deflection[:-apart]) / (time[apart:] - time[:-apart]))
+
+
+def _is_one(rates: FloatArray) -> bool:
+    if rates.size == 0:
+        return True
     middle = float(np.median(rates))
-    return middle > 0.0 and float(np.mean(np.abs(rates / middle - 1.0) > SAME_RATE)) < AT_CORNERS
+    return float(np.mean(np.abs(rates / middle - 1.0) > SAME_RATE)) < AT_CORNERS
 
 
 def one_rate_rivals(names: tuple[str, ...], scene: Scene) -> list[tuple[str, ...]]:
-    """Return the sets in which another loop takes the place of the only one, where one rate cannot tell."""
-    loops = [n for n in names if n in LOOPS]
-    if len(loops) != 1 or not one_constant_rate(scene):
+    """Return the sets in which one loop takes the place of all there are, where one rate cannot tell."""
+    loops = {n for n in names if n in LOOPS}
+    if not loops or not one_constant_rate(scene):
         return []
-    return [tuple(sorted({*names, other} - set(loops))) for other in LOOPS if other != loops[0]]
+    return [tuple(sorted({*names, other} - (loops - {other}))) for other in LOOPS if {other} != loops]
 
 
 def poverty(scene: Scene) -> list[str]:
