@@ -1,8 +1,9 @@
 """The noise of a recording, from the data alone: its size, colour and spikes, and what the deflection's noise adds.
 
 The residual that is left by a model with every freedom at once (all effects and smooth functions of all coordinates) is
-taken for noise: an autoregression (order by BIC) whose innovations may have outliers. The reading of the deflection
-carries noise too; through the stiffness k of the tire its part of the force's variance is (k s_x)^2.
+taken for noise: slow relaxations beside white noise (`slow_noise`), what is quick in an autoregression (order by BIC),
+and innovations that may have outliers. The reading of the deflection carries noise too; through the stiffness k of the
+tire its part of the force's variance is (k s_x)^2.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
 from .explain.motion import BoolArray, FloatArray
+from .slow_noise import WHITE, SlowNoise, slow_noise
 
 ORDERS = (0, 1, 2, 4, 8, 16)
-"""Orders of autoregression tried; 16 holds a slow drift and a mains hum at once."""
+"""Orders of autoregression tried; 16 holds a mains hum."""
 
 SPIKE = 4.5
 """Innovations beyond this many standard deviations are spikes: one in 150 000 of a normal law."""
@@ -30,8 +32,9 @@ class Noise:
     """The noise of one recording.
 
     innovation: standard deviation [N] of what cannot be foretold from the samples before; level: of the noise itself,
-    [N]; filter: coefficients of the whitening filter, the first is 1; spread: standard deviation of each sample over
-    that of the median sample; weight: 1, or 0 where a spike or the filter's start stands
+    [N]; slow: what of it is foretold over long times, whitened first; filter: coefficients of the whitening filter for
+    the rest, the first is 1; spread: standard deviation of each sample over that of the median sample; weight: 1, or 0
+    where a spike or the filter's start stands
     """
 
     innovation: float
@@ -39,6 +42,7 @@ class Noise:
     filter: FloatArray
     spread: FloatArray
     weight: FloatArray
+    slow: SlowNoise = WHITE
 
     @property
     def spikes(self) -> int:
@@ -48,13 +52,14 @@ class Noise:
     @property
     def correlation_samples(self) -> float:
         """Variance of a long mean over that of white noise of the same level, in samples."""
-        gain = 1.0 / float(np.sum(self.filter)) ** 2
+        gain = 1.0 / (float(np.sum(self.filter)) * self.slow.gain) ** 2
         return max(1.0, gain * self.innovation**2 / max(self.level, 1e-300) ** 2)
 
     def whitened(self, values: FloatArray) -> FloatArray:
         """Return `values` (n,) or (n, k) [N] whitened and in units of the noise."""
         across = (slice(None),) + (None,) * (values.ndim - 1)
         scaled = values / (self.innovation * self.spread[across])
+        scaled = self.slow.whitened(scaled)
         if self.filter.size > 1:
             scaled = lfilter(self.filter, [1.0], scaled, axis=0)
         return np.asarray(scaled * self.weight[across])
@@ -69,12 +74,16 @@ def first_guess(residual: FloatArray) -> Noise:
 
 
 def noise_of(
-    residual: FloatArray, through_deflection: FloatArray, freedom: float, resolved: BoolArray
+    residual: FloatArray,
+    through_deflection: FloatArray,
+    freedom: float,
+    resolved: BoolArray,
+    taken: FloatArray | None = None,
 ) -> Noise:
     """Return the noise whose sample is `residual` [N], left by a model of `freedom` effective coefficients.
 
     through_deflection [N]: stiffness times the deflection's noise, sample by sample; resolved: False where the motion
-    turns within a sample
+    turns within a sample; taken: see `slow_noise`, None where the model is too small to take much of the noise
     """
     count = residual.size
     if np.mean(resolved) < 0.8:
@@ -84,8 +93,10 @@ def noise_of(
     spread = np.sqrt((floor + through_deflection**2) / (floor + float(np.median(through_deflection**2))))
     scaled = residual / spread
     robust = MEDIAN_TO_SIGMA * float(np.median(np.abs(scaled))) + 1e-12
-    filter_ = _autoregression(np.clip(scaled, -4.0 * robust, 4.0 * robust))
-    innovations = lfilter(filter_, [1.0], scaled)
+    clipped = np.clip(scaled, -4.0 * robust, 4.0 * robust)
+    slow = slow_noise(clipped, taken)
+    filter_ = _autoregression(slow.whitened(clipped))
+    innovations = lfilter(filter_, [1.0], slow.whitened(scaled))
     sigma = MEDIAN_TO_SIGMA * float(np.median(np.abs(innovations)))
     # Two samples in a row at most: what lasts longer is no spike but something left out.
     out = np.abs(innovations) > SPIKE * sigma
@@ -103,7 +114,10 @@ def noise_of(
     kept = weight > 0.0
     innovation = np.sqrt(corrected * float(np.mean(innovations[kept] ** 2)))
     level = np.sqrt(corrected * float(np.mean(residual[kept] ** 2)))
-    return Noise(float(innovation), float(level), filter_, spread, weight)
+    if taken is not None:
+        # What the model has taken of the slow noise is still noise.
+        level = max(level, slow.level * float(np.sqrt(np.mean(spread[kept] ** 2))))
+    return Noise(float(innovation), float(level), filter_, spread, weight, slow)
 
 
 def _autoregression(values: FloatArray) -> FloatArray:

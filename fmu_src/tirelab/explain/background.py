@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from scipy.fft import dct
 
 from ..noise import Noise, first_guess, noise_of
+from ..slow_noise import WHITE
 from .beyond import worth_trying
 from .columns import Built, Layout, build, layout_of
-from .evidence import explain, products_of
+from .evidence import Products, explain, products_of
 from .families import Family
 from .motion import FloatArray, IndexArray
 from .outstanding import outstanding
@@ -20,7 +23,7 @@ SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""
 
 MANY = 24
-SAMPLES_PER_COLUMN = 20
+SAMPLES_PER_COLUMN = 10
 """Short recordings leave room for the smooth functions that fit in with this many samples to a column."""
 
 ROUNDS = 2
@@ -56,35 +59,54 @@ def _noises(
     noises = [first_guess(b.residual) for b in built]
     total = sum(b.residual.size for b in built)
     for _ in range(rounds):
+        # Slow noise is not foretold here: what a course of time or motion can follow is first given to that.
+        noises = [replace(n, slow=WHITE) for n in noises]
         data = [n.whitened(b.residual) for n, b in zip(noises, built, strict=True)]
         white = [n.whitened(c) for n, c in zip(noises, columns, strict=True)]
-        explained = explain(products_of(np.concatenate(white), np.concatenate(data)), groups, 1.0)
+        p = products_of(np.concatenate(white), np.concatenate(data))
+        explained = explain(p, groups, 1.0)
         following, rest = [], []
-        for b, own, record in zip(built, columns, scene.records, strict=True):
+        for b, own, seen, record in zip(built, columns, white, scene.records, strict=True):
             left = b.residual.copy()
             for group, values in zip(groups, explained.coefficients, strict=True):
                 left -= own[:, group] @ values
             freedom = explained.freedom * left.size / total
             through = b.place.stiffness * record.thin.motion.blur
             rest.append(left)
-            following.append(noise_of(left, through, freedom, record.thin.motion.resolved))
+            taken = _taken(seen, p, groups, explained.covariance)
+            following.append(noise_of(left, through, freedom, record.thin.motion.resolved, taken))
         noises = following
     return tuple(noises), rest
+
+
+def _taken(
+    white: FloatArray, p: Products, groups: Sequence[IndexArray], covariance: FloatArray
+) -> FloatArray:
+    """Return the part of the noise's power in each cosine coefficient that the fitted columns have taken."""
+    index = np.concatenate(groups)
+    waves = dct(white[:, index] / p.scale[index], axis=0, norm="ortho")
+    return np.asarray(np.einsum("ij,ij->i", waves @ covariance, waves))
 
 
 def _thinned(
     built: Sequence[Built], families: Sequence[Family], layout: Layout
 ) -> tuple[list[FloatArray], list[IndexArray]]:
+    columns = {
+        f.name: layout.whole(f.name)[
+            :: SPARSE if len(layout.variants[f.name]) >= MANY or f.name == "jump" else 1
+        ]
+        for f in families
+    }
+    left = sum(b.residual.size for b in built) // SAMPLES_PER_COLUMN
+    # Courses of time first: without them a short recording's drift would be taken for its noise.
+    for f in sorted(families, key=lambda f: not f.slow):
+        if f.agnostic and columns[f.name].size > left:
+            columns[f.name] = columns[f.name][:0]
+        elif f.agnostic:
+            left -= columns[f.name].size
     groups, chosen, at = [], [], 0
-    most, smooth = sum(b.residual.size for b in built) // SAMPLES_PER_COLUMN, 0
     for f in families:
-        own = layout.whole(f.name)
-        if len(layout.variants[f.name]) >= MANY or f.name == "jump":
-            own = own[::SPARSE]
-        if f.agnostic:
-            smooth += own.size
-            if smooth > most:
-                own = own[:0]
+        own = columns[f.name]
         chosen.append(own)
         if own.size:
             groups.append(np.arange(at, at + own.size))

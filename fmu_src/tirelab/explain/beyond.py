@@ -174,18 +174,18 @@ SURFACE = Family("surface", law_columns((0, 1, 2, 3)), agnostic=True)
 """A function of deflection and surface, for a catalogue in which the law may not be another tire's."""
 
 AGNOSTIC_FAMILIES: tuple[Family, ...] = (
-    Family("period, added", _periodic, agnostic=True, after_lag=True),
-    Family("period", _periodic_scale, agnostic=True),
+    Family("period, added", _periodic, agnostic=True, after_lag=True, slow=True, standing=True),
+    Family("period", _periodic_scale, agnostic=True, slow=True, standing=True),
     Family("deflection", _fine_deflection, agnostic=True),
     Family("direction", _branch, agnostic=True),
     Family("rate", _rate, agnostic=True),
     Family("rate and deflection", _rate_and_deflection, agnostic=True),
     Family("acceleration", _acceleration, agnostic=True),
-    Family("time", _time_scale, agnostic=True),
-    Family("time, added", _time_added, agnostic=True, after_lag=True),
-    Family("jump", _jump, one_each, agnostic=True),
+    Family("time", _time_scale, agnostic=True, slow=True),
+    Family("time, added", _time_added, agnostic=True, after_lag=True, slow=True),
+    Family("jump", _jump, one_each, agnostic=True, slow=True),
     Family("history", _history, agnostic=True),
     Family("resonance", _resonance, pairs, agnostic=True, remembers=True),
     Family("way", _periodic_way, agnostic=True),
-    Family("span", _span, agnostic=True, after_lag=True),
+    Family("span", _span, agnostic=True, after_lag=True, standing=True),
 )

@@ -208,7 +208,18 @@ def measure(
                 held += b.columns[f.name] @ values
         columns.append(noise.whitened(np.concatenate([b.columns[f.name] for f in families], axis=1)))
         data.append(noise.whitened(held))
-    return products_of(np.concatenate(columns), np.concatenate(data))
+    plain = {
+        f.name: sum(
+            (
+                b.columns[f.name].T @ b.columns[f.name] / n.level**2
+                for b, n in zip(built, noises, strict=True)
+            ),
+            np.zeros(()),
+        )
+        for f in families
+        if f.slow
+    }
+    return replace(products_of(np.concatenate(columns), np.concatenate(data)), plain=plain)
 
 
 def nothing(built: Sequence[Built], noises: Sequence[Noise]) -> Products:

@@ -12,7 +12,7 @@ the last percent, so that more samples than its own form's error is worth do not
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -35,6 +35,7 @@ class Products:
     """What every comparison needs: products of the whitened columns and the data, in units of the noise.
 
     gram (k, k); moment (k,); power: y'y; samples: number of whitened samples; scale (k,): RMS of each column
+    plain: for some families X'X of their columns as given, not whitened, over the square of the noise's level
     """
 
     gram: FloatArray
@@ -42,6 +43,7 @@ class Products:
     power: float
     samples: int
     scale: FloatArray
+    plain: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 def products_of(columns: FloatArray, data: FloatArray) -> Products:
@@ -67,6 +69,7 @@ class Explained:
     size: tuple[float, ...]
     unique: tuple[float, ...]
     freedom: float
+    covariance: FloatArray = field(default_factory=lambda: np.zeros((0, 0)), repr=False, compare=False)
     together: Callable[[Sequence[int]], float] = field(default=lambda numbers: 0.0, repr=False, compare=False)
 
 
@@ -120,5 +123,6 @@ def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained
         tuple(size),
         tuple(unique),
         float(np.sum(known)),
+        covariance,
         together,
     )

@@ -31,6 +31,7 @@ class Family:
     sign: +1 or -1 where the projection on the first variant's leading column must be so, 0 where both are allowed
     agnostic: True for a smooth function of coordinates that is no physics of the catalogue
     remembers: True where the columns need every sample before
+    slow: True where it looks like slow noise; standing: True where it is tried for what stands out of a recording alone
     after_lag: True where the columns are added behind the lag of the force's reading
     """
 
@@ -41,6 +42,8 @@ class Family:
     agnostic: bool = False
     after_lag: bool = False
     remembers: bool = False
+    slow: bool = False
+    standing: bool = False
 
 
 def scale_of(p: Place, what: str) -> float:
@@ -233,13 +236,14 @@ def _soft_knees(count: int) -> list[list[int]]:
     return variants
 
 
-CEILINGS = np.linspace(0.30, 0.99, 40)
+CEILINGS = np.linspace(0.30, 1.26, 56)
 CEILING_SOFTNESSES = (0.0, 0.02, 0.06)
-"""Ceilings of the force's reading, and how softly they are met, as parts of the largest force."""
+"""Ceilings of the force's reading, and how softly they are met, as parts of the largest reading: none lies above it by
+more than the zero of the reading is off."""
 
 
 def _saturation(p: Place) -> FloatArray:
-    force = p.elastic / p.scene.strongest
+    force = p.elastic / p.scene.highest
     beyond = []
     for softness in CEILING_SOFTNESSES:
         for ceiling in CEILINGS:

@@ -18,6 +18,9 @@ DEEP_IN_CM = 1e-2
 ROWS = 8000
 """Samples compared in the search, evenly taken after whitening; the coarsened evidence is worth fewer."""
 
+HIGHEST = 0.999
+"""Part of the readings below the largest one but for noise and spikes."""
+
 MOST_FREE_SURFACES = 12
 """Recordings with more radii than this (terrain) share these many support points of the law's shape."""
 
@@ -160,6 +163,7 @@ class Scene:
     radii: tuple[float, ...]
     deepest: float
     strongest: float
+    highest: float
     longest: float
     finest: float
 
@@ -192,6 +196,7 @@ def scene_of(
         radii,
         max(float(r.motion.deflection.max()) for r in records),
         max(float(r.elastic(r.motion.deflection).max()) for r in records),
+        max(float(np.quantile(r.force, HIGHEST)) for r in records),
         max(float(r.time[-1]) for r in records),
         min(r.step for r in records),
     )
