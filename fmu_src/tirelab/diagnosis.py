@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from radialtire import TireModel
@@ -24,7 +24,7 @@ from .learn import learned
 from .locate import beyond_law, locate
 from .naming import BEYOND, confidence_of, named
 from .noise import Noise
-from .refit import Case, Refit, refit
+from .refit import Case, Refit, refit, smooth_of
 from .rivals import one_constant_rate, one_rate_rivals, rivals_of
 from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
@@ -48,15 +48,6 @@ LESS = 2
 FORM_ERROR = 0.007
 LEAST_ERROR = 0.05
 """Errors of form that every family may have: part of its effect's size, and of the noise (see `coarsening`)."""
-
-
-@dataclass(frozen=True)
-class Smooth:
-    """A recording's motion without the noise of its reading: time [s], deflection [m], surface radius [m]."""
-
-    time: FloatArray
-    deflection: FloatArray
-    surface_radius: FloatArray
 
 
 class PoorRecording(TirelabError):
@@ -111,7 +102,7 @@ def diagnose(
     cases = [
         Case(
             recording,
-            Smooth(recording.time, record.motion.deflection, recording.surface_radius),
+            smooth_of(recording, record.motion),
             recording.force,
             noise,
             record.rows,
@@ -129,7 +120,7 @@ def diagnose(
     beyond = tuple(n for n in best.names if n in BEYOND)
     tell("judging the correction on what it was not fitted to")
     kept = (
-        given(held_out, scene, before, fitted, tire)
+        given(held_out, recordings, scene, before, fitted, tire)
         if held_out
         else split(recordings, scene, before, cleared, fitted, believed)
     )
@@ -304,7 +295,7 @@ def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
 def _figures(before: Sequence[FloatArray], fitted: Refit, noises: Sequence[Noise], kept: HeldOut) -> Fit:
     sizes = np.array([b.size for b in before], dtype=float)
     level = float(np.sqrt(np.sum(sizes * np.array([n.level for n in noises]) ** 2) / sizes.sum()))
-    return Fit(level, rmse(before), rmse(fitted.residuals), kept.before, kept.after, kept.by)
+    return Fit(level, rmse(before), rmse(fitted.residuals), kept.before, kept.after, kept.by, kept.cleared)
 
 
 def _separating(

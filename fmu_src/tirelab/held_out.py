@@ -16,7 +16,7 @@ from radialtire import TireModel
 
 from .explain.motion import BoolArray, FloatArray
 from .explain.scene import Record, Scene, scene_of
-from .refit import Case, Refit, again
+from .refit import Case, Refit, again, smooth_of
 from .simulate import Sampled, simulate
 
 FITTED = 0.7
@@ -39,11 +39,15 @@ class Recorded(Sampled, Protocol):
 
 @dataclass(frozen=True)
 class Part:
-    """The samples `chosen` of one recording, and what the believed and the corrected tire leave of all of it [N]."""
+    """The samples `chosen` of one recording, and what the believed and the corrected tire leave of all of it [N].
+
+    cleared [N]: what the corrected tire leaves where it is told the motion without the noise of its reading
+    """
 
     record: Record
     before: FloatArray
     after: FloatArray
+    cleared: FloatArray
     chosen: BoolArray
 
 
@@ -65,28 +69,44 @@ class HeldOut:
         """RMSE [N] of the corrected tire on what was not fitted."""
         return rmse([p.after[p.chosen] for p in self.unseen])
 
+    @property
+    def cleared(self) -> float:
+        """The same where the tire is told the motion without the noise of its reading, as a simulation tells it."""
+        return rmse([p.cleared[p.chosen] for p in self.unseen])
+
 
 def rmse(parts: Sequence[FloatArray]) -> float:
     """Return the root mean square of all `parts` together."""
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 
+def _cleared(tire: TireModel, record: Record, recording: Recorded) -> FloatArray:
+    smooth = smooth_of(recording, record.motion)
+    return recording.force - simulate(tire, smooth, smooth)
+
+
 def given(
-    held_out: Sequence[Recorded], scene: Scene, before: Sequence[FloatArray], fitted: Refit, tire: TireModel
+    held_out: Sequence[Recorded],
+    recordings: Sequence[Recorded],
+    scene: Scene,
+    before: Sequence[FloatArray],
+    fitted: Refit,
+    tire: TireModel,
 ) -> HeldOut:
     """Return the errors on recordings that were kept from the fit; before [N]: residuals of the fitted ones."""
     others = scene_of([(r.time, r.deflection, r.surface_radius, r.force) for r in held_out], tire)
     return HeldOut(
         "recordings given",
         tuple(
-            Part(record, b, a, np.ones(b.size, dtype=bool))
-            for record, b, a in zip(scene.records, before, fitted.residuals, strict=True)
+            Part(record, b, a, _cleared(fitted.tire, record, r), np.ones(b.size, dtype=bool))
+            for record, r, b, a in zip(scene.records, recordings, before, fitted.residuals, strict=True)
         ),
         tuple(
             Part(
                 record,
                 r.force - simulate(tire, r),
                 r.force - simulate(fitted.tire, r),
+                _cleared(fitted.tire, record, r),
                 np.ones(r.time.size, bool),
             )
             for record, r in zip(others.records, held_out, strict=True)
@@ -112,11 +132,14 @@ def split(
         for c, k in zip(cases, kept, strict=True)
     ]
     refitted = again(believed, fitted, without, scene.radii)
-    parts = list(zip(scene.records, before, refitted.residuals, kept, strict=True))
+    cleared = [
+        _cleared(refitted.tire, record, r) for record, r in zip(scene.records, recordings, strict=True)
+    ]
+    parts = list(zip(scene.records, before, refitted.residuals, cleared, kept, strict=True))
     return HeldOut(
         by,
-        tuple(Part(r, b, a, k) for r, b, a, k in parts if k.any()),
-        tuple(Part(r, b, a, ~k) for r, b, a, k in parts if not k.all()),
+        tuple(Part(r, b, a, c, k) for r, b, a, c, k in parts if k.any()),
+        tuple(Part(r, b, a, c, ~k) for r, b, a, c, k in parts if not k.all()),
     )
 
 

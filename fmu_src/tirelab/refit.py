@@ -15,7 +15,7 @@ from radialtire import CATALOGUE, Effect, Parameter, Recalibrated, State, TireMo
 from radialtire.effect import PLACES
 from scipy.optimize import least_squares
 
-from .explain.motion import FloatArray, IndexArray
+from .explain.motion import FloatArray, IndexArray, Motion
 from .noise import Noise
 from .simulate import Sampled, simulate
 from .starts import matched, with_effect
@@ -31,23 +31,41 @@ DETERMINED = 0.25
 """An extra freedom is determined where its standard deviation is below this part of its prior's, that of a value
 anywhere within its bounds."""
 
-SHARP = 1e-5
-"""Tracking time [s] for deflections without noise: rate and acceleration are those of the last readings."""
-
 OF_RATE = ("rate_exponent", "thinning")
 """Parameters that say how a force changes with the rate: at one rate they are not determined, whatever the short
 reversals would have them be."""
 
 
 @dataclass(frozen=True)
+class Smooth:
+    """A recording's motion without the noise of its reading: time [s], deflection [m], surface radius [m].
+
+    rate [m/s], acceleration [m/s^2]: seen from both sides of each moment
+    """
+
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+def smooth_of(recording: Sampled, motion: Motion) -> Smooth:
+    """Return a recording with its smoothed motion in the place of what was read."""
+    return Smooth(
+        recording.time, motion.deflection, recording.surface_radius, motion.rate, motion.acceleration
+    )
+
+
+@dataclass(frozen=True)
 class Case:
     """One recording with its noise, the samples that are compared, and what of their force is not to be followed.
 
-    smooth: the recording with the noise of its deflection taken out, to which parameters are fitted
+    smooth: the recording with the noise of its deflection taken out, to which parameters are fitted, and its motion
     """
 
     recording: Sampled
-    smooth: Sampled
+    smooth: Smooth
     force: FloatArray
     noise: Noise
     rows: IndexArray
@@ -281,8 +299,9 @@ def _fit(
         nonlocal evaluations
         evaluations += 1
         tire = assemble(believed, knobs, scaled * scale, radii)
-        exact = replace(tire, tracking_time=SHARP)
-        parts = [c.noise.whitened((c.force - simulate(exact, c.smooth))[c.rows] - c.beyond) for c in cases]
+        parts = [
+            c.noise.whitened((c.force - simulate(tire, c.smooth, c.smooth))[c.rows] - c.beyond) for c in cases
+        ]
         return np.concatenate(parts)
 
     centre = np.clip(start / scale, low, high)

@@ -44,6 +44,20 @@ class Sampled(Protocol):
         ...
 
 
+class Moved(Protocol):
+    """What is known of a motion beside its deflection, sample by sample."""
+
+    @property
+    def rate(self) -> FloatArray:
+        """[m/s]."""
+        ...
+
+    @property
+    def acceleration(self) -> FloatArray:
+        """[m/s^2]."""
+        ...
+
+
 @dataclass(frozen=True)
 class History:
     """What the effects may know of every moment (see `radialtire.effect.Instant`); arrays of one length.
@@ -62,23 +76,31 @@ class History:
     curvature: FloatArray
 
 
-def simulate(tire: TireModel, recording: Sampled) -> FloatArray:
-    """Return the radial force [N] of `tire` at every sample: that of `TireModel.step` from rest, to 1e-12."""
-    history, force = elastic_stage(tire, recording)
+def simulate(tire: TireModel, recording: Sampled, moved: Moved | None = None) -> FloatArray:
+    """Return the radial force [N] of `tire` at every sample: that of `TireModel.step` from rest, to 1e-12.
+
+    moved: rate and acceleration where they are known better than the tire can follow them (see `tracking`)
+    """
+    history, force = elastic_stage(tire, recording, moved)
     force = downstream(tire, history, force, ("parallel",))
     return downstream(tire, history, np.maximum(force, 0.0), ("inertia", "reading"))
 
 
-def elastic_stage(tire: TireModel, recording: Sampled) -> tuple[History, FloatArray]:
+def elastic_stage(
+    tire: TireModel, recording: Sampled, moved: Moved | None = None
+) -> tuple[History, FloatArray]:
     """Return what the effects after the elastic law may know, and the elastic force [N] with its factor."""
     x = recording.deflection
-    history = history_of(tire, recording.time, x, recording.surface_radius)
+    history = history_of(tire, recording.time, x, recording.surface_radius, moved)
     for place in UPSTREAM:
         history = replace(history, deflection=x)
         x = downstream(tire, history, x, (place,))
     rate = history.rate
     if any(effect.place in UPSTREAM for effect, _ in tire.effects) and differentiates(tire):
-        rate, _ = track(history.time, x, tire.tracking_time)
+        if moved is None:
+            rate, _ = track(history.time, x, tire.tracking_time)
+        else:
+            rate = rate + np.gradient(x - recording.deflection, history.time)
     bare = elastic_force(x, history.coefficient, history.exponent)
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
@@ -95,11 +117,17 @@ def downstream(tire: TireModel, history: History, signal: FloatArray, places: tu
 
 
 def history_of(
-    tire: TireModel, time: FloatArray, deflection: FloatArray, surface_radius: FloatArray
+    tire: TireModel,
+    time: FloatArray,
+    deflection: FloatArray,
+    surface_radius: FloatArray,
+    moved: Moved | None = None,
 ) -> History:
     """Return what the first effects may know: time [s], deflection [m], surface's radius [m] of every sample."""
     rate = acceleration = np.zeros_like(deflection)
-    if differentiates(tire):
+    if moved is not None:
+        rate, acceleration = moved.rate, moved.acceleration
+    elif differentiates(tire):
         rate, acceleration = track(time, deflection, tire.tracking_time)
     A, B = coefficients(tire.law, surface_radius)
     flat = np.abs(surface_radius) >= FLAT_RADIUS

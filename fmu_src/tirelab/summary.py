@@ -41,6 +41,10 @@ def summarise(
     return " ".join(said)
 
 
+PASSED_ON = 1.1
+"""The noise of the deflection's reading is spoken of where it raises the error by more than this factor."""
+
+
 def _errors(corrected: bool, unexplained: bool, fit: Fit) -> list[str]:
     """Return what the correction did to the error; nothing is said to fall that nothing was fitted to."""
     noise = f"the noise is {newtons(fit.noise)}"
@@ -52,7 +56,14 @@ def _errors(corrected: bool, unexplained: bool, fit: Fit) -> list[str]:
         return [told]
     better = "falls" if fit.held_out_after < fit.held_out_before else "does not fall, it goes"
     unseen = f"{better} from {newtons(fit.held_out_before)} to {newtons(fit.held_out_after)}"
-    return [told, f"On what the fit has not seen it {unseen}."]
+    found = [told, f"On what the fit has not seen it {unseen}."]
+    if fit.held_out_after > PASSED_ON * fit.held_out_cleared:
+        cleared = newtons(fit.held_out_cleared)
+        found.append(
+            f"Told the motion without the noise of its reading, as a simulation tells it, {cleared}: the rest is that "
+            "noise, passed on by a rate or an acceleration."
+        )
+    return found
 
 
 def _learned(corrections: Sequence[Correction]) -> str:

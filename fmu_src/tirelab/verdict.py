@@ -86,7 +86,10 @@ class Correction:
 
 @dataclass(frozen=True)
 class Fit:
-    """Noise and root mean square errors [N]; held_out_by: what was held out (see `held_out.HeldOut`)."""
+    """Noise and root mean square errors [N]; held_out_by: what was held out (see `held_out.HeldOut`).
+
+    held_out_cleared: held_out_after where the tire is told the motion without the noise of its reading
+    """
 
     noise: float
     before: float
@@ -94,6 +97,7 @@ class Fit:
     held_out_before: float
     held_out_after: float
     held_out_by: str
+    held_out_cleared: float = float("nan")
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,16 @@ def test_an_effect_is_told_with_the_improvement_on_what_was_not_fitted():
     assert "has not seen it falls from 26.5 N to 6.20 N" in told
 
 
+def test_the_noise_of_the_reading_is_told_apart_from_what_the_tire_misses():
+    fit = Fit(6.0, 26.4, 9.1, 26.5, 9.2, "recordings given", 6.2)
+    assert "without the noise of its reading, as a simulation tells it, 6.20 N" in summarise(
+        (FRICTION,), (), (), 0.85, fit
+    )
+    assert "without the noise" not in summarise(
+        (FRICTION,), (), (), 0.85, Fit(6.0, 26.4, 6.1, 26.5, 6.2, "by", 6.1)
+    )
+
+
 def test_a_correction_that_does_worse_on_what_it_has_not_seen_is_not_said_to_fall():
     told = summarise((FRICTION,), (), (), 0.85, Fit(6.0, 26.4, 6.1, 26.5, 31.0, "recordings given"))
     assert "it does not fall, it goes from 26.5 N to 31.0 N" in told

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from radialtire import TireModel
 
+from ..explain.motion import motion_of
 from ..recording import Recording
+from ..refit import smooth_of
 from ..replay import replay
 from ..simulate import simulate
 
@@ -23,6 +25,7 @@ class HeldOut:
     """Root mean square errors [N] over all held-out recordings of a trial, pooled by samples.
 
     before: the believed tire; after: the corrected one; floor: what the true tire with all that was hidden misses
+    cleared: the corrected tire told the motion without the noise of its reading, as a simulation tells it
     fmu_difference [N]: largest difference between the corrected FMU and the corrected tire on the first samples of
     every recording, None where there is no FMU
     """
@@ -31,6 +34,7 @@ class HeldOut:
     after: float
     floor: float
     fmu_difference: float | None
+    cleared: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -54,9 +58,16 @@ def held_out(
     squares = np.array(
         [[np.mean((r.force - simulate(tire, r)) ** 2) for r in recordings] for tire in (believed, corrected)]
     )
+    cleared = [_cleared(corrected, r) for r in recordings]
     floors = np.array([float(truths[f"{r.name}.csv"]["floor_rmse"]) for r in recordings])
-    before, after, floor = np.sqrt(np.stack([*squares, floors**2]) @ sizes / np.sum(sizes)).tolist()
-    return HeldOut(before, after, floor, _fmu_difference(fmu, corrected, recordings))
+    pooled = np.sqrt(np.stack([*squares, cleared, floors**2]) @ sizes / np.sum(sizes))
+    before, after, clear, floor = pooled.tolist()
+    return HeldOut(before, after, floor, _fmu_difference(fmu, corrected, recordings), clear)
+
+
+def _cleared(tire: TireModel, recording: Recording) -> float:
+    smooth = smooth_of(recording, motion_of(recording.time, recording.deflection))
+    return float(np.mean((recording.force - simulate(tire, smooth, smooth)) ** 2))
 
 
 def _fmu_difference(fmu: Path | None, corrected: TireModel, recordings: Sequence[Recording]) -> float | None:

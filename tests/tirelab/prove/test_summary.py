@@ -128,9 +128,15 @@ def test_places_and_separations_are_counted(score: Make) -> None:
     assert summary.separations(scores)["told right, truth among the rivals"] == Rate(2, 2)
 
 
+def test_the_noise_of_the_reading_is_told_apart_from_the_error_of_the_model(score: Make) -> None:
+    found = [score("single", "lag", "lag", held_out=HeldOut(9.0, 2.5, 1.0, None, cleared=1.05))]
+    assert summary.near_floor(found, 0.1).hits == 0
+    assert summary.near_floor(found, 0.1, cleared=True).hits == 1
+
+
 def test_the_bar_is_met_or_not_or_not_measured(score: Make) -> None:
-    floor = HeldOut(2.0, 1.0, 1.0, None)
+    floor = HeldOut(2.0, 1.0, 1.0, None, cleared=1.0)
     lines = against_the_bar([score("single", "lag", "lag", confidence=1.0, held_out=floor)] * 9)
-    assert [line.passes for line in lines] == [True, True, None, None, True, True]
+    assert [line.passes for line in lines] == [True, True, None, None, True, True, True]
     lines = against_the_bar([score("single", "lag", "gas", confidence=1.0)] * 9)
-    assert [line.passes for line in lines] == [False, False, None, None, False, False]
+    assert [line.passes for line in lines] == [False, False, None, None, False, False, False]
