@@ -22,10 +22,10 @@ from .explain.search import Settled, search
 from .held_out import HeldOut, Recorded, given, rmse, split
 from .learn import learned
 from .locate import beyond_law, locate
-from .naming import BEYOND, confidence_of, named
+from .naming import BEYOND, named
 from .noise import Noise
 from .refit import Case, Refit, refit, smooth_of
-from .rivals import one_constant_rate, one_rate_rivals, rivals_of
+from .rivals import confidence_of, one_constant_rate, rivals_of
 from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
 from .summary import summarise
@@ -41,6 +41,9 @@ FEWEST_SAMPLES = 100
 
 FEWEST_STEPS = 8
 """Fewest distinct deflections: a cycle seen in fewer has no shape."""
+
+TRIED = 3
+"""Rivals, likeliest first, that a test is looked for to tell apart: each costs a fit."""
 
 LESS = 2
 """Times that a diagnosis is repeated with more of the misfit taken for noise."""
@@ -128,7 +131,7 @@ def diagnose(
     fit = _figures(before, fitted, noises, kept)
     effects = _effects(best, fitted)
     rivals = tuple(r for r in rivals_of(found.settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
-    confidence = confidence_of(found.settled) / (1.0 + len(one_rate_rivals(named(best), scene)))
+    confidence = confidence_of(rivals)
     apart = beyond_law(recordings, before, believed, fitted.tire)
     places = locate(recordings, scene, apart, noises, None if beyond else fitted.residuals)
     test = None
@@ -312,7 +315,7 @@ def _separating(
 ) -> SeparatingTest | None:
     """Return the test that tells the first rival that one tells; else the one that comes nearest to it."""
     nearest: SeparatingTest | None = None
-    for rival in rivals:
+    for rival in rivals[:TRIED]:
         if UNKNOWN in rival.names:
             continue
         other = next((s for s in settled if named(s) == rival.names), None)

@@ -1,24 +1,12 @@
-"""What a settled set is called in a verdict, and how sure that is."""
+"""What a settled set is called in a verdict."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-
-import numpy as np
 
 from .explain.beyond import AGNOSTIC_FAMILIES, SURFACE
 from .explain.search import Settled
 from .titles import UNKNOWN
 
 BEYOND = frozenset(f.name for f in (*AGNOSTIC_FAMILIES, SURFACE))
-
-FORM_DOUBT = 0.5
-"""Power to which odds between sets are taken: the forms of two sets err independently, each as allowed for."""
-
-SUREST = 0.9
-"""No verdict is surer than this: of 89 verdicts that nothing rivalled, on 140 trials of the independent rig, 81 were
-right (its seeds 6400 to 6539)."""
-
 
 CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (
@@ -68,11 +56,3 @@ def named(settled: Settled) -> tuple[str, ...]:
         if n not in doubtful and n != "shape" and own >= SHADOW * unknown
     ]
     return (*known, UNKNOWN)
-
-
-def confidence_of(settled: Sequence[Settled]) -> float:
-    """Return the probability of the first set's names among all sets that were settled."""
-    logs = np.array([s.log_evidence for s in settled])
-    weights = np.exp(FORM_DOUBT * (np.where(np.isfinite(logs), logs, -np.inf) - logs[0]))
-    same = np.array([named(s) == named(settled[0]) for s in settled])
-    return SUREST * float(np.sum(weights[same]) / np.sum(weights))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .explain.judge import MATERIAL
 from .explain.motion import FloatArray
 from .explain.scene import Scene
 from .explain.search import Settled
@@ -18,7 +17,21 @@ DECIDABLE = 6.0
 """Sets within this log evidence of the best one are rivals: odds of 400 to 1, by evidence that is itself uncertain by
 the form of the effects."""
 
-MOST_RIVALS = 4
+SPEAKS = 4.0
+"""The same for a set with one effect more: without any sample that speaks for it an effect costs five."""
+
+DOUBTED = 1.5
+"""Least log odds against what is smaller than the others' own error of form: the evidence may be that error's."""
+
+MOST_RIVALS = 5
+"""So many are stated, likeliest first, beside those that one rate cannot tell at all."""
+
+FORM_DOUBT = 0.7
+"""Power to which odds between sets are taken: the forms of two sets err independently, each as allowed for."""
+
+SUREST = 0.96
+"""No verdict is surer than this: of 169 that no rival came within 4 of, on trials of the independent rig, 163 were
+right (its seeds 7000 to 7220)."""
 
 STATIC = frozenset(
     {"deflection_offset", "series_compliance", "gas_compression", "recalibration", "bottoming", "saturation"}
@@ -30,16 +43,18 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     best = settled[0]
     found: dict[tuple[str, ...], float] = {}
     for s in settled[1:]:
+        names, more = named(s), set(named(s)) > set(named(best))
         gap = best.log_evidence - s.log_evidence
-        if not np.isfinite(gap) or _adds_nothing(s, best):
-            continue
-        if gap < DECIDABLE and named(s) != named(best) and named(s) not in found:
-            found[named(s)] = gap
-    for names in one_rate_rivals(named(best), scene):
-        found.setdefault(names, DECIDABLE)
+        if not np.isfinite(gap) and more and UNKNOWN not in names:
+            # Too small to be believed, but it may be there.
+            gap = max(best.log_evidence - s.likely, DOUBTED)
+        if names != named(best) and gap < (SPEAKS if more else DECIDABLE):
+            found[names] = min(gap, found.get(names, np.inf))
     for names, gap in static_rivals(settled):
         found.setdefault(names, gap)
-    order = sorted(found.items(), key=lambda item: item[1])[:MOST_RIVALS]
+    same = [(names, 0.0) for names in one_rate_rivals(named(best), scene)]
+    others = [item for item in sorted(found.items(), key=lambda item: item[1]) if item[0] not in dict(same)]
+    order = [*same, *others[:MOST_RIVALS]]
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
 
 
@@ -73,20 +88,9 @@ def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], flo
     return found
 
 
-def _adds_nothing(settled: Settled, best: Settled) -> bool:
-    """Return whether a set is the best one with something beside it that is not material."""
-    more = set(named(settled)) - set(named(best))
-    if not more or not set(named(best)) < set(named(settled)):
-        return False
-    own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
-    law = (
-        settled.candidate.explained.together(
-            [i for i, n in enumerate(settled.names) if n in ("recalibration", "shape")]
-        )
-        if "recalibration" in settled.names
-        else 0.0
-    )
-    return all((law if n == "recalibration" else own.get(n, 1.0)) < MATERIAL for n in more)
+def confidence_of(rivals: Sequence[Rival]) -> float:
+    """Return the probability of a verdict beside its `rivals`, by their log odds."""
+    return SUREST / (1.0 + sum(float(np.exp(-FORM_DOUBT * r.log_odds)) for r in rivals))
 
 
 LOOPS = ("rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "force_lag")

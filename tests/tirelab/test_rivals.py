@@ -1,9 +1,21 @@
 """What is said, how sure, and what else it could be."""
 
+import numpy as np
+import pytest
 from drives import flat_force, read, ride, triangle
 from radialtire import TireModel
+from tirelab.diagnosis import diagnose
 from tirelab.explain.scene import scene_of
-from tirelab.rivals import one_constant_rate, one_rate_rivals, poverty, reason_of
+from tirelab.rivals import (
+    DECIDABLE,
+    SUREST,
+    confidence_of,
+    one_constant_rate,
+    one_rate_rivals,
+    poverty,
+    reason_of,
+)
+from tirelab.verdict import Rival
 
 
 def scene(time, deflection):
@@ -32,3 +44,20 @@ def test_what_a_triangle_lacks():
 def test_the_reason_for_rivals_of_the_deflection_alone():
     reason = reason_of(("series_compliance",), ("recalibration",), scene(*ride(1)[:2]))
     assert "deflection and surface alone" in reason
+
+
+def test_two_sets_that_are_as_likely_share_the_confidence():
+    assert confidence_of(()) == SUREST
+    assert confidence_of((Rival(("inertia",), 0.0, ""),)) == pytest.approx(SUREST / 2.0)
+    assert confidence_of((Rival(("inertia",), DECIDABLE, ""),)) > 0.98 * SUREST
+
+
+def test_what_is_too_small_to_be_believed_is_a_rival():
+    # Damping of a tenth of the noise changes the RMSE by sqrt(1 + 0.1^2), half a percent; over 6000 samples its log
+    # likelihood is 0.1^2 6000 / 2 = 30, so that it may be said to be there, and not that it matters.
+    time, deflection, rate = ride(4)
+    force = flat_force(deflection) + 0.1 * 5.0 / np.sqrt(np.mean(rate**2)) * rate
+    verdict = diagnose([read("ride", time, deflection, force, 4)])
+    assert verdict.names == ()
+    assert verdict.rivals[0].names == ("viscous_damping",)
+    assert verdict.confidence < 0.75

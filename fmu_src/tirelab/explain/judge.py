@@ -16,18 +16,25 @@ from .motion import FloatArray, IndexArray
 EFFECT_PRIOR = -4.0
 """Log prior odds of one more effect: one in fifty, the choice among fifteen and one in three that there is one more."""
 
+OFFSET_PRIOR = -3.0
+"""The same for a zero that is off: every rig has two of them, and none is ever exact."""
+
 LAW_PRIOR = -1.0
 """Log prior odds that the believed law is another tire's: the article's own is wrong by up to 13.5 %."""
 
-AGNOSTIC_PRIOR = -8.0
-"""Log prior odds that something beyond the catalogue acts in one given coordinate: one in three thousand."""
+AGNOSTIC_PRIOR = -9.0
+"""Log prior odds that something beyond the catalogue acts in one given coordinate: one in eight thousand."""
+
+STANDING_PRIOR = -6.0
+"""The same where a line or a span has been seen to stand out, once in a hundred recordings of noise."""
 
 HIDDEN_PRIOR = -7.0
 """Log prior odds of an effect of the deflection alone beside a law whose shape is free: it explains what that can."""
 
-MATERIAL = 0.25
-"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by three
-percent, sqrt(1 + 0.25^2): it is not named, whatever its significance."""
+MATERIAL = 0.1
+"""An effect that nothing else in its set can stand for, to less than this many noises, changes the RMSE by half a
+percent, sqrt(1 + 0.1^2): it is not named, whatever its significance (but may be a rival). It is twice the error of form
+that every family may have (`diagnosis.LEAST_ERROR`)."""
 
 MATERIAL_CONFINED = 0.05
 """The same for what acts in a few percent of the samples: there it is several times as large."""
@@ -37,15 +44,16 @@ CONFINED_FORM = 0.4
 
 CONFINED = ("bottoming", "saturation")
 
-MATERIAL_OFFSET = 0.12
+MATERIAL_OFFSET = 0.08
 """The same for an offset beside a free law: that law imitates all of it but its sharp end where the tire lifts off."""
 
 OFFSETS = ("deflection_offset", "force_offset")
 
-MATERIAL_SLOW = {"time": 0.5, "jump": 0.5, "time, added": 0.6, "period, added": 0.6}
-"""The same for what slow noise and hum of the amplifier look like: up to half the noise they are noise."""
+MATERIAL_SLOW = {"time": 0.5, "jump": 0.5, "time, added": 0.5, "period": 0.6, "period, added": 0.6}
+"""The same for what slow noise and hum of the amplifier look like, as they are and not whitened: up to half the noise
+they are noise."""
 
-FORM_ERROR = 0.03
+FORM_ERROR = 0.02
 """What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
 
 UNKNOWN_FORM = 0.1
@@ -61,10 +69,14 @@ SetName = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Candidate:
-    """A set of families with its evidence; groups are the columns in use."""
+    """A set of families with its evidence; groups are the columns in use.
+
+    likely: its log evidence, material or not; log_evidence: the same, nothing (-inf) where a part of it is not material
+    """
 
     names: SetName
     log_evidence: float
+    likely: float
     groups: tuple[IndexArray, ...]
     explained: Explained
 
@@ -87,10 +99,11 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
         groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
         explained = explain(p, groups, zeta)
     evidence = explained.log_evidence + prior
-    immaterial = _negligible(layout, names, explained)
-    if immaterial or not np.isfinite(evidence) or not _signs_hold(p, layout, names, groups, explained):
+    held = _signs_hold(p, layout, names, groups, explained) and not _cancel(p, names, groups, explained)
+    if not np.isfinite(evidence) or not held:
         evidence = -np.inf
-    return Candidate(names, evidence, groups, explained)
+    believed = -np.inf if _negligible(p, layout, names, groups, explained) else evidence
+    return Candidate(names, believed, evidence, groups, explained)
 
 
 def _lag_is_one(names: SetName, groups: Sequence[IndexArray], explained: Explained) -> bool:
@@ -102,7 +115,9 @@ def _lag_is_one(names: SetName, groups: Sequence[IndexArray], explained: Explain
     return bool(abs(bend) <= 0.6 * slope**2)
 
 
-def _negligible(layout: Layout, names: SetName, explained: Explained) -> list[str]:
+def _negligible(
+    p: Products, layout: Layout, names: SetName, groups: Sequence[IndexArray], explained: Explained
+) -> list[str]:
     """Return the families of a set whose own part is not material, or less than the form of another one may err."""
     found = []
     sizes = dict(zip(names, explained.size, strict=True))
@@ -111,6 +126,12 @@ def _negligible(layout: Layout, names: SetName, explained: Explained) -> list[st
     law = explained.together(of_law) if of_law else 0.0
     for name in names:
         if name == "shape":
+            continue
+        if (
+            name in MATERIAL_SLOW
+            and _as_it_is(p, layout, names, groups, explained, name) < MATERIAL_SLOW[name]
+        ):
+            found.append(name)
             continue
         beyond = layout.families[name].agnostic
         doubt = max(
@@ -127,9 +148,26 @@ def _negligible(layout: Layout, names: SetName, explained: Explained) -> list[st
             usual, doubt = MATERIAL_CONFINED, CONFINED_FORM * doubt
         elif name in OFFSETS and "recalibration" in names:
             usual = MATERIAL_OFFSET
-        if unique < max(MATERIAL_SLOW.get(name, usual), doubt):
+        if unique < max(usual, doubt):
             found.append(name)
     return found
+
+
+def _as_it_is(
+    p: Products,
+    layout: Layout,
+    names: SetName,
+    groups: Sequence[IndexArray],
+    explained: Explained,
+    name: str,
+) -> float:
+    """Return the own part of a slow family over the noise's level: whitened, hardly anything is left of it."""
+    number = names.index(name)
+    own = groups[number] - layout.start[name]
+    values = explained.coefficients[number]
+    whole = float(values @ p.plain[name][np.ix_(own, own)] @ values)
+    part = explained.unique[number] / max(explained.size[number], 1e-300)
+    return min(part, 1.0) * float(np.sqrt(max(whole, 0.0) / p.samples))
 
 
 def _prior(family: Family, recalibrated: bool) -> float:
@@ -138,8 +176,11 @@ def _prior(family: Family, recalibrated: bool) -> float:
     if family.name == "recalibration":
         return LAW_PRIOR
     if family.agnostic:
-        return AGNOSTIC_PRIOR
-    return HIDDEN_PRIOR if recalibrated and family.name in STATIC else EFFECT_PRIOR
+        return STANDING_PRIOR if family.standing else AGNOSTIC_PRIOR
+    if family.name in OFFSETS:
+        return OFFSET_PRIOR
+    hidden = recalibrated and family.name in STATIC
+    return HIDDEN_PRIOR if hidden else EFFECT_PRIOR
 
 
 def _best_variant(p: Products, layout: Layout, others: Sequence[IndexArray], name: str) -> IndexArray:
@@ -194,6 +235,22 @@ def _signs_hold(
     return True
 
 
+CANCEL = 0.5
+"""A rim strike and a ceiling that leave less than this part of either between them are a bump: neither's form."""
+
+
+def _cancel(p: Products, names: SetName, groups: Sequence[IndexArray], explained: Explained) -> bool:
+    """Return whether what acts at one end of the deflection is there for the most part to undo another such."""
+    numbers = [i for i, n in enumerate(names) if n in CONFINED]
+    if len(numbers) < 2:
+        return False
+    index = np.concatenate([groups[i] for i in numbers])
+    scale = np.where(np.isfinite(p.scale[index]), p.scale[index], 0.0)
+    amounts = np.concatenate([explained.coefficients[i] for i in numbers]) * scale
+    together = float(np.sqrt(max(amounts @ p.gram[np.ix_(index, index)] @ amounts, 0.0) / p.samples))
+    return together < CANCEL * min(explained.size[i] for i in numbers)
+
+
 def _against(gram: FloatArray, amounts: FloatArray) -> float:
     """Return the part of a sum's power that no amounts above nothing can follow."""
     root = np.linalg.cholesky(gram + 1e-9 * np.trace(gram) * np.eye(amounts.size)).T
@@ -208,7 +265,7 @@ def law_whole(names: Iterable[str]) -> SetName:
     return tuple(sorted(distinct | {"shape"} if "recalibration" in distinct else distinct))
 
 
-def material(candidate: Candidate, layout: Layout) -> SetName:
+def material(p: Products, candidate: Candidate, layout: Layout) -> SetName:
     """Return the set without the families that are not material in it."""
-    negligible = _negligible(layout, candidate.names, candidate.explained)
+    negligible = _negligible(p, layout, candidate.names, candidate.groups, candidate.explained)
     return law_whole(n for n in candidate.names if n not in negligible)

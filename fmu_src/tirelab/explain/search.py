@@ -16,7 +16,7 @@ from ..noise import Noise
 from .columns import Layout, build, layout_of, lifted_at, lifted_from_force, measure, moved, nothing
 from .evidence import Products
 from .families import STATIC, Family
-from .judge import Candidate, SetName, judge, law_whole, material
+from .judge import CONFINED, Candidate, SetName, judge, law_whole, material
 from .motion import IndexArray
 from .place import Point
 from .scene import Scene
@@ -33,6 +33,15 @@ MOST_BEYOND = 2
 
 CLOSE = 30.0
 """Sets within this log evidence of the best one in the screening are settled."""
+
+BESIDE = 5.0
+"""Sets with one effect more are settled within this log evidence, even if that effect is too small to be believed."""
+
+TURNS = 9
+"""Steps in which a set settles, at most."""
+
+AGAIN = 3
+"""So many of the best sets are settled once more from the believed law."""
 
 LAG_STAGES = (0, 1, 2)
 
@@ -52,6 +61,11 @@ class Settled:
         return self.candidate.log_evidence
 
     @property
+    def likely(self) -> float:
+        """The same, whether or not all of the set is material."""
+        return self.candidate.likely
+
+    @property
     def names(self) -> SetName:
         """The families of the set."""
         return self.candidate.names
@@ -69,7 +83,7 @@ def settle(
     # Once a lag has been found its kind is known too, and stays.
     stages = LAG_STAGES if "force_lag" in names and start.lag <= 0.0 else (start.stages,)
     found = [_settle(scene, noises, families, names, zeta, replace(start, stages=s)) for s in stages]
-    return max(found, key=lambda s: s.log_evidence)
+    return max(found, key=lambda s: (s.log_evidence, s.likely))
 
 
 def _settle(
@@ -83,7 +97,7 @@ def _settle(
     chosen = [families[n] for n in names]
     point = _only(start, names)
     best: Settled | None = None
-    for turn in range(6):
+    for turn in range(TURNS):
         built = build(scene, point, chosen)
         layout = layout_of(built, chosen)
         p = measure(built, noises, chosen, point) if chosen else nothing(built, noises)
@@ -234,19 +248,51 @@ class Screen:
             found += self.freed(names)
         return found
 
+    def beside(self, names: SetName, count: int) -> list[SetName]:
+        """Return the set with each of the `count` likeliest effects more, material or not, that may be there."""
+        known = [n for n, f in self.layout.families.items() if not f.agnostic and self.allowed(names, n)]
+        more = [law_whole((*names, n)) for n in known]
+        more = [n for n in more if self.judged(n).likely > self.judged(names).likely - BESIDE]
+        return sorted(more, key=lambda s: -self.judged(s).likely)[:count]
+
     def best(self, count: int) -> list[Candidate]:
         """Return the `count` best candidates within CLOSE of the best."""
         order = sorted(self.seen.values(), key=lambda c: -c.log_evidence)
         return [c for c in order[:count] if c.log_evidence > order[0].log_evidence - CLOSE]
 
 
+SHAPES = ("recalibration", "series_compliance", "gas_compression", "deflection_offset", "force_offset")
+"""What may be taken for another function of deflection and surface."""
+
+
 def _other_shapes(names: SetName, families: dict[str, Family]) -> list[SetName]:
     """Return the set with each other function of deflection and surface in the place of its own ones."""
-    shapes = [n for n in ("recalibration", "series_compliance", "gas_compression") if n in families]
-    if not set(shapes) & set(names):
+    if not {"recalibration", "series_compliance", "gas_compression"} & set(names):
         return []
-    rest = [n for n in names if n not in (*shapes, "shape")]
-    return [law_whole((*rest, n)) for n in shapes]
+    rest = [n for n in names if n not in (*SHAPES, "shape")]
+    return [law_whole((*rest, n)) for n in SHAPES if n in families]
+
+
+def _confined(names: SetName, families: dict[str, Family]) -> list[SetName]:
+    """Return, for what is unknown over the deflection in a set, what acts at one end of it in its place."""
+    if not {"deflection", "direction", "surface"} & set(names):
+        return []
+    rest = [n for n in names if not families[n].agnostic]
+    return [law_whole((*rest, n)) for n in CONFINED if n in families]
+
+
+def _grounded(zero: Point, screened: Callable[[Point], Screen]) -> tuple[Point, Screen]:
+    """Return the believed law with or without a first guess of lift-off, whichever sets explain better, screened."""
+    assert zero.lifted is not None
+    points = [zero]
+    if any(lifted.any() for lifted in zero.lifted):
+        points.append(replace(zero, lifted=tuple(np.zeros_like(lifted) for lifted in zero.lifted)))
+    screens = []
+    for point in points:
+        screen = screened(point)
+        screen.beam()
+        screens.append((point, screen))
+    return max(screens, key=lambda found: found[1].best(1)[0].log_evidence)
 
 
 def search(
@@ -269,16 +315,19 @@ def search(
             if names in settled:
                 continue
             settled[names] = settle(scene, noises, by_name, names, zeta, start)
-            needed = material(settled[names].candidate, settled[names].layout)
+            needed = material(settled[names].products, settled[names].candidate, settled[names].layout)
             if needed != names:
                 waiting.append(needed)
 
+    def screened(point: Point) -> Screen:
+        built = build(scene, point, families, quick=True)
+        return Screen(measure(built, noises, families, point), layout_of(built, families), zeta)
+
+    zero, screen = _grounded(zero, screened)
     point = zero
     for turn in range(5):
-        built = build(scene, point, families, quick=True)
-        screen = Screen(measure(built, noises, families, point), layout_of(built, families), zeta)
-        if turn == 0:
-            screen.beam()
+        if turn:
+            screen = screened(point)
         before = max(settled.values(), key=lambda s: s.log_evidence) if settled else None
         top = before.names if before else screen.best(1)[0].names
         screen.neighbours(top)
@@ -299,6 +348,17 @@ def search(
     settle_all(
         [law_whole(n for n in best.names if n != gone) for gone in best.names if gone != "shape"], point
     )
-    settle_all(_other_shapes(max(settled.values(), key=lambda s: s.log_evidence).names, by_name), point)
+    top = max(settled.values(), key=lambda s: s.log_evidence).names
+    settle_all(_other_shapes(top, by_name), point)
+    # Around a point that is far off a set may come to rest short of its best: the likeliest begin once more.
+    order = sorted(settled.values(), key=lambda s: -s.log_evidence)[:AGAIN]
+    for names in dict.fromkeys([s.names for s in order] + _confined(top, by_name)):
+        fresh = settle(scene, noises, by_name, names, zeta, zero)
+        if names not in settled or fresh.log_evidence > settled[names].log_evidence:
+            settled[names] = fresh
+    best = max(settled.values(), key=lambda s: s.log_evidence)
+    for names in screen.beside(best.names, 3):
+        if names not in settled:
+            settled[names] = settle(scene, noises, by_name, names, zeta, best.point)
     order = sorted(settled.values(), key=lambda s: -s.log_evidence)
     return Found(tuple(order), compared)
