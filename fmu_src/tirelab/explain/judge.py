@@ -53,7 +53,7 @@ MATERIAL_SLOW = {"time": 0.5, "jump": 0.5, "time, added": 0.5, "period": 0.6, "p
 """The same for what slow noise and hum of the amplifier look like, as they are and not whitened: up to half the noise
 they are noise."""
 
-FORM_ERROR = 0.02
+FORM_ERROR = 0.03
 """What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
 
 UNKNOWN_FORM = 0.1
