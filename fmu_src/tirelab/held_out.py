@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from radialtire import TireModel
 
-from .explain.motion import BoolArray, FloatArray
+from .explain.motion import BoolArray, FloatArray, Motion
 from .explain.scene import Record, Scene, scene_of
 from .refit import Case, Refit, again, smooth_of
 from .simulate import Sampled, simulate
@@ -80,8 +80,9 @@ def rmse(parts: Sequence[FloatArray]) -> float:
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 
-def _cleared(tire: TireModel, record: Record, recording: Recorded) -> FloatArray:
-    smooth = smooth_of(recording, record.motion)
+def without_reading_noise(tire: TireModel, recording: Recorded, motion: Motion) -> FloatArray:
+    """Return what `tire` leaves of a recording [N] where it is told the smoothed motion in place of the readings."""
+    smooth = smooth_of(recording, motion)
     return recording.force - simulate(tire, smooth, smooth)
 
 
@@ -98,7 +99,13 @@ def given(
     return HeldOut(
         "recordings given",
         tuple(
-            Part(record, b, a, _cleared(fitted.tire, record, r), np.ones(b.size, dtype=bool))
+            Part(
+                record,
+                b,
+                a,
+                without_reading_noise(fitted.tire, r, record.motion),
+                np.ones(b.size, dtype=bool),
+            )
             for record, r, b, a in zip(scene.records, recordings, before, fitted.residuals, strict=True)
         ),
         tuple(
@@ -106,7 +113,7 @@ def given(
                 record,
                 r.force - simulate(tire, r),
                 r.force - simulate(fitted.tire, r),
-                _cleared(fitted.tire, record, r),
+                without_reading_noise(fitted.tire, r, record.motion),
                 np.ones(r.time.size, bool),
             )
             for record, r in zip(others.records, held_out, strict=True)
@@ -133,7 +140,8 @@ def split(
     ]
     refitted = again(believed, fitted, without, scene.radii)
     cleared = [
-        _cleared(refitted.tire, record, r) for record, r in zip(scene.records, recordings, strict=True)
+        without_reading_noise(refitted.tire, r, record.motion)
+        for record, r in zip(scene.records, recordings, strict=True)
     ]
     parts = list(zip(scene.records, before, refitted.residuals, cleared, kept, strict=True))
     return HeldOut(

@@ -31,12 +31,9 @@ ROUNDS = 2
 
 def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[Noise, ...]:
     """Return the noise of each recording: size, colour and spikes of what all `families` together leave."""
-    _look(scene, [f for f in worth_trying(families, scene) if f.name not in COURSES], point)
+    # Smooth courses of time blur the edges of what begins and ends at once.
+    _look(scene, [f for f in worth_trying(families, scene) if f.standing or not f.slow], point)
     return _noises(scene, worth_trying(families, scene), point, ROUNDS)[0]
-
-
-COURSES = ("time", "time, added", "jump")
-"""Smooth courses of time: they blur the edges of what begins and ends at once."""
 
 
 def _look(scene: Scene, families: Sequence[Family], point: Point) -> None:

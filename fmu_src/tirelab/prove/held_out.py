@@ -11,8 +11,8 @@ import numpy as np
 from radialtire import TireModel
 
 from ..explain.motion import motion_of
+from ..held_out import without_reading_noise
 from ..recording import Recording
-from ..refit import smooth_of
 from ..replay import replay
 from ..simulate import simulate
 
@@ -58,16 +58,13 @@ def held_out(
     squares = np.array(
         [[np.mean((r.force - simulate(tire, r)) ** 2) for r in recordings] for tire in (believed, corrected)]
     )
-    cleared = [_cleared(corrected, r) for r in recordings]
+    cleared = [
+        np.mean(without_reading_noise(corrected, r, motion_of(r.time, r.deflection)) ** 2) for r in recordings
+    ]
     floors = np.array([float(truths[f"{r.name}.csv"]["floor_rmse"]) for r in recordings])
     pooled = np.sqrt(np.stack([*squares, cleared, floors**2]) @ sizes / np.sum(sizes))
     before, after, clear, floor = pooled.tolist()
     return HeldOut(before, after, floor, _fmu_difference(fmu, corrected, recordings), clear)
-
-
-def _cleared(tire: TireModel, recording: Recording) -> float:
-    smooth = smooth_of(recording, motion_of(recording.time, recording.deflection))
-    return float(np.mean((recording.force - simulate(tire, smooth, smooth)) ** 2))
 
 
 def _fmu_difference(fmu: Path | None, corrected: TireModel, recordings: Sequence[Recording]) -> float | None:
