@@ -57,15 +57,12 @@ CONNECTIONS = (
 """From, to and the connector, which has the same name on both sides."""
 
 
-def pack_bicycle(ride: RideOnGround, folder: Path, *, step: float, with_loader: bool = True) -> Path:
-    """Write `folder`/QuarterBicycle.fmu for `ride`, whose masters step by `step` [s] unless told otherwise.
-
-    with_loader: compile the Linux binary for hosts that are not Python, if there is a compiler
-    """
+def pack_bicycle(ride: RideOnGround, folder: Path, *, step: float) -> Path:
+    """Write `folder`/QuarterBicycle.fmu for `ride`, whose masters step by `step` [s] unless told otherwise."""
     with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
         members = _packed(_ride_json(ride, step), Path(name))
         binary = Path(name) / "loader.so"
-        if with_loader and compile_loader(binary) is not None:
+        if compile_loader(binary) is not None:
             members[LINUX_BINARY] = binary.read_bytes()
     description = ElementTree.fromstring(members.pop("modelDescription.xml"))
     description.set("guid", "")
@@ -88,7 +85,6 @@ def pack_system(
     *,
     step: float = 0.5e-3,
     look_ahead: float | None = None,
-    with_loader: bool = True,
 ) -> Path:
     """Write `folder`/QuarterBicycle.ssp, `ride` on `tire`, and return its path.
 
@@ -97,8 +93,8 @@ def pack_system(
     told_ahead = lag(step, late=True) if look_ahead is None else look_ahead
     with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
         fmus = (
-            pack_bicycle(ride, Path(name), step=step, with_loader=with_loader),
-            build_fmu(tire, Path(name), with_loader=with_loader).path,
+            pack_bicycle(ride, Path(name), step=step),
+            build_fmu(tire, Path(name)).path,
         )
         members = {f"resources/{fmu.name}": fmu.read_bytes() for fmu in fmus}
     members["SystemStructure.ssd"] = _text(structure(ride, step, told_ahead))

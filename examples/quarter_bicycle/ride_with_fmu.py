@@ -98,7 +98,7 @@ def main(ground: str, speed: float, steps: tuple[float, ...], fmu: Path | None) 
     tire = TireModel()
     try:
         with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
-            path = build_fmu(tire, Path(folder), with_loader=False).path if fmu is None else fmu
+            path = build_fmu(tire, Path(folder)).path if fmu is None else fmu
             ride = GROUNDS[ground](tire, speed)
             truth = reference(ride, tire)
             largest = float(truth.radial_force.max())

@@ -31,7 +31,7 @@ def _modified(symbol: Any) -> dict[str, Any]:
 
 
 def test_inputs_outputs_and_units_are_the_fmus(wrapper: Any, tmp_path: Path) -> None:
-    fmu = build_fmu(TireModel(), tmp_path, with_loader=False).path
+    fmu = build_fmu(TireModel(), tmp_path).path
     connected = {
         end.child[0].name
         for equation in wrapper.equations

@@ -99,9 +99,7 @@ def _run(example: dict[str, ModuleType], ride: Any, **options: Any) -> Any:
 def _system(
     example: dict[str, ModuleType], ride: Any, folder: Path, step: float, look_ahead: float | None
 ) -> Path:
-    path = example["pack"].pack_system(
-        ride, TireModel(), folder, step=step, look_ahead=look_ahead, with_loader=False
-    )
+    path = example["pack"].pack_system(ride, TireModel(), folder, step=step, look_ahead=look_ahead)
     assert isinstance(path, Path)
     return path
 
@@ -264,9 +262,7 @@ def test_energy_of_a_stepped_ride(example: dict[str, ModuleType], bumpy: Any, wa
 
 
 def test_tire_fmu_in_the_loop(example: dict[str, ModuleType], bumpy: Any, tmp_path: Path) -> None:
-    fmu = (
-        importlib.import_module("tirelab.fmu.build").build_fmu(TireModel(), tmp_path, with_loader=False).path
-    )
+    fmu = importlib.import_module("tirelab.fmu.build").build_fmu(TireModel(), tmp_path).path
     with example["fmu_tire"].fmu_tire(fmu) as tire:
         found = example["ride_with_fmu"].stepped(bumpy, tire, 1e-3, "one after the other, told ahead")
     np.testing.assert_allclose(found.hub_height, _run(example, bumpy, step=1e-3).hub_height, atol=1e-12)
@@ -278,7 +274,7 @@ def test_tire_fmu_in_the_loop(example: dict[str, ModuleType], bumpy: Any, tmp_pa
 
 def test_refusals_of_the_bicycle_fmu(example: dict[str, ModuleType], wavy: Any, tmp_path: Path) -> None:
     """One message that says why, the state as before, and on with the next good value."""
-    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3, with_loader=False)
+    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3)
     replay = importlib.import_module("tirelab.replay")
     with replay.opened(path) as unit:
         instance, force, hub = (
@@ -334,7 +330,7 @@ def test_diverging_ride_says_when(example: dict[str, ModuleType], bumpy: Any) ->
 def test_parameters_of_the_ride_are_in_the_fmu(
     example: dict[str, ModuleType], wavy: Any, tmp_path: Path
 ) -> None:
-    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3, with_loader=False)
+    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3)
     variables = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
     assert float(variables["sprung_mass"].start) == 32.0
     assert variables["fork_stiffness"].unit == "N/m"

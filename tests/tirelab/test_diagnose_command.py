@@ -65,9 +65,7 @@ def done(rides: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result,
 
 @pytest.fixture
 def known(done: tuple[Result, Path, Verdict], monkeypatch: pytest.MonkeyPatch) -> Verdict:
-    """The verdict of `done`, which the command is given without thinking again, nor compiling."""
-    genuine = diagnose_command.build_fmu
-    monkeypatch.setattr(diagnose_command, "build_fmu", lambda *a: genuine(*a, with_loader=False))
+    """The verdict of `done`, which the command is given without thinking again."""
     monkeypatch.setattr(diagnose_command, "diagnose", lambda *_, **__: done[2])
     return done[2]
 

@@ -30,7 +30,7 @@ def motion(samples: int = 400) -> Motion:
 
 @pytest.fixture(scope="module")
 def fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_fmu(TireModel(), tmp_path_factory.mktemp("replay"), with_loader=False).path
+    return build_fmu(TireModel(), tmp_path_factory.mktemp("replay")).path
 
 
 def test_replay_is_the_law_at_every_sample(fmu: Path) -> None:
@@ -55,7 +55,7 @@ def test_replay_with_a_memory_equals_the_model_stepped_by_hand(tmp_path: Path) -
     for t, x, radius in zip(m.time.tolist(), m.deflection.tolist(), m.surface_radius.tolist(), strict=True):
         force, state = tire.step(x, radius, t, state)
         expected.append(force)
-    simulated = replay(build_fmu(tire, tmp_path, with_loader=False).path, m)
+    simulated = replay(build_fmu(tire, tmp_path).path, m)
     # time - step + step is rounded once more on its way through the FMI: 1e-16 of 9 s in a rate over 0.01 s.
     np.testing.assert_allclose(simulated, expected, rtol=1e-9, atol=1e-9)
 

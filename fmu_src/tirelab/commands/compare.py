@@ -33,7 +33,7 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, out: Path, rea
     with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
         if fmu is None:
             model = TireModel() if tire is None else read_tire(tire)
-            fmu = build_fmu(model, Path(folder), with_loader=False).path
+            fmu = build_fmu(model, Path(folder)).path
             click.echo(f"{recorded.name} against {model.name}")
         else:
             click.echo(f"{recorded.name} against {fmu}")

@@ -137,9 +137,7 @@ def test_a_negative_step_is_discarded(run_fmpy: Run, article_fmu: Path) -> None:
 
 
 def test_two_tires_in_one_process_give_two_forces(run_fmpy: Run, article_fmu: Path, tmp_path: Path) -> None:
-    other = build_fmu(
-        TireModel(law=PowerLaw(718.5, 1.4), name="Wang & Hull"), tmp_path, with_loader=False
-    ).path
+    other = build_fmu(TireModel(law=PowerLaw(718.5, 1.4), name="Wang & Hull"), tmp_path).path
     calls: list[list[object]] = []
     for number in (0, 1):
         calls += [[number, "set", {"deflection": 0.02}], [number, "step", 0.0, 0.1]]
@@ -155,7 +153,7 @@ def friction_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
     friction = CATALOGUE["rate_independent_hysteresis"]
     values = tuple({"slip_force": 50.0, "reach": 1e-3}.get(p.name, p.start) for p in friction.parameters)
     tire = TireModel(effects=((friction, values),))
-    return build_fmu(tire, tmp_path_factory.mktemp("friction"), with_loader=False).path
+    return build_fmu(tire, tmp_path_factory.mktemp("friction")).path
 
 
 def test_states_of_effects_are_saved_and_restored(run_fmpy: Run, friction_fmu: Path) -> None:
@@ -194,6 +192,12 @@ def test_reset_forgets_inputs_and_history(run_fmpy: Run, friction_fmu: Path) -> 
     assert run_fmpy([friction_fmu], calls)[-1] == [0.0]
 
 
+def test_without_the_loader_the_fmu_runs_in_python_hosts(run_fmpy: Run, tmp_path: Path) -> None:
+    fmu = build_fmu(TireModel(), tmp_path, with_loader=False).path
+    answers = run_fmpy([fmu], [[0, "set", {"deflection": 0.01}], [0, "get", ["radial_force"]]])
+    assert answers[-1][0] == pytest.approx(550.9, rel=TOLERANCE)
+
+
 def test_tested_range_is_the_articles(run_fmpy: Run, article_fmu: Path) -> None:
     def inside(deflection: float, radius: float) -> bool:
         calls = [
@@ -216,7 +220,7 @@ def test_tested_range_is_the_articles(run_fmpy: Run, article_fmu: Path) -> None:
 )
 def test_tires_of_the_examples_build(run_fmpy: Run, repository: Path, tmp_path: Path, name: str) -> None:
     tire = read_tire(repository / "examples" / "tires" / f"{name}.json")
-    fmu = build_fmu(tire, tmp_path, with_loader=False).path
+    fmu = build_fmu(tire, tmp_path).path
     answers = run_fmpy([fmu], [[0, "set", {"deflection": 0.01}], [0, "get", ["radial_force"]]])
     expected = {"wang_hull_off_road": 718.5, "wang_hull_road": 1500.0}.get(name, 550.9)
     assert answers[-1][0] == pytest.approx(expected, rel=TOLERANCE)

@@ -235,7 +235,7 @@ def test_the_corrected_fmu_is_run_on_held_out_samples(
 
     def article(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
         write_tire(TireModel(), out / "tire.json")
-        build_fmu(TireModel(), out, with_loader=False)
+        build_fmu(TireModel(), out)
         diagnosis(out, ["none"], tire="tire.json")
         content = json.loads((out / "diagnosis.json").read_text())
         (out / "diagnosis.json").write_text(json.dumps({**content, "corrected_fmu": "BicycleTire.fmu"}))
