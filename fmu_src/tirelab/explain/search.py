@@ -199,14 +199,19 @@ class Screen:
         level: list[SetName] = [()]
         best = self.judged(()).log_evidence
         for _ in range(DEEPEST_SET):
-            grown = {
+            # In order, not a set: among equals the first is kept, in every process the same.
+            grown = dict.fromkeys(
                 self.judged((*s, n)).names for s in level for n in self.layout.families if self.allowed(s, n)
-            }
-            level = sorted(grown, key=lambda s: -self.judged(s).log_evidence)[:BEAM]
+            )
+            level = sorted(grown, key=self._order)[:BEAM]
             top = self.judged(level[0]).log_evidence
             if top < best - 3.0:
                 return
             best = max(best, top)
+
+    def _order(self, names: SetName) -> tuple[float, float]:
+        found = self.judged(names)
+        return -found.log_evidence, -found.likely
 
     def neighbours(self, names: SetName) -> None:
         """Judge every set that differs from `names` by one family more, less or other."""
