@@ -18,10 +18,13 @@ from scipy.optimize import least_squares
 from .explain.motion import FloatArray, IndexArray, Motion
 from .noise import Noise
 from .simulate import Sampled, simulate
-from .starts import matched, with_effect
+from .starts import matched, spread, with_effect
 
 LOOSE = 100.0
 """Standard deviation of the weak prior on a parameter, in its scale: it only holds what no sample moves."""
+
+SPIKED = 3.0
+"""Residuals beyond so many noises count by their size, not its square."""
 
 MOST_ROUNDS = 40
 STEP = 1e-4
@@ -30,6 +33,8 @@ STEP = 1e-4
 DETERMINED = 0.25
 """An extra freedom is determined where its standard deviation is below this part of its prior's, that of a value
 anywhere within its bounds."""
+
+RELAXATION = "viscoelastic_relaxation"
 
 OF_RATE = ("rate_exponent", "thinning")
 """Parameters that say how a force changes with the rate: at one rate they are not determined, whatever the short
@@ -185,7 +190,10 @@ def refit(
     law_knobs = [k for k in knobs_of(names, radii, False, deepest) if k.owner == "law"]
     tire = assemble(believed, law_knobs, law.ravel()[: len(law_knobs)], radii)
     starts: dict[str, State] = {}
+    terms: dict[str, float] = {}
     for name in names:
+        if name == RELAXATION:
+            terms = spread(parts[name], cases, tire)
         if name != "recalibration":
             starts[name] = matched(CATALOGUE[name], parts[name], cases, tire, deepest, strongest)
             tire = with_effect(tire, CATALOGUE[name], starts[name])
@@ -194,18 +202,21 @@ def refit(
     fitted = _fit(believed, plain, np.array([_start(k, starts, law, None) for k in plain]), cases, radii)
     if len(plain) == len(knobs):
         return fitted
-    whole = _fit(believed, knobs, np.array([_start(k, starts, law, fitted) for k in knobs]), cases, radii)
-    kept = earned(whole, power)
-    if len(kept) == len(plain):
-        return replace(fitted, evaluations=fitted.evaluations + whole.evaluations)
-    final = whole
-    evaluations = fitted.evaluations + whole.evaluations
-    if len(kept) < len(knobs):
-        final = _fit(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
-        evaluations += final.evaluations
-    # Two freedoms may end in a valley of their own, away from the plain fit's: the whole gain has to pay for them.
-    gain = power * (fitted.cost - final.cost)
-    chosen = final if gain > (len(kept) - len(plain)) * _price(final, power) else fitted
+    # Two freedoms may end in a valley of their own: first those that begin at no effect, and each gain has to pay.
+    found, evaluations, whole = [fitted], fitted.evaluations, fitted
+    for group in dict.fromkeys((tuple(k for k in knobs if k.label not in AWAKE), knobs)):
+        if len(group) == len(plain):
+            continue
+        start = [terms.get(k.label, _start(k, starts, law, whole)) for k in group]
+        whole, terms = _fit(believed, group, np.array(start), cases, radii), {}
+        evaluations += whole.evaluations
+        kept = earned(whole, power)
+        if kept in (group, plain):
+            found.append(whole if kept == group else fitted)
+            continue
+        found.append(_fit(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii))
+        evaluations += found[-1].evaluations
+    chosen = min(found, key=lambda f: power * f.cost + len(f.knobs) * _price(f, power))
     return replace(chosen, evaluations=evaluations)
 
 
@@ -213,6 +224,25 @@ def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequ
     """Return the knobs of a fit fitted anew to other cases; the law starts as believed, and stays so where unseen."""
     start = [0.0 if k.owner == "law" else float(v) for k, v in zip(fitted.knobs, fitted.values, strict=True)]
     return _fit(believed, fitted.knobs, np.array(start), cases, radii)
+
+
+def gain_of(
+    name: str,
+    fitted: Refit,
+    believed: TireModel,
+    cases: Sequence[Case],
+    radii: Sequence[float],
+    power: float,
+) -> float:
+    """Return what an effect of a fit gains in log likelihood, less the price of its parameters (see `earned`).
+
+    All other knobs are fitted anew without it.
+    """
+    owners = ("law", "elastic_shape") if name == "recalibration" else (name,)
+    left = [(k, v) for k, v in zip(fitted.knobs, fitted.values, strict=True) if k.owner not in owners]
+    without = _fit(believed, tuple(k for k, _ in left), np.array([v for _, v in left]), cases, radii)
+    parameters = len(fitted.knobs) - len(left)
+    return power * (without.cost - fitted.cost) - parameters * _price(fitted, power)
 
 
 def _extra(knob: Knob) -> bool:
@@ -268,8 +298,9 @@ def _plain(knob: Knob) -> float:
     return CATALOGUE[knob.owner].parameters[knob.index].start
 
 
-AWAKE = {"gathering": 0.02, "thinning": 30.0}
-"""Where a freedom begins that has no slope where it is off: a stroke [m], and the inverse of a usual rate [s/m]."""
+AWAKE = {"gathering": 0.02, "thinning": 30.0, "width": 1e-3}
+"""Where a freedom begins that has no slope where it is off: a stroke [m], the inverse of a usual rate [s/m], and
+a length in the tread [m]."""
 
 
 def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit | None) -> float:
@@ -307,7 +338,10 @@ def _fit(
     centre = np.clip(start / scale, low, high)
     if not knobs:
         plain = tuple(c.force - simulate(believed, c.recording) for c in cases)
-        return Refit(believed, (), np.zeros(0), np.zeros(0), plain, np.zeros((0, 0)), 0.0, 1)
+        left = residual(centre)
+        # The same loss as below, of SciPy's least_squares.
+        cost = float(np.sum(SPIKED**2 * (np.sqrt(1.0 + (left / SPIKED) ** 2) - 1.0)))
+        return Refit(believed, (), np.zeros(0), np.zeros(0), plain, np.zeros((0, 0)), cost, 1)
 
     def penalised(scaled: FloatArray) -> FloatArray:
         return np.concatenate([residual(scaled), (scaled - centre) / LOOSE])
@@ -332,7 +366,7 @@ def _fit(
         bounds=(low, high),
         x_scale="jac",
         loss="soft_l1",
-        f_scale=3.0,
+        f_scale=SPIKED,
         max_nfev=MOST_ROUNDS,
         method="trf",
     )

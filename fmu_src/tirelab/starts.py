@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from radialtire import CATALOGUE, Effect, State, TireModel
 from radialtire.effect import PLACES
+from scipy.optimize import nnls
 
 from .explain.motion import FloatArray, IndexArray
 from .simulate import Sampled, simulate
@@ -32,7 +33,7 @@ class Compared(Protocol):
 GRIDS: dict[str, dict[str, tuple[float, ...]]] = {
     "rate_independent_hysteresis": {"reach": (3e-4, 1e-3, 3e-3)},
     "viscoelastic_relaxation": {"relaxation_time_1": (0.02, 0.1, 0.5, 2.0, 10.0, 50.0)},
-    "mullins_softening": {"width": (1e-3, 3e-3, 1e-2)},
+    "mullins_softening": {"ratio": (0.05, 0.15, 0.5)},
     "warm_up": {"time_constant": (3.0, 10.0, 30.0, 100.0)},
 }
 """Starting values of what an effect is not linear in, where everyday ones are not enough."""
@@ -97,6 +98,25 @@ def matched(
                 scaled[i] = float(np.clip(trial[i] * factor, p.minimum, p.maximum))
             trial = tuple(scaled)
     return best[1]
+
+
+TERMS = ("share_1", "share_2", "share_3", "share_4", "share_5")
+SMALL = 0.01
+"""A share whose response is that of any other in proportion."""
+
+
+def spread(target: Sequence[FloatArray], cases: Sequence[Compared], tire: TireModel) -> dict[str, float]:
+    """Return parameters of a relaxation with one term to a decade, whose shares come nearest to its part [N]."""
+    effect = CATALOGUE["viscoelastic_relaxation"]
+    bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
+    responses = []
+    for term in TERMS:
+        values = tuple(SMALL if p.name == term else p.start for p in effect.parameters)
+        with_it = with_effect(tire, effect, values)
+        responses.append(np.concatenate([simulate(with_it, c.recording)[c.rows] for c in cases]) - bare)
+    shares, _ = nnls(np.stack(responses, axis=1) / SMALL, np.concatenate(target), maxiter=1000)
+    times = {p.name: p.start for p in effect.parameters if p.name.startswith("relaxation_time")}
+    return {**dict(zip(TERMS, map(float, np.minimum(shares, 5.0)), strict=True)), **times}
 
 
 def with_effect(tire: TireModel, effect: Effect, values: State) -> TireModel:

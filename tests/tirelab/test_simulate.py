@@ -183,7 +183,7 @@ def test_stages_can_be_kept_and_continued() -> None:
     [
         ("rate_independent_hysteresis", ("slip_force", "load_share")),
         ("viscous_damping", ("damping",)),
-        ("viscoelastic_relaxation", ("share_1", "share_2", "share_3")),
+        ("viscoelastic_relaxation", ("share_1", "share_2", "share_3", "share_4", "share_5")),
         ("bottoming", ("stiffness",)),
         ("inertia", ("mass",)),
     ],

@@ -10,7 +10,7 @@ remember the points of reversal (Maxwell, Iwan); c is how far those spread. m be
 loops too: each of these forms is met within 3 % of S on a ride, while Dahl's element alone is 10 % from Iwan's.
 
 Integrated exactly over travel without reversal. A deflection counts from 0 on, so in the air nothing slips and nothing
-is forgotten.
+is forgotten. At the first moment the friction is q times that of a tire that was pressed there from 0 (q = 1: it was).
 
 Noise of the reading counts as travel: unchecked, it makes Dahl's element forget (10 to 15 % of S at 2 mm/s and all of
 it in a hold, read at 400 Hz with 8e-6 m of noise). So a way back counts in full only once it is longer than 2 w,
@@ -51,16 +51,16 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     The state holds z and the deflection for which it stands, the way (1 or -1) that led there, the last deflection, and
     y1 to y4.
     """
-    slip_force, load_share, reach, memory, spread, play = values
+    slip_force, load_share, reach, memory, spread, play, seat = values
     z, turn, way, last, y1, y2, y3, y4 = state
     x = max(instant.deflection, 0.0)
     if instant.first:
-        turn = last = x
+        turn = last = 0.0
     travel = x - turn
-    if travel * way > 0.0 or abs(travel) >= 2.0 * play:
-        z = friction = dahl(z, travel, reach)
+    if instant.first or travel * way > 0.0 or abs(travel) >= 2.0 * play:
+        z = friction = dahl(z, travel, reach) * (seat if instant.first else 1.0)
         turn = x
-        way = 1.0 if travel > 0.0 else -1.0
+        way = 1.0 if travel >= 0.0 else -1.0
     else:
         friction = dahl(z, travel * abs(travel) / (2.0 * play), reach)
     if memory != 0.0:
@@ -70,6 +70,8 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         y2 = slip(y2, travel, mean * (1.0 - 0.25 * spread))
         y3 = slip(y3, travel, mean * (1.0 + 0.25 * spread))
         y4 = slip(y4, travel, mean * (1.0 + 0.75 * spread))
+        if instant.first:
+            y1, y2, y3, y4 = seat * y1, seat * y2, seat * y3, seat * y4
         friction += memory * (0.25 * (y1 + y2 + y3 + y4) - friction)
     after = (z, turn, way, x, y1, y2, y3, y4)
     if instant.deflection <= 0.0:
@@ -99,6 +101,9 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
         ),
         Parameter("spread", "c", "1", 0.6, 0.0, 1.0, "how far the elements' reaches spread", extra=True),
         Parameter("play", "w", "m", 0.0, 0.0, 1e-3, "half of a way back that is noise", extra=True),
+        Parameter(
+            "seat", "q", "1", 1.0, -1.0, 1.0, "friction at first: 1 as pressed there, 0 none", extra=True
+        ),
     ),
     rest=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     respond=respond,

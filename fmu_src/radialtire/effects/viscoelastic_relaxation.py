@@ -1,6 +1,6 @@
 """Rubber that relaxes: a fast deflection is answered by more force, which then decays (standard linear solids).
 
-    F = F_elastic (1 - r (g1 + g2 + g3)) + g1 h1 + g2 h2 + g3 h3,    dh_i/dt = dF_elastic/dt - h_i / tau_i
+    F = F_elastic (1 - r (g1 + ... + g5)) + g1 h1 + ... + g5 h5,    dh_i/dt = dF_elastic/dt - h_i / tau_i
 
 A Prony series on the elastic force (quasi-linear viscoelasticity). g_i is the share of the elastic force that term i
 adds in a sudden deflection, tau_i how long it takes to decay. r says which force the elastic law is: r = 0 the slow
@@ -8,7 +8,7 @@ one (everything relaxed, as in a press of 30 s), r = 1 the sudden one. Integrate
 straight between two moments. The tire is taken as relaxed at the first moment.
 
 The storage share of one term is g (w tau)^2 / (1 + (w tau)^2), the loss share g w tau / (1 + (w tau)^2), greatest at
-w tau = 1. Rubber has times over several decades; three terms follow six within a few tenths of a percent of the force.
+w tau = 1. Rubber has times over several decades: about one term to a decade follows a power of the time.
 No shares of bicycle tires were found in the open: the bounds are wide.
 
 Reference: Y. C. Fung, "Biomechanics: Mechanical Properties of Living Tissues", Springer 1981, section 7.6.
@@ -32,10 +32,10 @@ def overstress(h: float, change: float, interval: float, tau: float) -> float:
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Add the overstress [N]; the state holds the last elastic force and the three overstresses."""
-    g1, tau1, g2, tau2, g3, tau3, sudden = values
+    """Add the overstress [N]; the state holds the last elastic force and the five overstresses."""
+    g1, tau1, g2, tau2, g3, tau3, sudden, g4, tau4, g5, tau5 = values
     elastic = instant.elastic_force
-    last, h1, h2, h3 = state
+    last, h1, h2, h3, h4, h5 = state
     if instant.first:
         last = elastic
     change = elastic - last
@@ -44,8 +44,14 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         h2 = overstress(h2, change, instant.interval, tau2)
     if g3 != 0.0:
         h3 = overstress(h3, change, instant.interval, tau3)
-    added = g1 * h1 + g2 * h2 + g3 * h3 - sudden * (g1 + g2 + g3) * elastic
-    return signal + added, (elastic, h1, h2, h3)
+    if g4 != 0.0:
+        h4 = overstress(h4, change, instant.interval, tau4)
+    if g5 != 0.0:
+        h5 = overstress(h5, change, instant.interval, tau5)
+    added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5
+    if sudden != 0.0:
+        added -= sudden * (g1 + g2 + g3 + g4 + g5) * elastic
+    return signal + added, (elastic, h1, h2, h3, h4, h5)
 
 
 VISCOELASTIC_RELAXATION = Effect(
@@ -71,8 +77,12 @@ VISCOELASTIC_RELAXATION = Effect(
         Parameter(
             "sudden", "r", "1", 0.0, 0.0, 1.0, "0: the law is the slow force, 1: the sudden one", extra=True
         ),
+        Parameter("share_4", "g4", "1", 0.0, 0.0, 5.0, "share of the fourth time", off=0.0, extra=True),
+        Parameter("relaxation_time_4", "tau4", "s", 0.01, 1e-4, 1e5, "fourth relaxation time", extra=True),
+        Parameter("share_5", "g5", "1", 0.0, 0.0, 5.0, "share of the fifth time", off=0.0, extra=True),
+        Parameter("relaxation_time_5", "tau5", "s", 100.0, 1e-4, 1e5, "fifth relaxation time", extra=True),
     ),
-    rest=(0.0, 0.0, 0.0, 0.0),
+    rest=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     respond=respond,
     statement="the force relaxes: it is higher after a fast deflection and decays while it is held",
     tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",

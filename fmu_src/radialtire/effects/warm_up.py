@@ -1,8 +1,9 @@
 """A tire that warms: the pressure, and with it the force, rises to a new level.
 
-    F = A x^B (1 + g (1 - exp(-t / tau)))
+    F = A x^B (1 + g (1 - exp(-(t / tau)^s)))
 
-t is the time since the start. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
+t is the time since the start; s below 1 stretches the rise over more than one time, as the air, the rubber and the rim
+warm one after the other. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from ..parameter import Parameter
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Multiply the factor by the rise of the pressure."""
-    gain, tau = values
-    return signal * (1.0 - gain * math.expm1(-instant.time / tau)), state
+    gain, tau, stretch = values
+    return signal * (1.0 - gain * math.expm1(-((instant.time / tau) ** stretch))), state
 
 
 WARM_UP = Effect(
@@ -35,6 +36,7 @@ WARM_UP = Effect(
             typical=0.05,
         ),
         Parameter("time_constant", "tau", "s", 60.0, 0.1, 1e5, "time to 63 % of the rise"),
+        Parameter("stretch", "s", "1", 1.0, 0.3, 1.0, "1: one time, below: spread over several", extra=True),
     ),
     rest=(),
     respond=respond,

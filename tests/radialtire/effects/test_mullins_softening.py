@@ -29,8 +29,8 @@ def test_unloading_and_the_second_loading_are_one_curve() -> None:
 
 
 def test_far_below_the_share_is_lost() -> None:
-    # 1 - D (1 - exp(-u)) with u = (20 - 2) mm / 1 mm
-    force = driven(share=0.3, width=1e-3)
+    # 1 - D (1 - exp(-u)) with u = (20 - 2) mm / (0.05 * 20 mm)
+    force = driven(share=0.3, ratio=0.05)
     i = 202 + 10
     assert UP[10] == pytest.approx(2e-3)
     assert force[i] / BARE[i] == pytest.approx(0.7, abs=0.3 * math.exp(-18.0) + 1e-12)
@@ -40,6 +40,15 @@ def test_width_ratio_and_sharpness_shape_it_as_stated() -> None:
     force = driven(share=0.2, width=2e-3, ratio=0.1, sharpness=2.0)
     i = 202 + 90  # 2 mm below 20 mm: u = 2 / (2 + 0.1 * 20) = 1/2
     assert force[i] / BARE[i] == pytest.approx(1.0 - 0.2 * (1.0 - math.exp(-0.25)), rel=1e-12)
+
+
+def test_measured_in_the_energy_it_depends_on_the_parts_of_the_energy() -> None:
+    # Stored in x^2.4, half of the largest energy is left at 2^(-1/2.4) of the largest deflection: u = 1/2 / (1/4)
+    half = 0.02 * 2.0 ** (-1.0 / 2.4)
+    tire = only("mullins_softening", share=0.2, ratio=0.25, measure=2.4)
+    force = drive(tire, np.arange(2.0), np.array([0.02, half]))
+    bare = drive(TireModel(), np.arange(2.0), np.array([0.02, half]))
+    assert force[1] / bare[1] == pytest.approx(1.0 + 0.2 * math.expm1(-2.0), rel=1e-12)
 
 
 def test_beyond_the_largest_deflection_it_is_new_again() -> None:
@@ -66,6 +75,6 @@ def test_a_tire_with_a_history_starts_soft() -> None:
 def test_it_gathers_along_the_way_below() -> None:
     # down 20 mm and up 2 mm again: g = 1 - exp(-22 / 11), and all of the share is at stake far below
     i = 202 + 10
-    force = driven(share=0.3, width=1e-3, gathering=0.011)
+    force = driven(share=0.3, ratio=0.05, gathering=0.011)
     gathered = -math.expm1(-2.0)
     assert force[i] / BARE[i] == pytest.approx(1.0 - 0.3 * gathered * -math.expm1(-18.0), rel=1e-9)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from driving import LINEAR, STIFFNESS, drive, loop_area, only, sine
+from radialtire import TireModel
 
 NAME = "rate_independent_hysteresis"
 CYCLE = 2000
@@ -154,3 +155,15 @@ def test_the_articles_hysteresis_can_be_had() -> None:
     up, down = force[middle & (np.gradient(x) > 0.0)], force[middle & (np.gradient(x) < 0.0)]
     assert up[-1] - down[-1] == pytest.approx(100.0, rel=0.02)
     assert 100.0 / force.max() == pytest.approx(0.065, abs=0.005)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 1.0])
+def test_a_tire_that_is_deflected_at_the_first_moment_was_pressed_there(memory: float) -> None:
+    tire = only("rate_independent_hysteresis", slip_force=40.0, reach=2e-3, memory=memory)
+    there = drive(tire, [0.0], [0.003])
+    pressed = drive(tire, [0.0, 1.0], [0.0, 0.003])
+    assert there[0] == pytest.approx(pressed[1], rel=1e-14)
+    bare = drive(TireModel(), [0.0], [0.003])[0]
+    assert there[0] > bare + 20.0
+    half = only("rate_independent_hysteresis", slip_force=40.0, reach=2e-3, memory=memory, seat=-0.5)
+    assert drive(half, [0.0], [0.003])[0] - bare == pytest.approx(-0.5 * (there[0] - bare), rel=1e-12)

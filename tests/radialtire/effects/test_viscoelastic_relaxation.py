@@ -23,6 +23,23 @@ def test_a_held_force_decays_with_the_relaxation_times() -> None:
     assert force[1:] == pytest.approx(expected[1:], rel=1e-5)
 
 
+def test_five_terms_follow_a_power_of_the_time_over_four_decades() -> None:
+    """A step relaxes as t^-0.4 from 10 ms to 100 s, which is the sum of exponentials of all times (Laplace)."""
+    times = np.geomspace(0.01, 100.0, 5)
+    held = np.geomspace(0.01, 100.0, 41)
+    shares, *_ = np.linalg.lstsq(
+        np.exp(-held[:, None] / times) * held[:, None] ** 0.4, np.ones(41), rcond=None
+    )
+    assert shares.min() > 0.0
+    values = {f"share_{i}": 0.02 * g for i, g in enumerate(shares, start=1)}
+    values |= {f"relaxation_time_{i}": t for i, t in enumerate(times, start=1)}
+    force = drive(only(NAME, law=LINEAR, **values), [0.0, 1e-9, *held], [0.0, *np.full(42, 0.02)])
+    added = force[2:] / (STIFFNESS * 0.02) - 1.0
+    # One exponential to a decade ripples by a tenth, and falls short where its own times end.
+    inside = (held > 0.02) & (held < 50.0)
+    np.testing.assert_allclose(added[inside], 0.02 * held[inside] ** -0.4, rtol=0.15)
+
+
 @pytest.mark.parametrize("times_tau", [0.1, 1.0, 10.0])
 def test_storage_and_loss_are_those_of_a_standard_linear_solid(times_tau: float) -> None:
     # K (1 + g i w tau / (1 + i w tau)); straight lines between 500 moments of a cycle lose (2 pi / 500)^2 / 12

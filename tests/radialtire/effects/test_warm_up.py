@@ -14,6 +14,14 @@ def test_it_has_risen_by_63_percent_of_the_gain_after_the_time_constant() -> Non
     assert force[2] / force[0] == pytest.approx(1.1, rel=1e-14)
 
 
+def test_stretched_it_has_risen_as_far_at_its_time_but_is_slower_in_the_end() -> None:
+    tire = only("warm_up", gain=0.1, time_constant=60.0, stretch=0.5)
+    force = drive(tire, [0.0, 15.0, 60.0, 960.0], [0.02] * 4)
+    # (t / tau)^(1/2) is 1/2, 1 and 4
+    expected = [1.0 + 0.1 * (1.0 - math.exp(-root)) for root in (0.5, 1.0, 4.0)]
+    assert force[1:] / force[0] == pytest.approx(expected, rel=1e-14)
+
+
 def test_ten_kelvin_at_40_psi_are_three_percent_and_more() -> None:
     # gas law at constant volume: absolute pressure in proportion to the temperature; 1 psi for 10 degF, within 10 %
     absolute = 40.0 + 14.7
