@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
+from scipy.stats import binom
 
 from .explain.motion import BoolArray, FloatArray
 from .slow_noise import WHITE, SlowNoise, slow_noise
@@ -22,6 +23,13 @@ ORDERS = (0, 1, 2, 4, 8, 16)
 
 SPIKE = 4.5
 """Innovations beyond this many standard deviations are spikes: one in 150 000 of a normal law."""
+
+HIGHEST, GATHERED = 0.05, 1e-3
+"""Part of the samples with the largest loads, and the chance at which spikes that fall anywhere gather among them."""
+
+WANDER = 0.2
+"""Standard deviation of a recording's mean over the level: what is slower than the recording, and hum at a multiple of
+its sampling, cannot be seen in a residual whose mean the model has taken."""
 
 MEDIAN_TO_SIGMA = 1.4826
 """Standard deviation of a normal law over its median absolute deviation."""
@@ -64,6 +72,19 @@ class Noise:
             scaled = lfilter(self.filter, [1.0], scaled, axis=0)
         return np.asarray(scaled * self.weight[across])
 
+    @property
+    def wander(self) -> tuple[FloatArray, float]:
+        """A constant, whitened and of length 1, and what part of a product along it says nothing: the mean wanders.
+
+        With w = WANDER level the products of whitened columns are those of the covariance I + w^2 1 1'.
+        """
+        constant = self.whitened(np.ones(self.weight.size))
+        length = float(np.linalg.norm(constant))
+        if length == 0.0:
+            return constant, 0.0
+        more = (WANDER * self.level * length) ** 2
+        return constant / length, more / (1.0 + more)
+
 
 def first_guess(residual: FloatArray) -> Noise:
     """Return white noise of the size that the second differences of a residual [N] show."""
@@ -79,11 +100,13 @@ def noise_of(
     freedom: float,
     resolved: BoolArray,
     taken: FloatArray | None = None,
+    load: FloatArray | None = None,
 ) -> Noise:
     """Return the noise whose sample is `residual` [N], left by a model of `freedom` effective coefficients.
 
     through_deflection [N]: stiffness times the deflection's noise, sample by sample; resolved: False where the motion
     turns within a sample; taken: see `slow_noise`, None where the model is too small to take much of the noise
+    load [N]: of the tire; what gathers under the largest loads is no spike but a ceiling or a strike, None: not asked
     """
     count = residual.size
     if np.mean(resolved) < 0.8:
@@ -106,6 +129,8 @@ def noise_of(
         & ~(np.roll(out, 1) & np.roll(out, 2))
         & ~(np.roll(out, -1) & np.roll(out, -2))
     )
+    if load is not None:
+        lone &= ~_gathered(lone, load)
     weight = np.where(lone | ~resolved, 0.0, 1.0)
     weight[: filter_.size - 1] = 0.0
     if np.mean(weight > 0.0) < 0.5:
@@ -118,6 +143,14 @@ def noise_of(
         # What the model has taken of the slow noise is still noise.
         level = max(level, slow.level * float(np.sqrt(np.mean(spread[kept] ** 2))))
     return Noise(float(innovation), float(level), filter_, spread, weight, slow)
+
+
+def _gathered(lone: BoolArray, load: FloatArray) -> BoolArray:
+    """Return where the load is among the largest, if outliers gather there."""
+    highest = load > np.quantile(load, 1.0 - HIGHEST)
+    count, among = int(np.sum(lone)), int(np.sum(lone & highest))
+    chance = float(binom.sf(among - 1, count, float(np.mean(highest)))) if among else 1.0
+    return highest if chance < GATHERED else np.zeros_like(highest)
 
 
 def _autoregression(values: FloatArray) -> FloatArray:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from tirelab.noise import first_guess, noise_of
+from tirelab.noise import WANDER, Noise, first_guess, noise_of
 
 COUNT = 8000
 
@@ -55,3 +55,31 @@ def test_the_first_guess_does_not_see_a_smooth_misfit():
     smooth = 300.0 * np.sin(np.linspace(0.0, 20.0, COUNT))
     guess = first_guess(smooth + 5.0 * np.random.default_rng(5).standard_normal(COUNT))
     assert guess.level == pytest.approx(5.0, rel=0.06)
+
+
+def test_the_mean_counts_only_as_far_as_it_does_not_wander():
+    """The likelihood of a constant is that of the covariance I + w^2 1 1', written as a matrix and solved."""
+    noise = Noise(6.0, 6.0, np.ones(1), np.ones(40), np.ones(40))
+    values = 6.0 * np.random.default_rng(7).standard_normal(40) + 3.0
+    covariance = 36.0 * np.eye(40) + (WANDER * 6.0) ** 2 * np.ones((40, 40))
+    constant = np.full(40, 2.0)
+    direction, part = noise.wander
+    for a, b in ((values, values), (values, constant), (constant, constant)):
+        left, right = noise.whitened(a), noise.whitened(b)
+        told = left @ right - part * (direction @ left) * (direction @ right)
+        assert told == pytest.approx(a @ np.linalg.solve(covariance, b), rel=1e-9)
+
+
+@pytest.mark.parametrize("gathered", [True, False])
+def test_outliers_that_gather_under_the_largest_loads_are_no_spikes(gathered):
+    rng = np.random.default_rng(8)
+    load = 1000.0 + 1000.0 * np.sin(np.linspace(0.0, 40.0 * np.pi, COUNT))
+    values = 6.0 * rng.standard_normal(COUNT)
+    # Twenty lone readings of -60 N: one at the top of each cycle, or anywhere.
+    tops = np.arange(100, COUNT, COUNT // 20)[:20]
+    assert np.all(load[tops] > np.quantile(load, 0.95))
+    out = tops if gathered else rng.choice(COUNT, 20, replace=False)
+    values[out] = -60.0
+    ones = np.ones(COUNT, dtype=bool)
+    noise = noise_of(values, np.zeros(COUNT), 0.0, ones, load=load)
+    assert np.all(noise.weight[out] == (1.0 if gathered else 0.0))

@@ -1,5 +1,9 @@
 """The search finds its way where a first guess misleads it."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from drives import flat_force, read, ride, triangle
@@ -24,3 +28,60 @@ def test_two_zeros_that_are_off_are_not_taken_for_another_tire():
     verdict = diagnose([read("ride", time, deflection, force, 22)])
     either = [set(verdict.names), *(set(r.names) for r in verdict.rivals)]
     assert {"deflection_offset", "force_offset"} in either
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_hum_at_a_multiple_of_the_sampling_is_no_zero_that_is_off(seed):
+    """50 Hz read at 5 Hz stands still: 1.5 N RMS under 5 N of noise shift the reading by 2 N."""
+    time, deflection = triangle(600, step=0.2, period=40.0)
+    hum = 1.5 * np.sqrt(2.0) * np.sin(2.0 * np.pi * 50.0005 * time + 1.2)
+    verdict = diagnose([read("triangle", time, deflection, flat_force(deflection) + hum, seed)])
+    assert verdict.names == ()
+
+
+def test_a_zero_that_is_off_by_the_noise_is_named():
+    time, deflection = triangle(600)
+    verdict = diagnose([read("triangle", time, deflection, flat_force(deflection) + 6.0, 5)])
+    assert verdict.names == ("force_offset",)
+
+
+TOLD = """
+from drives import flat_force, read, triangle
+from tirelab.diagnosis import diagnose
+time, deflection = triangle(600)
+force = flat_force(deflection) * (1.0 - 0.01 * time / time[-1]) + 4.0
+found = diagnose([read("triangle", time, deflection, force, 9)])
+print([(e.names, e.log_evidence) for e in found.evidence], found.confidence)
+"""
+
+
+def test_every_process_finds_the_same():
+    """Python hashes strings differently in each process, and sets are iterated in the order of the hashes."""
+    told = {
+        subprocess.run(
+            [sys.executable, "-c", TOLD],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2", "3")
+    }
+    assert len(told) == 1
+
+
+def test_a_ceiling_that_is_met_only_in_the_corners_of_a_triangle_is_found():
+    """Three readings at each top, where the motion turns within a sample: two percent of all."""
+    time, deflection = triangle(1200, step=0.1, period=15.0)
+    force = flat_force(deflection)
+    clipped = np.minimum(force, np.quantile(force, 0.98))
+    verdict = diagnose([read("triangle", time, deflection, clipped, 11)])
+    assert verdict.names == ("saturation",)
+
+
+def test_a_ceiling_is_met_by_the_whole_force():
+    """Half of what reaches the ceiling is the damper's: as a function of the deflection alone it would be smeared."""
+    time, deflection, rate = ride(12)
+    force = np.maximum(flat_force(deflection) + 1500.0 * rate, 0.0)
+    verdict = diagnose([read("ride", time, deflection, np.minimum(force, np.quantile(force, 0.97)), 12)])
+    assert set(verdict.names) == {"saturation", "viscous_damping"}

@@ -14,7 +14,7 @@ from .beyond import worth_trying
 from .columns import Built, Layout, build, layout_of
 from .evidence import Products, explain, products_of
 from .families import Family
-from .motion import FloatArray, IndexArray
+from .motion import BoolArray, FloatArray, IndexArray, Motion
 from .outstanding import outstanding
 from .place import Point
 from .scene import Scene
@@ -27,6 +27,9 @@ SAMPLES_PER_COLUMN = 10
 """Short recordings leave room for the smooth functions that fit in with this many samples to a column."""
 
 ROUNDS = 2
+
+BESIDE_CORNER = 3
+"""Samples on each side of a corner of the motion whose mean residuals are compared."""
 
 
 def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[Noise, ...]:
@@ -54,6 +57,10 @@ def _noises(
     layout = layout_of(built, families)
     columns, groups = _thinned(built, families, layout)
     noises = [first_guess(b.residual) for b in built]
+    told = [
+        _told(b.residual, r.thin.motion, n.level)
+        for b, r, n in zip(built, scene.records, noises, strict=True)
+    ]
     total = sum(b.residual.size for b in built)
     for _ in range(rounds):
         # Slow noise is not foretold here: what a course of time or motion can follow is first given to that.
@@ -71,9 +78,33 @@ def _noises(
             through = b.place.stiffness * record.thin.motion.blur
             rest.append(left)
             taken = _taken(seen, p, groups, explained.covariance)
-            following.append(noise_of(left, through, freedom, record.thin.motion.resolved, taken))
+            following.append(noise_of(left, through, freedom, told[record.number], taken, b.place.elastic))
         noises = following
     return tuple(noises), rest
+
+
+def _told(residual: FloatArray, motion: Motion, level: float) -> BoolArray:
+    """Return which samples say something: all but the corners of the motion across which the force jumps.
+
+    What depends on rate or direction jumps where the motion turns, and within a sample nobody knows when. Tops, and
+    bottoms, are kept where they do not show a jump of more than half the noise's level [N].
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], ~motion.resolved, [False]]).astype(int)))
+    corners: dict[float, list[tuple[int, int]]] = {}
+    for first, after in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        if first >= BESIDE_CORNER and after + BESIDE_CORNER <= residual.size:
+            corners.setdefault(float(motion.direction[first - 1]), []).append((first, after))
+    told: BoolArray = motion.resolved.copy()
+    for spans in corners.values():
+        jumps = [
+            residual[after : after + BESIDE_CORNER].mean() - residual[first - BESIDE_CORNER : first].mean()
+            for first, after in spans
+        ]
+        deviation = level * np.sqrt(2.0 / BESIDE_CORNER / len(jumps))
+        if abs(np.mean(jumps)) < 0.5 * level + 2.0 * deviation:
+            for first, after in spans:
+                told[first:after] = True
+    return told
 
 
 def _taken(

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from ..noise import Noise, first_guess
-from .evidence import Products, products_of
+from .evidence import Products, less, products_of
 from .families import LAGS, Family
 from .lag import lagged
 from .motion import BoolArray, FloatArray, IndexArray
-from .place import Place, Point, place_at
+from .place import Place, Point, nearest, place_at
 from .scene import Record, Scene
 
 
@@ -62,8 +62,7 @@ def _build_late(scene: Scene, record: Record, point: Point, families: Sequence[F
     force = place.elastic
     on_ground = np.ones(force.size, dtype=bool)
     if point.lifted is not None:
-        near = np.minimum(np.arange(force.size) // max(int(rows[1] - rows[0]), 1), rows.size - 1)
-        on_ground = ~point.lifted[record.number][near]
+        on_ground = ~nearest(record, point.lifted[record.number])
     read = _through_reading(record.time, force * on_ground, point)
     raw, columns = {}, {}
     for f in families:
@@ -129,6 +128,25 @@ def lifted_at(
             held = pointed(point, f.name, raw.shape[1])
             force += raw[:, columns] @ (values - held[columns])
         found.append(force <= 0.0)
+    return tuple(found)
+
+
+def beside_at(
+    built: Sequence[Built],
+    point: Point,
+    families: Sequence[Family],
+    coefficients: Sequence[FloatArray],
+    groups: Sequence[IndexArray],
+) -> tuple[FloatArray, ...]:
+    """Return what the families add to the elastic force [N] before the reading reaches its ceiling."""
+    found = []
+    for b in built:
+        beside = np.zeros_like(b.residual)
+        for f, values, columns in zip(families, coefficients, groups, strict=True):
+            if f.name != "saturation":
+                held = pointed(point, f.name, b.columns[f.name].shape[1])
+                beside += b.columns[f.name][:, columns] @ (values - held[columns])
+        found.append(beside)
     return tuple(found)
 
 
@@ -199,7 +217,7 @@ def measure(
     built: Sequence[Built], noises: Sequence[Noise], families: Sequence[Family], point: Point
 ) -> Products:
     """Return the products of all columns, with the coefficients that the point holds given back to the data."""
-    columns, data = [], []
+    columns, data, along, along_data, parts = [], [], [], [], []
     for b, noise in zip(built, noises, strict=True):
         held = b.residual.copy()
         for f in families:
@@ -208,6 +226,10 @@ def measure(
                 held += b.columns[f.name] @ values
         columns.append(noise.whitened(np.concatenate([b.columns[f.name] for f in families], axis=1)))
         data.append(noise.whitened(held))
+        constant, part = noise.wander
+        along.append(constant @ columns[-1])
+        along_data.append(constant @ data[-1])
+        parts.append(part)
     plain = {
         f.name: sum(
             (
@@ -219,10 +241,21 @@ def measure(
         for f in families
         if f.slow
     }
-    return replace(products_of(np.concatenate(columns), np.concatenate(data)), plain=plain)
+    p = less(
+        products_of(np.concatenate(columns), np.concatenate(data)),
+        np.stack(along),
+        np.array(along_data),
+        np.array(parts),
+    )
+    return replace(p, plain=plain)
 
 
 def nothing(built: Sequence[Built], noises: Sequence[Noise]) -> Products:
     """Return the products of no columns: the data alone."""
-    data = np.concatenate([n.whitened(b.residual) for b, n in zip(built, noises, strict=True)])
-    return Products(np.zeros((0, 0)), np.zeros(0), float(data @ data), data.size, np.zeros(0))
+    power, samples = 0.0, 0
+    for b, noise in zip(built, noises, strict=True):
+        data = noise.whitened(b.residual)
+        constant, part = noise.wander
+        power += float(data @ data - part * (constant @ data) ** 2)
+        samples += data.size
+    return Products(np.zeros((0, 0)), np.zeros(0), power, samples, np.zeros(0))

@@ -13,7 +13,7 @@ the last percent, so that more samples than its own form's error is worth do not
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,6 +35,7 @@ class Products:
     """What every comparison needs: products of the whitened columns and the data, in units of the noise.
 
     gram (k, k); moment (k,); power: y'y; samples: number of whitened samples; scale (k,): RMS of each column
+    whole (k, k): the gram matrix by which sizes are told, where some directions of the data say less (see `less`)
     plain: for some families X'X of their columns as given, not whitened, over the square of the noise's level
     """
 
@@ -43,6 +44,7 @@ class Products:
     power: float
     samples: int
     scale: FloatArray
+    whole: FloatArray | None = None
     plain: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
@@ -52,6 +54,22 @@ def products_of(columns: FloatArray, data: FloatArray) -> Products:
     scale[scale < 1e-12 * (scale.max(initial=0.0) + 1e-300)] = np.inf
     gram = columns.T @ columns / np.outer(scale, scale)
     return Products(gram, columns.T @ data / scale, float(data @ data), data.size, scale)
+
+
+def less(p: Products, directions: FloatArray, data: FloatArray, parts: FloatArray) -> Products:
+    """Return the products without those `parts` (m,) of them that lie along m directions of the samples.
+
+    directions (m, k), data (m,): the columns and the data along them
+    """
+    along = directions / p.scale
+    weighted = along * parts[:, None]
+    return replace(
+        p,
+        gram=p.gram - along.T @ weighted,
+        moment=p.moment - weighted.T @ data,
+        power=p.power - float(parts @ data**2),
+        whole=p.gram,
+    )
 
 
 @dataclass(frozen=True)
@@ -71,6 +89,14 @@ class Explained:
     freedom: float
     covariance: FloatArray = field(default_factory=lambda: np.zeros((0, 0)), repr=False, compare=False)
     together: Callable[[Sequence[int]], float] = field(default=lambda numbers: 0.0, repr=False, compare=False)
+
+
+def _covariance(
+    p: Products, index: IndexArray, zeta: float, precision: FloatArray, covariance: FloatArray
+) -> FloatArray:
+    if p.whole is None:
+        return covariance
+    return np.asarray(np.linalg.inv(zeta * p.whole[np.ix_(index, index)] + np.diag(precision)))
 
 
 def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained:
@@ -103,6 +129,9 @@ def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained
     log_evidence = -0.5 * (zeta * p.power - gain + log_determinant) - SCALE_COST * len(groups)
     raw = gram / zeta
     chi_square = (p.power - 2.0 * float(moment @ mean) / zeta + float(mean @ raw @ mean)) / p.samples
+    # Sizes are told as they are, whatever part of the data speaks for them.
+    covariance = _covariance(p, index, zeta, precision, covariance)
+    raw = raw if p.whole is None else p.whole[np.ix_(index, index)]
     size, unique = [], []
     for start, end in zip(starts, ends, strict=True):
         here = slice(start, end)

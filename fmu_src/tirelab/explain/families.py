@@ -65,13 +65,14 @@ def law_columns(powers: tuple[int, ...]) -> Builder:
 
 
 @njit(cache=True)
-def jenkins(deflection: FloatArray, reach: float, forgets: bool) -> FloatArray:
+def jenkins(deflection: FloatArray, reach: float, forgets: bool, seated: bool = True) -> FloatArray:
     """Return the pull of a spring with a slider, -1 to 1, that slides after `reach` [m] of travel (Iwan 1966).
 
     forgets: True where a tire that has left the ground starts anew, False where it comes back as it left
+    seated: True where the tire was pressed to its first deflection from 0, False where nothing pulls there
     """
     state = np.empty_like(deflection)
-    z = 0.0
+    z = max(deflection[0], 0.0) / reach if seated else 0.0
     for i in range(deflection.size):
         z += (deflection[i] - deflection[max(i - 1, 0)]) / reach
         z = min(max(z, -1.0), 1.0)
@@ -96,13 +97,17 @@ REACHES = (1e-4, 2.5e-4, 5e-4, 1e-3, 1.7e-3, 3e-3, 6e-3, 1.2e-2)
 """Travels [m] after which the sliders of an Iwan model slide: sums of them follow Dahl, Bouc-Wen and Iwan loops."""
 
 
+BEGINNINGS = ((False, True), (True, True), (False, False))
+"""Whether a slider forgets in the air, and whether it is seated at the first moment."""
+
+
 def _friction(p: Place) -> FloatArray:
     load = p.elastic / p.scene.strongest
     contact = _contact(p)
     states = p.record.kept(
         "friction",
         lambda motion: (
-            jenkins(motion.deflection, reach, forgets) for forgets in (False, True) for reach in REACHES
+            jenkins(motion.deflection, reach, *start) for start in BEGINNINGS for reach in REACHES
         ),
     )
     return np.stack([z * share for z in states for share in (contact, load, 1.0)], axis=1)
@@ -117,11 +122,11 @@ def _contact(p: Place) -> FloatArray:
 
 
 def _memories(count: int) -> list[list[int]]:
-    """Return one variant for each memory of the air, with the dry force growing as the contact closes or at once."""
-    half = count // 2
+    """Return one variant for each beginning, with the dry force growing as the contact closes or at once."""
+    own = count // len(BEGINNINGS)
     return [
-        [first + 3 * i + k for i in range(half // 3) for k in (constant, 1)]
-        for first in (0, half)
+        [first + 3 * i + k for i in range(own // 3) for k in (constant, 1)]
+        for first in range(0, count, own)
         for constant in (0, 2)
     ]
 
@@ -163,11 +168,24 @@ def _relaxation(p: Place) -> FloatArray:
     return np.stack([p.taken(high_pass(p.record.time, p.elastic, tau)) for tau in times], axis=1)
 
 
+MEASURES = ((0.3, 0.0), (0.3, 0.15), (0.3, 0.6))
+"""Energies over which a tire softens, as parts of the largest so far and of the largest of all."""
+
+ENERGY = 2.4
+"""Power of the deflection to which the energy stored in a tire grows, about: 1 + B."""
+
+
 def _mullins(p: Place) -> FloatArray:
-    """Softer below the largest deflection so far: at once, and as the way travelled below it goes on."""
-    deepest = np.maximum.accumulate(p.deflection)
-    below = np.clip(1.0 - p.deflection / np.maximum(deepest, 1e-9), 0.0, 1.0)
+    """Softer below the largest deflection so far: at once, and as the way travelled below it goes on.
+
+    How far below is measured in deflection or in energy, in proportion to the largest so far or not.
+    """
+    deepest = np.maximum(np.maximum.accumulate(p.deflection), 1e-9)
+    part = np.clip(p.deflection / deepest, 0.0, 1.0)
+    below, lost = 1.0 - part, 1.0 - part**ENERGY
+    fixed = (p.scene.deepest / deepest) ** ENERGY
     shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
+    shapes += [-np.expm1(-lost / (share + own * fixed)) for share, own in MEASURES]
     way = np.cumsum(np.abs(np.diff(p.deflection, prepend=p.deflection[0])) * (below > 0.0))
     gathered = [1.0, *(-np.expm1(-way / (share * p.scene.deepest)) for share in (0.4, 1.5))]
     return np.stack([p.taken(p.elastic * shape * part) for part in gathered for shape in shapes], axis=1)
@@ -243,7 +261,7 @@ more than the zero of the reading is off."""
 
 
 def _saturation(p: Place) -> FloatArray:
-    force = p.elastic / p.scene.highest
+    force = p.before_reading / p.scene.highest
     beyond = []
     for softness in CEILING_SOFTNESSES:
         for ceiling in CEILINGS:

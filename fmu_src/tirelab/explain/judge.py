@@ -44,14 +44,16 @@ CONFINED_FORM = 0.4
 
 CONFINED = ("bottoming", "saturation")
 
+LAW = ("recalibration", "shape")
+
 MATERIAL_OFFSET = 0.08
 """The same for an offset beside a free law: that law imitates all of it but its sharp end where the tire lifts off."""
 
 OFFSETS = ("deflection_offset", "force_offset")
 
-MATERIAL_SLOW = {"time": 0.5, "jump": 0.5, "time, added": 0.5, "period": 0.6, "period, added": 0.6}
-"""The same for what slow noise and hum of the amplifier look like, as they are and not whitened: up to half the noise
-they are noise."""
+MATERIAL_SLOW = 0.7
+"""The same for what slow noise and hum of the amplifier look like, as they are and not whitened: up to half the noise's
+power, sqrt(1/2), they are noise."""
 
 FORM_ERROR = 0.03
 """What a family may miss of its own effect, as a part of it: a second one smaller than that is not believed."""
@@ -86,7 +88,7 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
     choice = {n: layout.variants[n][0] for n in names}
     many = [n for n in names if len(layout.variants[n]) > 1]
     static = [n for n in names if n in STATIC]
-    prior = sum(_prior(layout.families[n], "recalibration" in names or n in static[1:]) for n in names)
+    prior = sum(prior_of(layout.families[n], "recalibration" in names or n in static[1:]) for n in names)
     for turn in range(2 if len(many) > 1 else 1):
         for n in many:
             others = [choice[m] for m in names if m != n and (turn or m not in many[many.index(n) :])]
@@ -122,15 +124,14 @@ def _negligible(
     found = []
     sizes = dict(zip(names, explained.size, strict=True))
     own = dict(zip(names, explained.unique, strict=True))
-    of_law = [i for i, n in enumerate(names) if n in ("recalibration", "shape")]
+    of_law = [i for i, n in enumerate(names) if n in LAW]
     law = explained.together(of_law) if of_law else 0.0
     for name in names:
         if name == "shape":
             continue
-        if (
-            name in MATERIAL_SLOW
-            and _as_it_is(p, layout, names, groups, explained, name) < MATERIAL_SLOW[name]
-        ):
+        unique = law if name == "recalibration" else own[name]
+        slow = layout.families[name].slow
+        if slow and _as_it_is(p, layout, names, groups, explained, name) < MATERIAL_SLOW:
             found.append(name)
             continue
         beyond = layout.families[name].agnostic
@@ -138,14 +139,15 @@ def _negligible(
             (
                 (UNKNOWN_FORM if beyond or layout.families[n].agnostic else FORM_ERROR) * size
                 for n, size in sizes.items()
-                if n not in (name, "shape", "recalibration")
+                if n not in (name, *LAW)
             ),
             default=0.0,
         )
-        unique = law if name == "recalibration" else own[name]
         usual = MATERIAL
         if name in CONFINED:
-            usual, doubt = MATERIAL_CONFINED, CONFINED_FORM * doubt
+            # Where others act with the time or the rate, the ceiling is one of them too.
+            apart = name == "bottoming" or all(n in (*STATIC, *OFFSETS, *CONFINED) or n in LAW for n in names)
+            usual, doubt = MATERIAL_CONFINED, (CONFINED_FORM if apart else 1.0) * doubt
         elif name in OFFSETS and "recalibration" in names:
             usual = MATERIAL_OFFSET
         if unique < max(usual, doubt):
@@ -166,11 +168,13 @@ def _as_it_is(
     own = groups[number] - layout.start[name]
     values = explained.coefficients[number]
     whole = float(values @ p.plain[name][np.ix_(own, own)] @ values)
+    size = float(np.sqrt(max(whole, 0.0) / p.samples))
     part = explained.unique[number] / max(explained.size[number], 1e-300)
-    return min(part, 1.0) * float(np.sqrt(max(whole, 0.0) / p.samples))
+    return min(part, 1.0) * size
 
 
-def _prior(family: Family, recalibrated: bool) -> float:
+def prior_of(family: Family, recalibrated: bool) -> float:
+    """Return the log prior odds that a family is in a set; recalibrated: whether the law is free in it."""
     if family.name == "shape":
         return 0.0
     if family.name == "recalibration":

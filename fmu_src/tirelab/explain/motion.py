@@ -45,6 +45,8 @@ def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]."""
     noise = deflection_noise(deflection)
     smooth, rate, acceleration, blur, resolved = _smoothed(time, deflection, noise)
+    # Smoothing cuts a corner short: there the reading itself is nearer.
+    smooth, blur = np.where(resolved, smooth, deflection), np.where(resolved, blur, noise)
     direction, cycle, turned = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
     deepest = np.maximum.accumulate(smooth)
     return Motion(smooth, rate, acceleration, noise, blur, deepest, cycle, direction, turned, resolved)

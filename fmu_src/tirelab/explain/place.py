@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .motion import BoolArray, FloatArray, IndexArray
 from .scene import DEEP_IN_CM, Record, Scene
+
+Value = TypeVar("Value", np.float64, np.bool_)
 
 
 @dataclass(frozen=True)
@@ -17,6 +21,7 @@ class Point:
     shape (surfaces, 4): coefficients of log(force/law) in powers of the logarithm of the deflection
     offset [m]; compliance [m/N]; lag [s] and the number of first-order stages that share it, 0 for a pure delay
     lifted: for each recording, where the tire has lost the ground: it cannot pull, so that nothing acts there
+    beside [N]: for each recording, what the set adds to the elastic force before the reading reaches its ceiling
     """
 
     shape: FloatArray
@@ -25,11 +30,15 @@ class Point:
     lag: float = 0.0
     stages: int = 0
     lifted: tuple[BoolArray, ...] | None = None
+    beside: tuple[FloatArray, ...] | None = None
 
 
 @dataclass(frozen=True)
 class Place:
-    """One recording at a point: deflection of the tire, elastic force [N], its tangents, and the scales."""
+    """One recording at a point: deflection of the tire, elastic force [N], its tangents, and the scales.
+
+    before_reading [N]: the force that the load cell would read if it had no ceiling
+    """
 
     record: Record
     scene: Scene
@@ -37,6 +46,7 @@ class Place:
     elastic: FloatArray
     stiffness: FloatArray
     logarithm: FloatArray
+    before_reading: FloatArray
     rows: IndexArray | None = None
 
     def taken(self, column: FloatArray) -> FloatArray:
@@ -82,4 +92,15 @@ def place_at(record: Record, scene: Scene, point: Point) -> Place:
     force, stiffness, logarithm = elastic(deflection)
     if point.compliance != 0.0:
         stiffness = stiffness / np.maximum(1.0 + point.compliance * stiffness, 0.2)
-    return Place(record, scene, deflection, force, stiffness, logarithm)
+    whole = force
+    if point.beside is not None:
+        whole = force + nearest(record, point.beside[record.number])
+    return Place(record, scene, deflection, force, stiffness, logarithm, whole)
+
+
+def nearest(record: Record, values: NDArray[Value]) -> NDArray[Value]:
+    """Return at every sample of a recording what is known at its thin ones."""
+    if values.size == record.time.size:
+        return values
+    every = max(int(record.rows[1] - record.rows[0]), 1)
+    return values[np.minimum(np.arange(record.time.size) // every, values.size - 1)]

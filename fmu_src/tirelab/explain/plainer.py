@@ -14,15 +14,18 @@ import numpy as np
 from ..noise import Noise, noise_of
 from .columns import build, pointed
 from .families import Family
-from .judge import law_whole
+from .judge import MATERIAL_SLOW, law_whole
 from .motion import FloatArray
-from .outstanding import LOUD
 from .scene import Scene
 from .search import Settled, settle
 
-QUICK = ("inertia", "force_lag", "saturation")
-"""What slow noise cannot stand for, but its measure can swallow: what is quick, or there for a moment. The same holds
-for what is beyond the catalogue, which has to be louder than slow noise anyway (`judge.MATERIAL_SLOW`)."""
+UNASKED = ("inertia", "force_lag", "saturation", "force_offset")
+"""What slow noise cannot stand for, but its measure can swallow: what is quick, or there for a moment, and a constant
+(see `noise.WANDER`). What is beyond the catalogue has to be louder than slow noise anyway (`judge.MATERIAL_SLOW`)."""
+
+
+MOST = 1.0 + MATERIAL_SLOW**2
+"""Power of a noise measured anew over that before: what it adds beyond this is no slow noise."""
 
 
 def noise_of_less(
@@ -35,15 +38,15 @@ def noise_of_less(
     if any(r.outstanding.lines or r.outstanding.spans for r in scene.records):
         return None
     by_name = {f.name: f for f in families}
-    for gone in best.names:
-        if gone == "shape" or gone in QUICK or by_name[gone].agnostic:
-            continue
-        names = law_whole(n for n in best.names if n != gone)
+    asked = [n for n in best.names if n != "shape" and n not in UNASKED and not by_name[n].agnostic]
+    # Two can follow slow noise together where neither does alone.
+    for gone in [*((n,) for n in asked), *([tuple(asked)] if len(asked) > 1 else [])]:
+        names = law_whole(n for n in best.names if n not in gone)
         less = settle(scene, noises, by_name, names, zeta, best.point)
         if not np.isfinite(less.log_evidence):
             continue
         wider = tuple(_wider(less, scene, noises))
-        if _power(wider) > (1.0 + LOUD**2) * _power(noises):
+        if _power(wider) > MOST * _power(noises):
             continue
         more = settle(scene, wider, by_name, best.names, zeta, best.point)
         less = settle(scene, wider, by_name, names, zeta, less.point)
@@ -64,7 +67,7 @@ def _wider(less: Settled, scene: Scene, noises: Sequence[Noise]) -> list[Noise]:
         left = _left(less, b.residual, b.columns)
         through = b.place.stiffness * record.thin.motion.blur
         share = less.candidate.explained.freedom * left.size / less.products.samples
-        own = noise_of(left, through, share, record.thin.motion.resolved)
+        own = noise_of(left, through, share, record.thin.motion.resolved, load=b.place.elastic)
         found.append(own if own.level > noise.level else noise)
     return found
 

@@ -13,7 +13,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..noise import Noise
-from .columns import Layout, build, layout_of, lifted_at, lifted_from_force, measure, moved, nothing
+from .columns import (
+    Layout,
+    beside_at,
+    build,
+    layout_of,
+    lifted_at,
+    lifted_from_force,
+    measure,
+    moved,
+    nothing,
+)
 from .evidence import Products
 from .families import STATIC, Family
 from .judge import CONFINED, Candidate, SetName, judge, law_whole, material
@@ -110,7 +120,8 @@ def _settle(
         starts = np.cumsum([0, *(layout.count[n] for n in names)])
         own = [g - start for g, start in zip(candidate.groups, starts, strict=False)]
         lifted = lifted_at(built, point, chosen, candidate.explained.coefficients, own)
-        following = replace(point, lifted=lifted)
+        beside = beside_at(built, point, chosen, candidate.explained.coefficients, own)
+        following = replace(point, lifted=lifted, beside=beside)
         for name, values, group in zip(names, candidate.explained.coefficients, own, strict=True):
             following = moved(following, name, values, group)
         if _same(point, following) or (turn > 1 and abs(gained) < 0.05):
@@ -146,6 +157,7 @@ def _only(point: Point, names: SetName) -> Point:
         point.lag if "force_lag" in names else 0.0,
         point.stages,
         point.lifted,
+        point.beside,
     )
 
 
@@ -214,13 +226,15 @@ class Screen:
         return -found.log_evidence, -found.likely
 
     def neighbours(self, names: SetName) -> None:
-        """Judge every set that differs from `names` by one family more, less or other."""
+        """Judge every set that differs from `names` by one family more, less or other, and by a free law."""
+        law = ["recalibration"] if "recalibration" in self.layout.families else []
         for gone in ("", *names):
             left = tuple(n for n in names if n not in (gone, "shape"))
             self.judged(left)
             for n in self.layout.families:
                 if self.allowed(left, n):
                     self.judged((*left, n))
+                    self.judged((*left, n, *law))
         for free in self.freed(names):
             self.judged(free)
 
