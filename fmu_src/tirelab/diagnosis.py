@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from radialtire import TireModel
 
+from .choice import choose, cleared_of, fitted_set
 from .errors import TirelabError
 from .explain.background import background
 from .explain.beyond import AGNOSTIC_FAMILIES, SURFACE, worth_trying
@@ -24,8 +25,8 @@ from .learn import learned
 from .locate import beyond_law, locate
 from .naming import BEYOND, named
 from .noise import Noise
-from .refit import Case, Refit, refit, smooth_of
-from .rivals import confidence_of, one_constant_rate, rivals_of
+from .refit import Case, Refit, smooth_of
+from .rivals import confidence_of, rivals_of
 from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
 from .summary import summarise
@@ -98,7 +99,6 @@ def diagnose(
             break
         noises = wider
         found = search(scene, noises, families, power, tell)
-    best = found.settled[0]
 
     tell("fitting the parameters")
     believed = replace(tire, tracking_time=likeliest_tracking(recordings).tracking_time)
@@ -113,8 +113,9 @@ def diagnose(
         )
         for recording, noise, record in zip(recordings, noises, scene.records, strict=True)
     ]
-    cleared = _cleared(best, cases, scene)
-    fitted = _refit(best, believed, cases, scene, power)
+    settled, fitted = choose(found.settled, believed, cases, scene, power)
+    best = settled[0]
+    cleared = cleared_of(best, cases, scene)
     motions = [r.motion for r in scene.records]
     noise, resolved = max(m.noise for m in motions), [m.resolved for m in motions]
     believed = replace(believed, tracking_time=serving_tracking(fitted.tire, recordings, resolved, noise))
@@ -130,16 +131,14 @@ def diagnose(
     corrections = learned(beyond, scene, fitted.residuals, kept)
     fit = _figures(before, fitted, noises, kept)
     effects = _effects(best, fitted)
-    rivals = tuple(r for r in rivals_of(found.settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
+    rivals = tuple(r for r in rivals_of(settled, scene) if set(r.names) - {UNKNOWN} <= set(catalogue))
     confidence = confidence_of(rivals)
     apart = beyond_law(recordings, before, believed, fitted.tire)
     places = locate(recordings, scene, apart, noises, None if beyond else fitted.residuals)
     test = None
     if rivals:
         tell("looking for the test that would tell")
-        test = _separating(
-            best, fitted, rivals, found.settled, believed, cases, scene, power, fit.noise, limits
-        )
+        test = _separating(best, fitted, rivals, settled, believed, cases, scene, power, fit.noise, limits)
     return Verdict(
         effects,
         confidence,
@@ -151,7 +150,7 @@ def diagnose(
         places,
         fit,
         fitted.tire,
-        _table(found.settled),
+        _table(settled),
         test if test is not None and test.tells else None,
         found.compared,
         fitted.evaluations,
@@ -222,58 +221,10 @@ def _check_signal(scene: Scene, noises: Sequence[Noise]) -> None:
             )
 
 
-def _parts(settled: Settled, scene: Scene) -> dict[str, list[FloatArray]]:
-    """Return what each family of a settled set adds [N], for each recording."""
-    built = build(scene, settled.point, [settled.layout.families[n] for n in settled.names])
-    parts: dict[str, list[FloatArray]] = {}
-    for name, group, values in zip(
-        settled.names, settled.candidate.groups, settled.candidate.explained.coefficients, strict=True
-    ):
-        own = group - settled.layout.start[name]
-        parts[name] = [b.columns[name][:, own] @ values for b in built]
-    return parts
-
-
-def _refit(
-    settled: Settled,
-    believed: TireModel,
-    cases: Sequence[Case],
-    scene: Scene,
-    power: float,
-) -> Refit:
-    names = [n for n in settled.names if n not in BEYOND and n != "shape"]
-    parts = _parts(settled, scene)
-    cleared = _cleared(settled, cases, scene)
-    middle = np.log(50.0 * scene.deepest)
-    shape = settled.point.shape
-    law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
-    return refit(
-        believed,
-        names,
-        parts,
-        law,
-        cleared,
-        scene.radii,
-        scene.deepest,
-        scene.strongest,
-        power,
-        one_constant_rate(scene),
-    )
-
-
 def _tracked(fitted: Refit, believed: TireModel, recordings: Sequence[Recorded]) -> Refit:
     """Return the fit with the believed tire's tracking time."""
     tire = replace(fitted.tire, tracking_time=believed.tracking_time)
     return replace(fitted, tire=tire, residuals=tuple(r.force - simulate(tire, r) for r in recordings))
-
-
-def _cleared(settled: Settled, cases: Sequence[Case], scene: Scene) -> list[Case]:
-    """Return the cases with what is beyond the catalogue taken out: no effect is bent to follow it."""
-    parts = _parts(settled, scene)
-    beyond = [n for n in settled.names if n in BEYOND]
-    return [
-        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
-    ]
 
 
 def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
@@ -321,7 +272,7 @@ def _separating(
         other = next((s for s in settled if named(s) == rival.names), None)
         if other is None:
             continue
-        second = _refit(other, believed, cases, scene, power)
+        second = fitted_set(other, believed, cases, scene, power)
         reach = limits or Limits(
             deepest=scene.deepest,
             fastest=max(0.1, 2.0 * max(float(np.abs(r.motion.rate).max()) for r in scene.records)),

@@ -21,7 +21,8 @@ SPEAKS = 4.0
 """The same for a set with one effect more: without any sample that speaks for it an effect costs five."""
 
 DOUBTED = 1.5
-"""Least log odds against what is smaller than the others' own error of form: the evidence may be that error's."""
+"""Least log odds against what is smaller than the others' own error of form, and most against what one rate tells from
+the best by the form of its loop alone: the evidence may be that error's."""
 
 MOST_RIVALS = 5
 """So many are stated, likeliest first, beside those that one rate cannot tell at all."""
@@ -52,7 +53,8 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
             found[names] = min(gap, found.get(names, np.inf))
     for names, gap in static_rivals(settled):
         found.setdefault(names, gap)
-    same = [(names, 0.0) for names in one_rate_rivals(named(best), scene)]
+    gaps = {named(s): best.log_evidence - s.log_evidence for s in reversed(settled)}
+    same = [(names, min(gaps.get(names, 0.0), DOUBTED)) for names in one_rate_rivals(named(best), scene)]
     others = [item for item in sorted(found.items(), key=lambda item: item[1]) if item[0] not in dict(same)]
     order = [*same, *others[:MOST_RIVALS]]
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)

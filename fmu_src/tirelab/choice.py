@@ -1,0 +1,137 @@
+"""The set that is believed: the likeliest of the search whose every effect earns its place in the catalogue's own form.
+
+The search speaks in columns, more of them than an effect has parameters: together they can follow what another effect's
+form has missed. So the weak effects of a set are left out of its fit once more, one by one. One that does not gain what
+it costs there is not believed, and the likeliest set without it is fitted in its turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from radialtire import CATALOGUE, TireModel
+
+from .explain.columns import build
+from .explain.judge import prior_of
+from .explain.motion import FloatArray
+from .explain.scene import Scene
+from .explain.search import Settled
+from .naming import BEYOND, named
+from .refit import Case, Refit, gain_of, refit
+from .rivals import one_constant_rate
+
+WEAK = 0.5
+"""An effect whose own part is below so many noises is asked: what is larger is no error of another's form."""
+
+ASKED = 3
+"""So many are asked at most, the weakest first."""
+
+TRIES = 3
+"""Sets that are fitted at most before one is believed."""
+
+
+def choose(
+    settled: Sequence[Settled], believed: TireModel, cases: Sequence[Case], scene: Scene, power: float
+) -> tuple[tuple[Settled, ...], Refit]:
+    """Return the settled sets with the one that is believed first, and its fit.
+
+    settled: best first; power: part of the evidence that counts. A set that was not believed comes last, with what its
+    weakest effect gains for its likelihood.
+    """
+    left, doubted = list(settled), list[tuple[Settled, float]]()
+    while True:
+        fitted = fitted_set(left[0], believed, cases, scene, power)
+        gains = _gains(left[0], fitted, believed, cases, scene, power)
+        failing = min(gains, key=lambda name: gains[name], default=None)
+        others = [s for s in left if failing not in named(s)]
+        if failing is None or gains[failing] >= 0.0 or not others or len(doubted) == TRIES - 1:
+            break
+        doubted.append((left[0], gains[failing]))
+        left = others
+    best = left[0].log_evidence
+    return (*left, *(_doubted(s, best + gain) for s, gain in doubted)), fitted
+
+
+def _gains(
+    settled: Settled, fitted: Refit, believed: TireModel, cases: Sequence[Case], scene: Scene, power: float
+) -> dict[str, float]:
+    """Return the log posterior odds of each weak effect of a fitted set; none of one that is beyond its bounds."""
+    own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
+    names = [n for n in named(settled) if n in own]
+    gains = {n: -np.inf for n in names if _beyond_bounds(n, fitted)}
+    weak = sorted((n for n in names if own[n] < WEAK and n not in gains), key=lambda n: own[n])
+    cleared = cleared_of(settled, cases, scene)
+    for name in weak[:ASKED]:
+        prior = prior_of(settled.layout.families[name], "recalibration" in names)
+        gains[name] = gain_of(name, fitted, believed, cleared, scene.radii, power) + prior
+    return gains
+
+
+def _beyond_bounds(name: str, fitted: Refit) -> bool:
+    """Return whether the fit pushes an effect's strength to the largest value that the catalogue finds plausible."""
+    if name not in CATALOGUE:
+        return False
+    parameters = CATALOGUE[name].parameters
+    return any(
+        k.owner == name
+        and parameters[k.index].off is not None
+        and not parameters[k.index].extra
+        and parameters[k.index].name != "limit"
+        and value >= k.high
+        for k, value in zip(fitted.knobs, fitted.values, strict=True)
+    )
+
+
+def _doubted(settled: Settled, likely: float) -> Settled:
+    return replace(settled, candidate=replace(settled.candidate, log_evidence=-np.inf, likely=likely))
+
+
+def parts_of(settled: Settled, scene: Scene) -> dict[str, list[FloatArray]]:
+    """Return what each family of a settled set adds [N], for each recording."""
+    built = build(scene, settled.point, [settled.layout.families[n] for n in settled.names])
+    parts: dict[str, list[FloatArray]] = {}
+    for name, group, values in zip(
+        settled.names, settled.candidate.groups, settled.candidate.explained.coefficients, strict=True
+    ):
+        own = group - settled.layout.start[name]
+        parts[name] = [b.columns[name][:, own] @ values for b in built]
+    return parts
+
+
+def fitted_set(
+    settled: Settled,
+    believed: TireModel,
+    cases: Sequence[Case],
+    scene: Scene,
+    power: float,
+) -> Refit:
+    """Return the settled set fitted to the cases in the catalogue's own forms."""
+    names = [n for n in settled.names if n not in BEYOND and n != "shape"]
+    parts = parts_of(settled, scene)
+    cleared = cleared_of(settled, cases, scene)
+    middle = np.log(50.0 * scene.deepest)
+    shape = settled.point.shape
+    law = np.stack([shape[:, 0] - shape[:, 1] * middle, shape[:, 1]], axis=1)
+    return refit(
+        believed,
+        names,
+        parts,
+        law,
+        cleared,
+        scene.radii,
+        scene.deepest,
+        scene.strongest,
+        power,
+        one_constant_rate(scene),
+    )
+
+
+def cleared_of(settled: Settled, cases: Sequence[Case], scene: Scene) -> list[Case]:
+    """Return the cases with what is beyond the catalogue taken out: no effect is bent to follow it."""
+    parts = parts_of(settled, scene)
+    beyond = [n for n in settled.names if n in BEYOND]
+    return [
+        replace(case, beyond=sum((parts[n][i] for n in beyond), case.beyond)) for i, case in enumerate(cases)
+    ]
