@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from ..noise import Noise, first_guess
-from .evidence import Products, less, products_of
+from .evidence import Products, discounted, products_of
 from .families import LAGS, Family
 from .lag import lagged
 from .motion import BoolArray, FloatArray, IndexArray
@@ -241,7 +241,7 @@ def measure(
         for f in families
         if f.slow
     }
-    p = less(
+    p = discounted(
         products_of(np.concatenate(columns), np.concatenate(data)),
         np.stack(along),
         np.array(along_data),

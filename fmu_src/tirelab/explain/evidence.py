@@ -35,7 +35,7 @@ class Products:
     """What every comparison needs: products of the whitened columns and the data, in units of the noise.
 
     gram (k, k); moment (k,); power: y'y; samples: number of whitened samples; scale (k,): RMS of each column
-    whole (k, k): the gram matrix by which sizes are told, where some directions of the data say less (see `less`)
+    whole (k, k): the gram matrix by which sizes are told, where some directions of the data say less (see `discounted`)
     plain: for some families X'X of their columns as given, not whitened, over the square of the noise's level
     """
 
@@ -56,7 +56,7 @@ def products_of(columns: FloatArray, data: FloatArray) -> Products:
     return Products(gram, columns.T @ data / scale, float(data @ data), data.size, scale)
 
 
-def less(p: Products, directions: FloatArray, data: FloatArray, parts: FloatArray) -> Products:
+def discounted(p: Products, directions: FloatArray, data: FloatArray, parts: FloatArray) -> Products:
     """Return the products without those `parts` (m,) of them that lie along m directions of the samples.
 
     directions (m, k), data (m,): the columns and the data along them
@@ -91,14 +91,6 @@ class Explained:
     together: Callable[[Sequence[int]], float] = field(default=lambda numbers: 0.0, repr=False, compare=False)
 
 
-def _covariance(
-    p: Products, index: IndexArray, zeta: float, precision: FloatArray, covariance: FloatArray
-) -> FloatArray:
-    if p.whole is None:
-        return covariance
-    return np.asarray(np.linalg.inv(zeta * p.whole[np.ix_(index, index)] + np.diag(precision)))
-
-
 def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained:
     """Return how well the groups of column numbers explain the data together."""
     if not groups:
@@ -129,19 +121,20 @@ def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained
     log_evidence = -0.5 * (zeta * p.power - gain + log_determinant) - SCALE_COST * len(groups)
     raw = gram / zeta
     chi_square = (p.power - 2.0 * float(moment @ mean) / zeta + float(mean @ raw @ mean)) / p.samples
-    # Sizes are told as they are, whatever part of the data speaks for them.
-    covariance = _covariance(p, index, zeta, precision, covariance)
-    raw = raw if p.whole is None else p.whole[np.ix_(index, index)]
+    free = covariance
+    if p.whole is not None:  # sizes are told as they are, whatever part of the data speaks for them
+        raw = p.whole[np.ix_(index, index)]
+        free = np.linalg.inv(zeta * raw + np.diag(precision))
     size, unique = [], []
     for start, end in zip(starts, ends, strict=True):
         here = slice(start, end)
         size.append(float(np.sqrt(max(mean[here] @ raw[here, here] @ mean[here], 0.0) / p.samples)))
-        block = np.linalg.inv(covariance[here, here])
+        block = np.linalg.inv(free[here, here])
         unique.append(float(np.sqrt(max(mean[here] @ (block @ mean[here]), 0.0) / zeta / p.samples)))
 
     def together(numbers: Sequence[int]) -> float:
         own = np.concatenate([np.arange(starts[i], ends[i]) for i in numbers])
-        power = mean[own] @ np.linalg.solve(covariance[np.ix_(own, own)], mean[own])
+        power = mean[own] @ np.linalg.solve(free[np.ix_(own, own)], mean[own])
         return float(np.sqrt(max(power, 0.0) / zeta / p.samples))
 
     split = np.split(np.where(np.isfinite(p.scale[index]), mean / p.scale[index], 0.0), ends[:-1])

@@ -168,9 +168,8 @@ def _as_it_is(
     own = groups[number] - layout.start[name]
     values = explained.coefficients[number]
     whole = float(values @ p.plain[name][np.ix_(own, own)] @ values)
-    size = float(np.sqrt(max(whole, 0.0) / p.samples))
     part = explained.unique[number] / max(explained.size[number], 1e-300)
-    return min(part, 1.0) * size
+    return min(part, 1.0) * float(np.sqrt(max(whole, 0.0) / p.samples))
 
 
 def prior_of(family: Family, recalibrated: bool) -> float:
