@@ -42,6 +42,9 @@ MATERIAL_CONFINED = 0.05
 CONFINED_FORM = 0.4
 """Part of another effect's error of form that may lie where a confined one acts: the root of a sixth of the samples."""
 
+OWN = 0.1
+"""Part of a confined effect that nothing else can stand for, at least: else it bends what the others do everywhere."""
+
 CONFINED = ("bottoming", "saturation")
 
 LAW = ("recalibration", "shape")
@@ -145,9 +148,8 @@ def _negligible(
         )
         usual = MATERIAL
         if name in CONFINED:
-            # Where others act with the time or the rate, the ceiling is one of them too.
-            apart = name == "bottoming" or all(n in (*STATIC, *OFFSETS, *CONFINED) or n in LAW for n in names)
-            usual, doubt = MATERIAL_CONFINED, (CONFINED_FORM if apart else 1.0) * doubt
+            confined = own[name] >= OWN * sizes[name]
+            usual, doubt = MATERIAL_CONFINED, (CONFINED_FORM if confined else 1.0) * doubt
         elif name in OFFSETS and "recalibration" in names:
             usual = MATERIAL_OFFSET
         if unique < max(usual, doubt):
