@@ -2,7 +2,7 @@
 
 The search speaks in columns, more of them than an effect has parameters: together they can follow what another effect's
 form has missed. So the weak effects of a set are left out of its fit once more, one by one. One that does not gain what
-it costs there is not believed, and the likeliest set without it is fitted in its turn.
+it costs there is not believed, and the likeliest set without it, if one comes near, is fitted in its turn.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .explain.columns import build
 from .explain.judge import prior_of
 from .explain.motion import FloatArray
 from .explain.scene import Scene
-from .explain.search import Settled
+from .explain.search import CLOSE, Settled
 from .naming import BEYOND, named
 from .refit import Case, Refit, gain_of, refit
 from .rivals import one_constant_rate
@@ -45,8 +45,10 @@ def choose(
         fitted = fitted_set(left[0], believed, cases, scene, power)
         gains = _gains(left[0], fitted, believed, cases, scene, power)
         failing = min(gains, key=lambda name: gains[name], default=None)
+        if failing is None or gains[failing] >= 0.0 or len(doubted) == TRIES - 1:
+            break
         others = [s for s in left if failing not in named(s)]
-        if failing is None or gains[failing] >= 0.0 or not others or len(doubted) == TRIES - 1:
+        if not others or others[0].log_evidence < left[0].log_evidence - CLOSE:
             break
         doubted.append((left[0], gains[failing]))
         left = others
