@@ -76,3 +76,18 @@ def test_a_mass_beyond_all_bounds_is_not_believed():
     force = simulate(BARE, read("ride", time, deflection, 0.0 * time, 6, noise=0.0)) + 400.0 * acceleration
     verdict = diagnose([read("ride", time, deflection, np.maximum(force, 0.0), 6)])
     assert "inertia" not in verdict.names
+
+
+def test_a_strength_at_its_bound_is_believed_where_nothing_else_comes_near():
+    """Softening in a straight line down to 40 %: the share is at its bound, and every set without it is far off."""
+
+    def softened(seed):
+        time, deflection, _ = ride(seed)
+        bare = simulate(BARE, read("ride", time, deflection, 0.0 * time, seed, noise=0.0))
+        below = 1.0 - deflection / np.maximum.accumulate(deflection)
+        return read("ride", time, deflection, bare * (1.0 - 0.6 * below), seed)
+
+    verdict = diagnose([softened(8), softened(9)])
+    assert "mullins_softening" in verdict.names
+    share = next(e for e in verdict.effects if e.name == "mullins_softening").parameters["share"]
+    assert share.value == pytest.approx(0.9)
