@@ -21,6 +21,7 @@ from .explain.search import CLOSE, Settled
 from .naming import BEYOND, named
 from .refit import Case, Refit, gain_of, refit
 from .rivals import one_constant_rate
+from .starts import strengths
 
 WEAK = 0.5
 """An effect whose own part is below so many noises is asked: what is larger is no error of another's form."""
@@ -75,13 +76,9 @@ def _beyond_bounds(name: str, fitted: Refit) -> bool:
     """Return whether the fit pushes an effect's strength to the largest value that the catalogue finds plausible."""
     if name not in CATALOGUE:
         return False
-    parameters = CATALOGUE[name].parameters
+    at = strengths(CATALOGUE[name])
     return any(
-        k.owner == name
-        and parameters[k.index].off is not None
-        and not parameters[k.index].extra
-        and parameters[k.index].name != "limit"
-        and value >= k.high
+        k.owner == name and k.index in at and value >= k.high
         for k, value in zip(fitted.knobs, fitted.values, strict=True)
     )
 

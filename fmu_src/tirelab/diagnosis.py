@@ -25,7 +25,7 @@ from .learn import learned
 from .locate import beyond_law, locate
 from .naming import BEYOND, named
 from .noise import Noise
-from .refit import Case, Refit, smooth_of
+from .refit import Case, Refit, owners_of, smooth_of
 from .rivals import confidence_of, rivals_of
 from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
@@ -235,7 +235,7 @@ def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:
     for name in named(settled):
         if name == UNKNOWN:
             continue
-        owners = ("law", "elastic_shape") if name == "recalibration" else (name,)
+        owners = owners_of(name)
         parameters = {
             k.label: Estimate(float(v), float(d), k.unit)
             for k, v, d in zip(fitted.knobs, fitted.values, fitted.deviations, strict=True)

@@ -9,6 +9,7 @@ tire its part of the force's variance is (k s_x)^2.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
@@ -72,7 +73,7 @@ class Noise:
             scaled = lfilter(self.filter, [1.0], scaled, axis=0)
         return np.asarray(scaled * self.weight[across])
 
-    @property
+    @cached_property
     def wander(self) -> tuple[FloatArray, float]:
         """A constant, whitened and of length 1, and what part of a product along it says nothing: the mean wanders.
 

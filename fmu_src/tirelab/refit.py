@@ -226,6 +226,11 @@ def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequ
     return _fit(believed, fitted.knobs, np.array(start), cases, radii)
 
 
+def owners_of(name: str) -> tuple[str, ...]:
+    """Return the owners of the knobs that belong to a name of the verdict."""
+    return ("law", "elastic_shape") if name == "recalibration" else (name,)
+
+
 def gain_of(
     name: str,
     fitted: Refit,
@@ -238,7 +243,7 @@ def gain_of(
 
     All other knobs are fitted anew without it.
     """
-    owners = ("law", "elastic_shape") if name == "recalibration" else (name,)
+    owners = owners_of(name)
     left = [(k, v) for k, v in zip(fitted.knobs, fitted.values, strict=True) if k.owner not in owners]
     without = _fit(believed, tuple(k for k, _ in left), np.array([v for _, v in left]), cases, radii)
     parameters = len(fitted.knobs) - len(left)

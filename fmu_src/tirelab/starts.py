@@ -65,6 +65,13 @@ def starts_of(effect: Effect, deepest: float, strongest: float) -> list[State]:
     return found
 
 
+def strengths(effect: Effect) -> list[int]:
+    """Return the indices of the parameters to which an effect's force is in proportion."""
+    return [
+        i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"
+    ]
+
+
 def matched(
     effect: Effect,
     target: Sequence[FloatArray],
@@ -75,9 +82,7 @@ def matched(
 ) -> State:
     """Return the effect's values whose response comes nearest to its part in the search [N]."""
     best: tuple[float, State] = (np.inf, effect.typical)
-    amplitudes = [
-        i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"
-    ]
+    amplitudes = strengths(effect)
     wanted = np.concatenate(target)
     bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
     for values in starts_of(effect, deepest, strongest):
@@ -100,7 +105,6 @@ def matched(
     return best[1]
 
 
-TERMS = ("share_1", "share_2", "share_3", "share_4", "share_5")
 SMALL = 0.01
 """A share whose response is that of any other in proportion."""
 
@@ -109,14 +113,15 @@ def spread(target: Sequence[FloatArray], cases: Sequence[Compared], tire: TireMo
     """Return parameters of a relaxation with one term to a decade, whose shares come nearest to its part [N]."""
     effect = CATALOGUE["viscoelastic_relaxation"]
     bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
+    terms = [p for p in effect.parameters if p.name.startswith("share")]
     responses = []
-    for term in TERMS:
-        values = tuple(SMALL if p.name == term else p.start for p in effect.parameters)
+    for term in terms:
+        values = tuple(SMALL if p is term else p.start for p in effect.parameters)
         with_it = with_effect(tire, effect, values)
         responses.append(np.concatenate([simulate(with_it, c.recording)[c.rows] for c in cases]) - bare)
     shares, _ = nnls(np.stack(responses, axis=1) / SMALL, np.concatenate(target), maxiter=1000)
     times = {p.name: p.start for p in effect.parameters if p.name.startswith("relaxation_time")}
-    return {**dict(zip(TERMS, map(float, np.minimum(shares, 5.0)), strict=True)), **times}
+    return {t.name: min(float(g), t.maximum) for t, g in zip(terms, shares, strict=True)} | times
 
 
 def with_effect(tire: TireModel, effect: Effect, values: State) -> TireModel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -118,17 +118,10 @@ def lifted_at(
     groups: Sequence[IndexArray],
 ) -> tuple[BoolArray, ...]:
     """Return where the force of the point and its families would be a pull."""
-    found = []
-    for b in built:
-        force = b.place.elastic.copy()
-        for f, values, columns in zip(families, coefficients, groups, strict=True):
-            if f.after_lag or f.name in ("force_lag", "inertia"):
-                continue
-            raw = b.raw[f.name]
-            held = pointed(point, f.name, raw.shape[1])
-            force += raw[:, columns] @ (values - held[columns])
-        found.append(force <= 0.0)
-    return tuple(found)
+    acting = [not f.after_lag and f.name not in ("force_lag", "inertia") for f in families]
+    return tuple(
+        _summed(b.raw, b.place.elastic, point, families, coefficients, groups, acting) <= 0.0 for b in built
+    )
 
 
 def beside_at(
@@ -139,15 +132,29 @@ def beside_at(
     groups: Sequence[IndexArray],
 ) -> tuple[FloatArray, ...]:
     """Return what the families add to the elastic force [N] before the reading reaches its ceiling."""
-    found = []
-    for b in built:
-        beside = np.zeros_like(b.residual)
-        for f, values, columns in zip(families, coefficients, groups, strict=True):
-            if f.name != "saturation":
-                held = pointed(point, f.name, b.columns[f.name].shape[1])
-                beside += b.columns[f.name][:, columns] @ (values - held[columns])
-        found.append(beside)
-    return tuple(found)
+    acting = [f.name != "saturation" for f in families]
+    return tuple(
+        _summed(b.columns, np.zeros_like(b.residual), point, families, coefficients, groups, acting)
+        for b in built
+    )
+
+
+def _summed(
+    columns: Mapping[str, FloatArray],
+    start: FloatArray,
+    point: Point,
+    families: Sequence[Family],
+    coefficients: Sequence[FloatArray],
+    groups: Sequence[IndexArray],
+    acting: Sequence[bool],
+) -> FloatArray:
+    """Return `start` [N] and on top of it what the acting families add to what the point already holds."""
+    force: FloatArray = start.copy()
+    for f, values, group, acts in zip(families, coefficients, groups, acting, strict=True):
+        if acts:
+            held = pointed(point, f.name, columns[f.name].shape[1])
+            force += columns[f.name][:, group] @ (values - held[group])
+    return force
 
 
 def pointed(point: Point, name: str, columns: int) -> FloatArray:
@@ -224,8 +231,11 @@ def measure(
             values = pointed(point, f.name, b.columns[f.name].shape[1])
             if np.any(values):
                 held += b.columns[f.name] @ values
-        columns.append(noise.whitened(np.concatenate([b.columns[f.name] for f in families], axis=1)))
-        data.append(noise.whitened(held))
+        # The data go along as one more column, so that there is one to whiten where no family is asked.
+        both = np.concatenate([*(b.columns[f.name] for f in families), held[:, None]], axis=1)
+        white = noise.whitened(both)
+        columns.append(white[:, :-1])
+        data.append(white[:, -1])
         constant, part = noise.wander
         along.append(constant @ columns[-1])
         along_data.append(constant @ data[-1])
@@ -248,14 +258,3 @@ def measure(
         np.array(parts),
     )
     return replace(p, plain=plain)
-
-
-def nothing(built: Sequence[Built], noises: Sequence[Noise]) -> Products:
-    """Return the products of no columns: the data alone."""
-    power, samples = 0.0, 0
-    for b, noise in zip(built, noises, strict=True):
-        data = noise.whitened(b.residual)
-        constant, part = noise.wander
-        power += float(data @ data - part * (constant @ data) ** 2)
-        samples += data.size
-    return Products(np.zeros((0, 0)), np.zeros(0), power, samples, np.zeros(0))

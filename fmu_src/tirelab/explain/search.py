@@ -22,7 +22,6 @@ from .columns import (
     lifted_from_force,
     measure,
     moved,
-    nothing,
 )
 from .evidence import Products
 from .families import STATIC, Family
@@ -110,7 +109,7 @@ def _settle(
     for turn in range(TURNS):
         built = build(scene, point, chosen)
         layout = layout_of(built, chosen)
-        p = measure(built, noises, chosen, point) if chosen else nothing(built, noises)
+        p = measure(built, noises, chosen, point)
         candidate = judge(p, layout, names, zeta)
         settled = Settled(candidate, point, p, layout)
         gained = candidate.log_evidence - best.log_evidence if best else np.inf
