@@ -16,7 +16,7 @@ from concealed.rivals import (
     loss_of,
     one_constant_rate,
 )
-from concealed.scenario import KINDS, Belief, Plan, believed_in, planned, tests
+from concealed.scenario import KINDS, Belief, Plan, alike, believed_in, planned, tests
 from concealed.sizing import Size, measured, misfit_size, resized
 from concealed.tires import ContactPatchTire, PowerTire, best_power_law
 from concealed.trial import Answer, FileTruth, Parameters, Record, Trial, recorded
@@ -26,10 +26,10 @@ SIZES = (1.0, 30.0)
 #: A true effect must be missed by this loss of log-likelihood when it is left out, or the trial is drawn
 #: anew.
 VISIBLE = 30.0
-#: A tire counts as another above this loss and this RMS over the noise (alone, or under other effects), as
+#: A tire counts as another above this loss and this RMS over the noise, as large as any effect has to be; as
 #: the same below the smaller loss; between them either name is fair.
 OTHER_TIRE_LOSS, SAME_TIRE_LOSS = 40.0, 4.0
-OTHER_TIRE_SIZE_ALONE, OTHER_TIRE_SIZE = 1.0, 0.5
+OTHER_TIRE_SIZE = 1.0
 #: What no pair of named effects may explain of an effect of the open world: loss, and share of the whole
 #: loss.
 BEYOND_CATALOGUE, BEYOND_SHARE = 150.0, 0.2
@@ -69,7 +69,7 @@ def _stream(seed: int, *key: int) -> np.random.Generator:
 def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
     """One trial to the plan, or None where an effect stayed invisible or a name would not be fair."""
     belief = believed_in(rng, plan)
-    train, heldout = tests(rng, plan, belief.reach)
+    train, others = tests(rng, plan, belief.reach)
     instrument = drawn_instrument(rng)
     bare = Bench(belief.tire)
     scene = Scene(train, tuple(bare.force(m) for m in train), belief.tire, instrument.noise)
@@ -92,15 +92,19 @@ def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
     if another is not False:
         sizes["recalibration"] = misfit_size(bare, train, misfit, instrument.noise)
 
-    groups: list[tuple[Record, ...]] = []
+    records: list[Record] = []
     files: dict[str, FileTruth] = {}
-    for label, motions in (("train", train), ("heldout", heldout)):
-        records = []
-        for i, motion in enumerate(motions):
-            record, floor = recorded(bench, instrument, motion, f"{label}_{i}.csv", rng)
-            records.append(record)
-            files[record.name] = _file_truth(record, belief.believed, floor)
-        groups.append(tuple(records))
+
+    def record(name: str, motion: Motion) -> None:
+        made, floor = recorded(bench, instrument, motion, name, rng)
+        records.append(made)
+        files[name] = _file_truth(made, belief.believed, floor)
+
+    for i, motion in enumerate(train):
+        record(f"train_{i}.csv", motion)
+    for i, motion in enumerate(others):
+        record(f"heldout_{i}.csv", motion)
+    record(f"heldout_{len(others)}.csv", alike(rng, train, belief.reach))
     answer = Answer(
         kind=plan.kind,
         effects=_effects(bench, plan, belief),
@@ -117,8 +121,8 @@ def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
     )
     return Trial(
         seed,
-        groups[0],
-        groups[1],
+        tuple(records[: len(train)]),
+        tuple(records[len(train) :]),
         answer,
         belief.believed,
         belief.source,
@@ -137,8 +141,7 @@ def _is_another_tire(
     if loss < SAME_TIRE_LOSS:
         return False
     if size > OTHER_TIRE_SIZE:
-        alone = plan.kind == "single" and size < OTHER_TIRE_SIZE_ALONE
-        return True if loss > OTHER_TIRE_LOSS and not (alone and plan.another_tire) else not plan.another_tire
+        return True if loss > OTHER_TIRE_LOSS else not plan.another_tire
     return None
 
 

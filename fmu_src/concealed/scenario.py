@@ -64,6 +64,8 @@ POOR_TEST, MAY_STAY_HIDDEN = 0.12, 0.2
 ARTICLE_FORCE, CELL_FORCE = 2240.0, 4000.0
 #: Largest deflections of the article's tests [m].
 DEFLECTIONS = (0.0127, 0.03175)
+#: Part of the training motions' depth that a motion to hold out reaches: what was seen, no deeper.
+HELD_OUT_DEPTH = (0.75, 0.92)
 
 
 @dataclass(frozen=True)
@@ -162,8 +164,14 @@ def tests(
     train = tuple(EXCITATIONS[name](rng, reach.scaled(rng.uniform(0.92, 1.0))) for name in names)
     left = [name for name in EXCITATIONS if name not in names]
     shown = [str(n) for n in rng.choice(left, int(rng.integers(1, 3)), replace=False)]
-    heldout = tuple(EXCITATIONS[name](rng, reach.scaled(rng.uniform(0.75, 0.92))) for name in shown)
-    return train, heldout
+    others = tuple(EXCITATIONS[name](rng, reach.scaled(rng.uniform(*HELD_OUT_DEPTH))) for name in shown)
+    return train, others
+
+
+def alike(rng: np.random.Generator, train: tuple[Motion, ...], reach: Reach) -> Motion:
+    """Draw one more motion to hold out, of the kind of one of the training motions."""
+    name = str(rng.choice([motion.name for motion in train]))
+    return EXCITATIONS[name](rng, reach.scaled(rng.uniform(*HELD_OUT_DEPTH)))
 
 
 def _surfaces(rng: np.random.Generator, poor: bool) -> tuple[float, ...]:

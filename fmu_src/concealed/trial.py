@@ -31,10 +31,10 @@ class Record:
 
 @dataclass(frozen=True)
 class FileTruth:
-    """What is known of one recording: samples, excitation, RMSE [N] of the believed tire and of the truth.
+    """What is known of one recording: samples, excitation, RMSE [N] of the believed tire and the floor.
 
-    The floor is what the true tire with all its effects would still miss when fed with the recorded
-    deflection.
+    The floor is what the truth would still miss: the error of the force, and what the error of the recorded
+    deflection moves through the tire's spring. What the latter moves through a mass or a damper is not in it.
     """
 
     samples: int
@@ -72,6 +72,7 @@ class Answer:
 class Trial:
     """Recordings to diagnose, recordings to show the improvement on, and the answer.
 
+    heldout: tests of other kinds than the training ones, and last one of a kind among them.
     believed: the tire that the user believes in; believed_source: "hull1996" where it is the article's,
     "table" where A and B were identified surface by surface. bench and instrument can make further
     recordings.
@@ -91,7 +92,7 @@ class Trial:
 def recorded(
     bench: Bench, instrument: Instrument, motion: Motion, name: str, rng: np.random.Generator
 ) -> tuple[Record, float]:
-    """A recording of a motion, and the RMSE [N] that the truth itself would have on it."""
+    """A recording of a motion, and its floor [N] (see `FileTruth`)."""
     clean = bench.force(motion)
     time, true = motion.recorded(motion.time), motion.recorded(motion.deflection)
     radius = motion.recorded(motion.radius)

@@ -140,11 +140,23 @@ def test_the_floor_is_the_noise_and_the_baseline_is_above_it(trials: list[Trial]
                 assert file.baseline_rmse == pytest.approx(file.floor_rmse, rel=0.02)
 
 
-def test_held_out_recordings_are_of_another_kind(trials: list[Trial]) -> None:
+def test_held_out_recordings_are_of_other_kinds_and_the_last_of_a_kind_that_was_shown(
+    trials: list[Trial],
+) -> None:
     for trial in trials:
-        assert trial.train
-        assert trial.heldout
-        assert not {r.excitation for r in trial.train} & {r.excitation for r in trial.heldout}
+        kinds = {r.excitation for r in trial.train}
+        *others, alike = trial.heldout
+        assert others
+        assert not kinds & {r.excitation for r in others}
+        assert alike.excitation in kinds
+        assert all(not np.array_equal(alike.deflection, r.deflection) for r in trial.train)
+
+
+def test_another_tire_is_as_large_as_any_effect(trials: list[Trial]) -> None:
+    """It is named where its misfit is at least the noise, as every other effect that is hidden."""
+    for trial in trials:
+        if "recalibration" in trial.answer.right[0]:
+            assert trial.answer.sizes["recalibration"].overall > 1.0
 
 
 def test_the_forces_are_those_of_a_bicycle_tire(trials: list[Trial]) -> None:

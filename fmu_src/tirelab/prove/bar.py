@@ -12,6 +12,9 @@ from .summary import Mean, Rate, among, brier, exact, false_alarms, near_floor, 
 NEAR_FLOOR = 0.10
 """A held-out RMSE counts as at the noise floor up to this part above it."""
 
+ALIKE = "held-out RMSE within 10 % of the floor on tests like those diagnosed"
+OTHER = "the same on tests of another kind"
+
 
 @dataclass(frozen=True)
 class Line:
@@ -38,17 +41,18 @@ def against_the_bar(scores: Sequence[Score]) -> tuple[Line, ...]:
         Line("truth is the verdict or a rival", among(scores), 0.97, at_least=True),
         Line("false alarms where nothing is hidden", false_alarms(scores), 0.02, at_least=False),
         Line("unknown said outside the catalogue", recognised(scores), 0.90, at_least=True),
-        Line(
-            "held-out RMSE within 10 % of the floor, readings as they are",
-            near_floor(scores, NEAR_FLOOR),
-            0.95,
-            at_least=True,
-        ),
-        Line(
-            "the same, told the motion without the noise of its reading",
-            near_floor(scores, NEAR_FLOOR, cleared=True),
-            0.95,
-            at_least=True,
+        *(
+            Line(
+                f"{what}, {how}",
+                near_floor(scores, NEAR_FLOOR, alike=alike, cleared=cleared),
+                0.95,
+                at_least=True,
+            )
+            for alike, what in ((True, ALIKE), (False, OTHER))
+            for cleared, how in (
+                (False, "readings as they are"),
+                (True, "told the motion without their noise"),
+            )
         ),
         Line("Brier score of the confidence", brier(scores), 0.08, at_least=False),
     )

@@ -15,7 +15,7 @@ from .bar import NEAR_FLOOR
 from .score import Score
 from .summary import ANY_EFFECT, NO_NAME, Point, naming, reliability
 
-BLUE, ORANGE, GREY = "#1f6f9f", "#d9731a", "#777777"
+BLUE, LIGHT_BLUE, ORANGE, GREY = "#1f6f9f", "#93c4e0", "#d9731a", "#777777"
 
 COLUMNS = 4
 """Curves of effects side by side."""
@@ -129,11 +129,16 @@ def _reliability(axes: Axes, points: Sequence[Point]) -> None:
 
 
 def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
-    for outside, colour, label in ((False, BLUE, "inside the catalogue"), (True, ORANGE, "outside")):
-        found = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
+    for outside, alike, colour, label in (
+        (False, False, LIGHT_BLUE, "in the catalogue, tests of another kind"),
+        (False, True, BLUE, "in the catalogue, tests like those diagnosed"),
+        (True, True, ORANGE, "outside the catalogue, tests like those diagnosed"),
+    ):
+        held = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
+        found = [h.alike if alike else h.other for h in held]
         if found:
-            before, after = ([getattr(h, name) / h.floor for h in found] for name in ("before", "after"))
-            axes.plot(before, after, "o", ms=4, alpha=0.7, mec="none", color=colour, label=label)
+            before, after = ([getattr(e, name) / e.floor for e in found] for name in ("before", "after"))
+            axes.plot(before, after, "o", ms=4, alpha=0.8, mec="none", color=colour, label=label)
     axes.axhline(1.0 + NEAR_FLOOR, color=GREY, lw=1, ls="--", label="10 % above the floor")
     axes.axline((1.0, 1.0), slope=1.0, color=GREY, lw=1, ls=":", label="no better than before")
     axes.set(xscale="log", yscale="log")

@@ -21,20 +21,35 @@ REPLAYED = 1000
 
 
 @dataclass(frozen=True)
-class HeldOut:
-    """Root mean square errors [N] over all held-out recordings of a trial, pooled by samples.
+class Errors:
+    """Root mean square errors [N] over some held-out recordings of a trial, pooled by samples.
 
-    before: the believed tire; after: the corrected one; floor: what the true tire with all that was hidden misses
+    before: the believed tire; after: the corrected one; floor: what the truth would still miss (`concealed.FileTruth`)
     cleared: the corrected tire told the motion without the noise of its reading, as a simulation tells it
-    fmu_difference [N]: largest difference between the corrected FMU and the corrected tire on the first samples of
-    every recording, None where there is no FMU
     """
 
     before: float
     after: float
+    cleared: float
     floor: float
+
+    def near(self, within: float, *, cleared: bool = False) -> bool:
+        """Whether the corrected tire's error is at most 1 + `within` times the floor."""
+        return (self.cleared if cleared else self.after) <= (1.0 + within) * self.floor
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Errors on the held-out recordings of a trial.
+
+    alike: tests of a kind that was diagnosed, driven anew; other: tests of another kind
+    fmu_difference [N]: largest difference between the corrected FMU and the corrected tire on the first samples of
+    every recording, None where there is no FMU
+    """
+
+    alike: Errors
+    other: Errors
     fmu_difference: float | None
-    cleared: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -53,18 +68,36 @@ def held_out(
     recordings: Sequence[Recording],
     truths: Mapping[str, Mapping[str, Any]],
 ) -> HeldOut:
-    """Return the errors; truths: `{FILE: {"floor_rmse": [N], ...}}` of the opened answer."""
+    """Return the errors; truths: `{FILE: {"floor_rmse": [N], "excitation": KIND, ...}}` of the opened answer."""
+    shown = {truth["excitation"] for file, truth in truths.items() if file.startswith("train_")}
+    alike = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] in shown]
+    other = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] not in shown]
+    return HeldOut(
+        _errors(believed, corrected, alike, truths),
+        _errors(believed, corrected, other, truths),
+        _fmu_difference(fmu, corrected, recordings),
+    )
+
+
+def _errors(
+    believed: TireModel,
+    corrected: TireModel,
+    recordings: Sequence[Recording],
+    truths: Mapping[str, Mapping[str, Any]],
+) -> Errors:
     sizes = np.array([len(r) for r in recordings])
     squares = np.array(
-        [[np.mean((r.force - simulate(tire, r)) ** 2) for r in recordings] for tire in (believed, corrected)]
+        [
+            (
+                np.mean((r.force - simulate(believed, r)) ** 2),
+                np.mean((r.force - simulate(corrected, r)) ** 2),
+                np.mean(without_reading_noise(corrected, r, motion_of(r.time, r.deflection)) ** 2),
+                float(truths[f"{r.name}.csv"]["floor_rmse"]) ** 2,
+            )
+            for r in recordings
+        ]
     )
-    cleared = [
-        np.mean(without_reading_noise(corrected, r, motion_of(r.time, r.deflection)) ** 2) for r in recordings
-    ]
-    floors = np.array([float(truths[f"{r.name}.csv"]["floor_rmse"]) for r in recordings])
-    pooled = np.sqrt(np.stack([*squares, cleared, floors**2]) @ sizes / np.sum(sizes))
-    before, after, clear, floor = pooled.tolist()
-    return HeldOut(before, after, floor, _fmu_difference(fmu, corrected, recordings), clear)
+    return Errors(*np.sqrt(sizes @ squares / np.sum(sizes)).tolist())
 
 
 def _fmu_difference(fmu: Path | None, corrected: TireModel, recordings: Sequence[Recording]) -> float | None:

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from ..stated import NOTHING, UNKNOWN, Names, Stated
-from .held_out import HeldOut
+from .held_out import Errors, HeldOut
 from .overlap import PlaceScore
 
 OPEN = "open"
@@ -131,10 +131,16 @@ class Score:
             error=content["error"],
             sizes=content["sizes"],
             places=tuple(PlaceScore(**place) for place in content["places"]),
-            held_out=None if content["held_out"] is None else HeldOut(**content["held_out"]),
+            held_out=_held_out(content["held_out"]),
             separation=None if content["separation"] is None else Separation(**content["separation"]),
             seconds=content["seconds"],
         )
+
+
+def _held_out(content: Mapping[str, Any] | None) -> HeldOut | None:
+    if content is None:
+        return None
+    return HeldOut(Errors(**content["alike"]), Errors(**content["other"]), content["fmu_difference"])
 
 
 def right_sets(answer: Mapping[str, Any]) -> tuple[Names, ...]:

@@ -26,7 +26,7 @@ from .score import Score, right_sets, separation, sizes_over_noise
 from .seal import add_seal, draw_and_seal, key_of, opened, read_seals
 from .separation import run_suggested_test
 
-SCHEMA = 1
+SCHEMA = 2
 
 Told = Callable[[str], None]
 
@@ -79,7 +79,11 @@ def _claim(series: Series) -> None:
             raise TirelabError(
                 f"{series.folders.root}: cannot be written ({error.strerror}); name another with --out"
             ) from None
-    elif (found := read_json(path)) != wanted:
+    elif (found := read_json(path)).get("schema") != SCHEMA:
+        raise TirelabError(
+            f"{series.folders.root} holds trials of another version of this rig; name another folder with --out"
+        )
+    elif found != wanted:
         raise TirelabError(
             f"{series.folders.root} holds the trials of seed {found.get('seed')}, kind {found.get('kind')}; "
             "give that seed, or another folder with --out"

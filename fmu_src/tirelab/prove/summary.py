@@ -114,15 +114,16 @@ def wrongly_unknown(scores: Sequence[Score]) -> Rate:
     return Rate.of(s.recognised for s in scores if not s.open)
 
 
-def near_floor(scores: Sequence[Score], within: float, *, cleared: bool = False) -> Rate:
+def near_floor(scores: Sequence[Score], within: float, *, alike: bool, cleared: bool = False) -> Rate:
     """How often the corrected tire's held-out RMSE is at most 1 + `within` times the noise floor, inside the catalogue.
 
+    alike: on tests of the kinds that were diagnosed, or on those of other kinds
     cleared: whether the tire is told the motion without the noise of its reading
     A failed diagnosis, and a verdict without a corrected tire, count as misses.
     """
     return Rate.of(
         s.held_out is not None
-        and (s.held_out.cleared if cleared else s.held_out.after) <= (1.0 + within) * s.held_out.floor
+        and (s.held_out.alike if alike else s.held_out.other).near(within, cleared=cleared)
         for s in scores
         if not s.open
     )

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from tirelab.prove import summary
 from tirelab.prove.bar import against_the_bar
-from tirelab.prove.held_out import HeldOut
+from tirelab.prove.held_out import Errors, HeldOut
 from tirelab.prove.overlap import PlaceScore
 from tirelab.prove.score import Score, Separation
 from tirelab.prove.summary import NO_NAME, Mean, Rate
@@ -62,9 +62,13 @@ def test_rates_take_the_trials_they_are_about(score: Make) -> None:
     assert summary.exact(scores) == Rate(1, 5)
 
 
+FAR = Errors(before=9.0, after=9.0, cleared=9.0, floor=1.0)
+"""A correction that does nothing."""
+
+
 def test_near_the_floor_is_ten_percent_inside_the_catalogue(score: Make) -> None:
     def with_rmse(kind: str, after: float) -> Score:
-        return score(kind, "lag", "lag", held_out=HeldOut(9.0, after, 1.0, None))
+        return score(kind, "lag", "lag", held_out=HeldOut(Errors(9.0, after, 1.0, 1.0), FAR, None))
 
     scores = [
         with_rmse("single", 1.09),
@@ -72,7 +76,8 @@ def test_near_the_floor_is_ten_percent_inside_the_catalogue(score: Make) -> None
         with_rmse("open", 1.0),
         score("pair", "lag", None),
     ]
-    assert summary.near_floor(scores, 0.10) == Rate(1, 3)
+    assert summary.near_floor(scores, 0.10, alike=True) == Rate(1, 3)
+    assert summary.near_floor(scores, 0.10, alike=False) == Rate(0, 3)
 
 
 def test_confusion_shares_a_missing_name_among_those_too_many(score: Make) -> None:
@@ -129,14 +134,16 @@ def test_places_and_separations_are_counted(score: Make) -> None:
 
 
 def test_the_noise_of_the_reading_is_told_apart_from_the_error_of_the_model(score: Make) -> None:
-    found = [score("single", "lag", "lag", held_out=HeldOut(9.0, 2.5, 1.0, None, cleared=1.05))]
-    assert summary.near_floor(found, 0.1).hits == 0
-    assert summary.near_floor(found, 0.1, cleared=True).hits == 1
+    noisy = Errors(before=9.0, after=2.5, cleared=1.05, floor=1.0)
+    found = [score("single", "lag", "lag", held_out=HeldOut(noisy, FAR, None))]
+    assert summary.near_floor(found, 0.1, alike=True).hits == 0
+    assert summary.near_floor(found, 0.1, alike=True, cleared=True).hits == 1
 
 
 def test_the_bar_is_met_or_not_or_not_measured(score: Make) -> None:
-    floor = HeldOut(2.0, 1.0, 1.0, None, cleared=1.0)
+    at_floor = Errors(before=2.0, after=1.0, cleared=1.0, floor=1.0)
+    floor = HeldOut(at_floor, at_floor, None)
     lines = against_the_bar([score("single", "lag", "lag", confidence=1.0, held_out=floor)] * 9)
-    assert [line.passes for line in lines] == [True, True, None, None, True, True, True]
+    assert [line.passes for line in lines] == [True, True, None, None, True, True, True, True, True]
     lines = against_the_bar([score("single", "lag", "gas", confidence=1.0)] * 9)
-    assert [line.passes for line in lines] == [False, False, None, None, False, False, False]
+    assert [line.passes for line in lines] == [False, False, None, None, False, False, False, False, False]
