@@ -1,14 +1,15 @@
 """Rubber softened by the largest deflection so far (Mullins): the first loading is stiffer than all that follow.
 
-    F = A x^B (1 - D g (1 - exp(-u^p))),   u = (x_max^c - x^c) / (r x_max^c + w^c)   for x < x_max
-    g = 1 - exp(-s / l)
+    F = A x^B (1 - D g (1 - exp(-u^p))),   u = (m_max - m(x)) / (r m_max + m_w)   for m(x) < m_max
+    m(x) = x (A x^B)^e,   m_w = w (A_0 w^B_0)^e,   g = 1 - exp(-s / l)
 
-x_max is the largest deflection so far; D the share lost far below it; r and w how far below it softening sets in, in
-proportion to x_max and fixed (rubber has no length of its own: w stays 0 unless the recordings ask for it); p = 1 sets
-in at once, p = 2 smoothly; c is the power of the deflection in which the distance is measured: 1 the deflection itself,
-B the force, 1 + B the stored energy. Above x_max the tire is as new. `history` is the largest deflection before the
-recording, 0 for a new tire. s is the way travelled below x_max: with l > 0 the softening gathers over the cycles, with
-l = 0 it is there at once (g = 1).
+m measures what the tire has borne, m_max its largest value so far: the deflection itself (e = 0), the stored energy
+F x / (1 + B) (e = 1), or what lies between and beyond. On one surface all of them are powers of the deflection; from
+one surface to another they differ. D is the share lost far below m_max; r and w how far below it softening sets in, in
+proportion and fixed (rubber has no length of its own: w stays 0 unless the recordings ask for it; with A_0 and B_0 of
+Hull's tire on flat ground it is the same on every surface); p = 1 sets in at once, p = 2 smoothly. Above m_max the tire
+is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the way travelled below
+m_max: with l > 0 the softening gathers over the cycles, with l = 0 it is there at once (g = 1).
 
 Ogden & Roxburgh write the dependence in the energy, with an error function. No Mullins share of bicycle tires was found
 in the open: the bounds are wide.
@@ -24,25 +25,32 @@ import math
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
 
+FLAT_A, FLAT_B = 550.9, 1.422
+"""A [N/cm^B] and B [1] of Hull's tire on flat ground (equations 3 to 6 there)."""
+
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by the softening; the state: largest deflection so far, the last one, way below [m]."""
-    share, ratio, width, sharpness, history, gathering, measure = values
+    """Multiply the factor by the softening; the state: largest measure so far, last deflection, way below [m]."""
+    share, ratio, width, sharpness, history, gathering, load = values
     x = instant.deflection
-    before, last, way = state
+    largest, last, way = state
+    power = 1.0 + load * instant.exponent
+    by_surface = instant.coefficient**load
     if instant.first:
-        before, last = history, x
-    deepest = max(x, before)
-    if x < deepest:
+        largest, last = by_surface * (100.0 * history) ** power, x
+    borne = by_surface * (100.0 * max(x, 0.0)) ** power
+    if borne < largest:
         way += abs(max(x, 0.0) - max(last, 0.0))
-    if share == 0.0 or x <= 0.0 or x >= deepest:
-        return signal, (deepest, x, way)
-    below = (1.0 - (x / deepest) ** measure) / (ratio + (width / deepest) ** measure)
+    largest = max(borne, largest)
+    if share == 0.0 or x <= 0.0 or borne >= largest:
+        return signal, (largest, x, way)
+    fixed = FLAT_A**load * (100.0 * width) ** (1.0 + load * FLAT_B)
+    below = (largest - borne) / (ratio * largest + fixed)
     if sharpness != 1.0:
         below = below**sharpness
     if gathering > 0.0:
         share *= -math.expm1(-way / gathering)
-    return signal * (1.0 + share * math.expm1(-below)), (deepest, x, way)
+    return signal * (1.0 + share * math.expm1(-below)), (largest, x, way)
 
 
 MULLINS_SOFTENING = Effect(
@@ -55,7 +63,7 @@ MULLINS_SOFTENING = Effect(
         Parameter("sharpness", "p", "1", 1.0, 0.5, 4.0, "1: softens at once, 2: smoothly", extra=True),
         Parameter("history", "xh", "m", 0.0, 0.0, 0.1, "largest deflection before the recording", extra=True),
         Parameter("gathering", "l", "m", 0.0, 0.0, 1.0, "way over which it gathers", off=0.0, extra=True),
-        Parameter("measure", "c", "1", 1.0, 0.5, 4.0, "power of the deflection that measures it", extra=True),
+        Parameter("load", "e", "1", 0.0, -0.3, 2.0, "0: measured by deflection, 1: by energy", extra=True),
     ),
     rest=(0.0, 0.0, 0.0),
     respond=respond,

@@ -171,9 +171,6 @@ def _relaxation(p: Place) -> FloatArray:
 MEASURES = ((0.3, 0.0), (0.3, 0.15), (0.3, 0.6))
 """Energies over which a tire softens, as parts of the largest so far and of the largest of all."""
 
-ENERGY = 2.4
-"""Power of the deflection to which the energy stored in a tire grows, about: 1 + B."""
-
 
 def _mullins(p: Place) -> FloatArray:
     """Softer below the largest deflection so far: at once, and as the way travelled below it goes on.
@@ -182,8 +179,10 @@ def _mullins(p: Place) -> FloatArray:
     """
     deepest = np.maximum(np.maximum.accumulate(p.deflection), 1e-9)
     part = np.clip(p.deflection / deepest, 0.0, 1.0)
-    below, lost = 1.0 - part, 1.0 - part**ENERGY
-    fixed = (p.scene.deepest / deepest) ** ENERGY
+    energy = np.maximum(p.elastic * p.deflection, 0.0)
+    largest = np.maximum(np.maximum.accumulate(energy), 1e-9)
+    below, lost = 1.0 - part, 1.0 - energy / largest
+    fixed = p.scene.strongest * p.scene.deepest / largest
     shapes = [-np.expm1(-below / 0.04), -np.expm1(-below / 0.15), np.sqrt(below), below]
     shapes += [-np.expm1(-lost / (share + own * fixed)) for share, own in MEASURES]
     way = np.cumsum(np.abs(np.diff(p.deflection, prepend=p.deflection[0])) * (below > 0.0))

@@ -43,12 +43,36 @@ def test_width_ratio_and_sharpness_shape_it_as_stated() -> None:
 
 
 def test_measured_in_the_energy_it_depends_on_the_parts_of_the_energy() -> None:
-    # Stored in x^2.4, half of the largest energy is left at 2^(-1/2.4) of the largest deflection: u = 1/2 / (1/4)
-    half = 0.02 * 2.0 ** (-1.0 / 2.4)
-    tire = only("mullins_softening", share=0.2, ratio=0.25, measure=2.4)
+    # Stored in x^2.422, half of the largest energy is left at 2^(-1/2.422) of the largest deflection: u = 1/2 / (1/4)
+    half = 0.02 * 2.0 ** (-1.0 / 2.422)
+    tire = only("mullins_softening", share=0.2, ratio=0.25, load=1.0)
     force = drive(tire, np.arange(2.0), np.array([0.02, half]))
     bare = drive(TireModel(), np.arange(2.0), np.array([0.02, half]))
     assert force[1] / bare[1] == pytest.approx(1.0 + 0.2 * math.expm1(-2.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("load", [0.0, 1.0])
+def test_from_one_surface_to_another_the_measure_goes_on(load: float) -> None:
+    # At 15 mm the bump bears less force than the flat ground did: only the deflection is its largest so far.
+    time, x, radius = np.arange(2.0), np.array([0.015, 0.015]), np.array([np.inf, 0.01905])
+    force = drive(only("mullins_softening", share=0.2, ratio=0.25, load=load), time, x, radius)
+    bare = drive(TireModel(), time, x, radius)
+    u = load * (1.0 - bare[1] / bare[0]) / 0.25
+    assert bare[1] < 0.9 * bare[0]
+    assert force[1] / bare[1] == pytest.approx(1.0 + 0.2 * math.expm1(-u), rel=1e-12)
+
+
+def test_what_is_fixed_is_the_same_on_every_surface() -> None:
+    # Fixed at 12 mm on Hull's tire on flat ground: pressed there to 12 mm, and left, u = 1.
+    x = np.array([0.012, 0.0, 1e-9])
+    for radius in (np.inf, 0.01905):
+        tire = only("mullins_softening", share=0.2, ratio=5e-3, width=0.012, load=1.0)
+        force = drive(tire, np.arange(3.0), x, np.full(3, radius))
+        bare = drive(TireModel(), np.arange(3.0), x, np.full(3, radius))
+        work = bare[0] / (550.9 * 1.2**1.422)
+        assert force[2] / bare[2] == pytest.approx(
+            1.0 + 0.2 * math.expm1(-work / (5e-3 * work + 1.0)), rel=1e-5
+        )
 
 
 def test_beyond_the_largest_deflection_it_is_new_again() -> None:
