@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from drives import Drive, flat_force, read, ride, triangle
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 from tirelab.diagnosis import CATALOGUE_NAMES, PoorRecording, diagnose
 from tirelab.simulate import simulate
 
@@ -72,6 +72,15 @@ def test_a_ripple_over_the_deflection_is_unknown_and_repeats():
     assert verdict.fit.held_out_after > 15.0
     assert correction.after < 7.0
     assert correction.held_out_after < 8.0
+
+
+@pytest.mark.parametrize("softness", [5e-4, 1e-3])
+def test_a_rim_that_is_met_softly_is_found(softness):
+    time, deflection, _ = ride(7)
+    tire = TireModel(effects=((CATALOGUE["bottoming"], (3e5, 0.7 * float(deflection.max()), softness, 1.0)),))
+    bare = read("ride", time, deflection, np.zeros(time.size), 7, noise=0.0)
+    verdict = diagnose([read("ride", time, deflection, simulate(tire, bare), 7)])
+    assert verdict.names == ("bottoming",)
 
 
 def test_another_tire_is_a_recalibration():

@@ -226,7 +226,7 @@ def pairs(count: int) -> list[list[int]]:
 
 
 KNEES = np.linspace(0.40, 0.985, 40)
-SOFTNESSES = (0.0, 0.006, 0.018)
+SOFTNESSES = (0.0, 0.006, 0.018, 0.05)
 """Knees of a rim strike, and how softly they bend, as parts of the largest deflection."""
 
 
@@ -243,18 +243,19 @@ def _bottoming(p: Place) -> FloatArray:
 
 
 def _soft_knees(count: int) -> list[list[int]]:
-    """Return one variant for each knee and softness: with its neighbour, and stiffening beyond."""
+    """Return one variant for each knee and softness: with those beside it, and stiffening beyond."""
     squares = KNEES.size * len(SOFTNESSES)
     variants = []
     for first in range(0, squares, KNEES.size):
         for i in range(KNEES.size):
             near = [first + i, first + i + 1] if i + 1 < KNEES.size else [first + i]
-            variants.append([*near, squares + i])
+            softer = [first + KNEES.size + i] if first + KNEES.size < squares else []
+            variants.append([*near, *softer, squares + i])
     return variants
 
 
 CEILINGS = np.linspace(0.30, 1.26, 56)
-CEILING_SOFTNESSES = (0.0, 0.02, 0.06)
+CEILING_SOFTNESSES = (0.0, 0.015, 0.03, 0.06)
 """Ceilings of the force's reading, and how softly they are met, as parts of the largest reading: none lies above it by
 more than the zero of the reading is off."""
 
@@ -272,13 +273,14 @@ def _saturation(p: Place) -> FloatArray:
 
 
 def _soft_ceilings(count: int) -> list[list[int]]:
-    """Return one variant for each ceiling and softness, with its neighbour; and the smooth powers."""
+    """Return one variant for each ceiling and softness, with those beside it; and the smooth powers."""
     soft = CEILINGS.size * len(CEILING_SOFTNESSES)
-    variants = [
-        [first + i, first + i + 1] if i + 1 < CEILINGS.size else [first + i]
-        for first in range(0, soft, CEILINGS.size)
-        for i in range(CEILINGS.size)
-    ]
+    variants = []
+    for first in range(0, soft, CEILINGS.size):
+        for i in range(CEILINGS.size):
+            near = [first + i, first + i + 1] if i + 1 < CEILINGS.size else [first + i]
+            softer = [first + CEILINGS.size + i] if first + CEILINGS.size < soft else []
+            variants.append([*near, *softer])
     return [*variants, *([i, i + 1] for i in range(soft, count - 1))]
 
 
