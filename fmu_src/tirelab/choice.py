@@ -121,7 +121,7 @@ def fitted_set(
         cleared,
         scene.radii,
         scene.deepest,
-        scene.strongest,
+        scene.highest,
         power,
         one_constant_rate(scene),
     )

@@ -177,14 +177,14 @@ def refit(
     cases: Sequence[Case],
     radii: Sequence[float],
     deepest: float,
-    strongest: float,
+    highest: float,
     power: float = 1.0,
     one_rate: bool = False,
 ) -> Refit:
     """Return the believed tire with the effects `names` fitted to the cases.
 
     parts: what each effect adds in the search [N], at the rows of each case; law (surfaces, 2): guess of the law's
-    changes on `radii` [m]; deepest [m], strongest [N]: largest deflection and force; power: part of the evidence
+    changes on `radii` [m]; deepest [m], highest [N]: largest deflection and reading; power: part of the evidence
     that counts (see `explain.evidence`); one_rate: whether all cases are driven at one rate
     """
     law_knobs = [k for k in knobs_of(names, radii, False, deepest) if k.owner == "law"]
@@ -195,7 +195,7 @@ def refit(
         if name == RELAXATION:
             terms = spread(parts[name], cases, tire)
         if name != "recalibration":
-            starts[name] = matched(CATALOGUE[name], parts[name], cases, tire, deepest, strongest)
+            starts[name] = matched(CATALOGUE[name], parts[name], cases, tire, deepest, highest)
             tire = with_effect(tire, CATALOGUE[name], starts[name])
     knobs = tuple(k for k in knobs_of(names, radii, True, deepest) if not (one_rate and k.label in OF_RATE))
     plain = tuple(k for k in knobs if not _extra(k))
@@ -303,9 +303,9 @@ def _plain(knob: Knob) -> float:
     return CATALOGUE[knob.owner].parameters[knob.index].start
 
 
-AWAKE = {"gathering": 0.02, "thinning": 30.0, "width": 1e-3}
-"""Where a freedom begins that has no slope where it is off: a stroke [m], the inverse of a usual rate [s/m], and
-a length in the tread [m]."""
+AWAKE = {"gathering": 0.02, "thinning": 30.0, "width": 1e-3, "knee": 10.0}
+"""Where a freedom begins that has no slope where it is off: a stroke [m], the inverse of a usual rate [s/m], a length
+in the tread [m] and a percent of a usual force [N]."""
 
 
 def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit | None) -> float:

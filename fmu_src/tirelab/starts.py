@@ -39,15 +39,15 @@ GRIDS: dict[str, dict[str, tuple[float, ...]]] = {
 """Starting values of what an effect is not linear in, where everyday ones are not enough."""
 
 
-def starts_of(effect: Effect, deepest: float, strongest: float) -> list[State]:
-    """Return values of an effect from which its fit may begin; the largest deflection [m] and force [N] scale them."""
+def starts_of(effect: Effect, deepest: float, highest: float) -> list[State]:
+    """Return values of an effect from which its fit may begin; deepest [m], highest [N]: what was driven and read."""
     grids = dict(GRIDS.get(effect.name, {}))
     if effect.name == "bottoming":
-        grids = {"onset": tuple(deepest * q for q in (0.5, 0.65, 0.75, 0.85, 0.92, 0.97))}
+        grids = {"onset": tuple(deepest * q for q in (0.5, 0.65, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99))}
     if effect.name == "saturation":
+        # Sharp at first: beyond a sharp ceiling that nothing reaches there is no slope.
         grids = {
-            "limit": tuple(strongest * q for q in (0.4, 0.55, 0.7, 0.8, 0.9, 0.96)),
-            "knee": (0.0, 0.1 * strongest),
+            "limit": tuple(highest * q for q in (0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 1.0, 1.005))
         }
     if effect.name == "force_lag":
         return [
@@ -78,14 +78,14 @@ def matched(
     cases: Sequence[Compared],
     tire: TireModel,
     deepest: float,
-    strongest: float,
+    highest: float,
 ) -> State:
     """Return the effect's values whose response comes nearest to its part in the search [N]."""
     best: tuple[float, State] = (np.inf, effect.typical)
     amplitudes = strengths(effect)
     wanted = np.concatenate(target)
     bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])
-    for values in starts_of(effect, deepest, strongest):
+    for values in starts_of(effect, deepest, highest):
         trial = values
         for _ in range(3 if amplitudes else 1):
             with_it = with_effect(tire, effect, trial)

@@ -49,3 +49,20 @@ def test_deviations_are_those_of_a_linear_fit():
     # The mean of 6000 samples with 5 N of noise: 5 / sqrt(6000); the deflection's noise adds a tenth.
     assert offset.std == pytest.approx(5.0 / np.sqrt(6000.0), rel=0.25)
     assert offset.value == pytest.approx(25.0, abs=5.0 * offset.std)
+
+
+@pytest.mark.parametrize("part", [0.6, 0.993])
+def test_a_ceiling_is_found_wherever_it_is(part):
+    limit = part * float(ridden(4, TireModel(), noise=0.0).force.max())
+    verdict = diagnose([ridden(4, TireModel(effects=((CATALOGUE["saturation"], (limit, 0.0)),)), noise=2.0)])
+    assert verdict.names == ("saturation",)
+    # The mean of the samples at the ceiling, ten or more: 2 / sqrt(10), and half as much again.
+    assert verdict.effects[0].parameters["limit"].value == pytest.approx(limit, abs=1.0)
+
+
+def test_the_rounding_of_a_ceiling_is_found():
+    limit = 0.7 * float(ridden(5, TireModel(), noise=0.0).force.max())
+    verdict = diagnose([ridden(5, TireModel(effects=((CATALOGUE["saturation"], (limit, 40.0)),)))])
+    assert verdict.names == ("saturation",)
+    # 5 N of noise, bent by 40 ln 2 = 28 N over a few hundred samples of a ride.
+    assert verdict.effects[0].parameters["knee"].value == pytest.approx(40.0, rel=0.1)
