@@ -57,6 +57,15 @@ def test_a_line_is_found_steady_or_swelling(swelling: float) -> None:
     assert not found.spans
 
 
+@pytest.mark.parametrize("turns", [8.7, 10.0])
+def test_a_line_of_few_turns_is_found(turns: float) -> None:
+    # What makes fewer than eight turns is followed by the courses of time, of sixteen half turns.
+    rng = np.random.default_rng(16)
+    wave = 2.0 * np.sin(2.0 * np.pi * turns * TIME / TIME[-1])
+    found = outstanding(TIME, rng.standard_normal(COUNT) + wave, FORCE)
+    assert found.lines[0] * TIME[-1] == pytest.approx(turns, abs=0.3)
+
+
 def test_a_hum_is_noise() -> None:
     rng = np.random.default_rng(14)
     assert not outstanding(

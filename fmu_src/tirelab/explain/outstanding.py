@@ -22,8 +22,8 @@ LOUD = 0.6
 SWELLINGS = 5
 """Times that a line may swell and fade in a recording."""
 
-SLOWEST = 12.0
-"""Turns in a recording that a line makes at least: what is slower is a course of time."""
+SLOWEST = 8.0
+"""Turns in a recording that a line makes at least: what is slower is a course of time (`beyond`: 16 half turns)."""
 
 SPANS = 6
 """Spans of time that are tried."""
@@ -57,14 +57,15 @@ class Outstanding:
 
 def outstanding(time: FloatArray, residual: FloatArray, force: FloatArray) -> Outstanding:
     """Return what stands out of a residual [N]; force [N]: of the law, with which what happens in a span may change."""
-    left = _without_spikes(residual)
+    left = rest = _without_spikes(residual)
     loud = []
     for line in _lines(time, left):
         columns = waves(time, line)
-        wave = columns @ np.linalg.lstsq(columns, left, rcond=None)[0]
-        left = left - wave
-        if np.std(wave) > LOUD * np.std(left):
+        wave = columns @ np.linalg.lstsq(columns, rest, rcond=None)[0]
+        rest = rest - wave
+        if np.std(wave) > LOUD * np.std(rest):
             loud.append(line)
+            left = left - wave
     return Outstanding(tuple(loud), _spans(left, force))
 
 
