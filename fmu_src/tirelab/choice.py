@@ -14,7 +14,7 @@ import numpy as np
 from radialtire import CATALOGUE, TireModel
 
 from .explain.columns import build
-from .explain.judge import prior_of
+from .explain.judge import power_of, prior_of
 from .explain.motion import FloatArray
 from .explain.scene import Scene
 from .explain.search import CLOSE, Settled
@@ -62,13 +62,15 @@ def _gains(
 ) -> dict[str, float]:
     """Return the log posterior odds of each weak effect of a fitted set; none of one that is beyond its bounds."""
     own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
+    groups = dict(zip(settled.names, settled.candidate.groups, strict=True))
     names = [n for n in named(settled) if n in own]
     gains = {n: -np.inf for n in names if _beyond_bounds(n, fitted)}
     weak = sorted((n for n in names if own[n] < WEAK and n not in gains), key=lambda n: own[n])
     cleared = cleared_of(settled, cases, scene)
     for name in weak[:ASKED]:
         prior = prior_of(settled.layout.families[name], "recalibration" in names)
-        gains[name] = gain_of(name, fitted, believed, cleared, scene.radii, power) + prior
+        counted = power_of(settled.products, name, groups[name], power)
+        gains[name] = gain_of(name, fitted, believed, cleared, scene.radii, counted) + prior
     return gains
 
 

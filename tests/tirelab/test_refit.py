@@ -66,3 +66,15 @@ def test_the_rounding_of_a_ceiling_is_found():
     assert verdict.names == ("saturation",)
     # 5 N of noise, bent by 40 ln 2 = 28 N over a few hundred samples of a ride.
     assert verdict.effects[0].parameters["knee"].value == pytest.approx(40.0, rel=0.1)
+
+
+@pytest.mark.parametrize("seed", [21, 22, 23])
+def test_what_acts_in_a_few_samples_is_found_if_they_show_it(seed):
+    # 5 N of noise; the 25 largest of 6000 readings are cut by so much that their squares sum up to 80 noises squared.
+    force = ridden(seed, TireModel(), noise=0.0).force
+    largest = np.sort(force)[-25:]
+    limits = np.linspace(largest[0], largest[-1], 500)
+    cut = np.sum(np.maximum(largest[:, None] - limits, 0.0) ** 2, axis=0) / 25.0
+    limit = float(limits[np.argmin(np.abs(cut - 80.0))])
+    verdict = diagnose([ridden(seed, TireModel(effects=((CATALOGUE["saturation"], (limit, 0.0)),)))])
+    assert verdict.names == ("saturation",)

@@ -37,6 +37,7 @@ class Products:
     gram (k, k); moment (k,); power: y'y; samples: number of whitened samples; scale (k,): RMS of each column
     whole (k, k): the gram matrix by which sizes are told, where some directions of the data say less (see `discounted`)
     plain: for some families X'X of their columns as given, not whitened, over the square of the noise's level
+    acting (k,): in how many samples each column acts, (sum |x|)^2 / sum x^2
     """
 
     gram: FloatArray
@@ -46,6 +47,7 @@ class Products:
     scale: FloatArray
     whole: FloatArray | None = None
     plain: Mapping[str, FloatArray] = field(default_factory=dict)
+    acting: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 def products_of(columns: FloatArray, data: FloatArray) -> Products:
@@ -53,7 +55,8 @@ def products_of(columns: FloatArray, data: FloatArray) -> Products:
     scale = np.sqrt(np.mean(columns**2, axis=0))
     scale[scale < 1e-12 * (scale.max(initial=0.0) + 1e-300)] = np.inf
     gram = columns.T @ columns / np.outer(scale, scale)
-    return Products(gram, columns.T @ data / scale, float(data @ data), data.size, scale)
+    acting = np.mean(np.abs(columns), axis=0) ** 2 / scale**2 * data.size
+    return Products(gram, columns.T @ data / scale, float(data @ data), data.size, scale, acting=acting)
 
 
 def discounted(p: Products, directions: FloatArray, data: FloatArray, parts: FloatArray) -> Products:

@@ -104,11 +104,26 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
         groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
         explained = explain(p, groups, zeta)
     evidence = explained.log_evidence + prior
+    evidence += sum(
+        0.5 * (power_of(p, name, group, zeta) - zeta) * own**2 * p.samples
+        for name, group, own in zip(names, groups, explained.unique, strict=True)
+    )
     held = _signs_hold(p, layout, names, groups, explained) and not _cancel(p, names, groups, explained)
     if not np.isfinite(evidence) or not held:
         evidence = -np.inf
     believed = -np.inf if _negligible(p, layout, names, groups, explained) else evidence
     return Candidate(names, believed, evidence, groups, explained)
+
+
+def power_of(p: Products, name: str, group: IndexArray, zeta: float) -> float:
+    """Return the part of the evidence for an effect that counts: few samples are worth little error of form.
+
+    Samples count as 1 / (1/n + 1/c) (see `diagnosis.coarsening`), n of them: those in which a confined effect acts.
+    """
+    if name not in CONFINED:
+        return zeta
+    worth = zeta * p.samples / max(1.0 - zeta, 1e-12)
+    return max(zeta, worth / (worth + float(p.acting[group[0]])))
 
 
 def _lag_is_one(names: SetName, groups: Sequence[IndexArray], explained: Explained) -> bool:
