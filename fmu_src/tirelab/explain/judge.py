@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import nnls
@@ -104,10 +104,6 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
         groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
         explained = explain(p, groups, zeta)
     evidence = explained.log_evidence + prior
-    evidence += sum(
-        0.5 * (power_of(p, name, group, zeta) - zeta) * own**2 * p.samples
-        for name, group, own in zip(names, groups, explained.unique, strict=True)
-    )
     held = _signs_hold(p, layout, names, groups, explained) and not _cancel(p, names, groups, explained)
     if not np.isfinite(evidence) or not held:
         evidence = -np.inf
@@ -116,7 +112,7 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
 
 
 def power_of(p: Products, name: str, group: IndexArray, zeta: float) -> float:
-    """Return the part of the evidence for an effect that counts: few samples are worth little error of form.
+    """Return the part of the evidence that counts for an effect beside all else: few samples err little by their form.
 
     Samples count as 1 / (1/n + 1/c) (see `diagnosis.coarsening`), n of them: those in which a confined effect acts.
     """
@@ -124,6 +120,14 @@ def power_of(p: Products, name: str, group: IndexArray, zeta: float) -> float:
         return zeta
     worth = zeta * p.samples / max(1.0 - zeta, 1e-12)
     return max(zeta, worth / (worth + float(p.acting[group[0]])))
+
+
+def beside_all(p: Products, candidate: Candidate, name: str, zeta: float) -> Candidate:
+    """Return a set with what one of its effects explains beside all others counted by its own power."""
+    number = candidate.names.index(name)
+    power = power_of(p, name, candidate.groups[number], zeta)
+    more = 0.5 * (power - zeta) * candidate.explained.unique[number] ** 2 * p.samples
+    return replace(candidate, log_evidence=candidate.log_evidence + more, likely=candidate.likely + more)
 
 
 def _lag_is_one(names: SetName, groups: Sequence[IndexArray], explained: Explained) -> bool:

@@ -25,7 +25,7 @@ from .columns import (
 )
 from .evidence import Products
 from .families import STATIC, Family
-from .judge import CONFINED, Candidate, SetName, judge, law_whole, material
+from .judge import CONFINED, Candidate, SetName, beside_all, judge, law_whole, material
 from .motion import IndexArray
 from .place import Point
 from .scene import Scene
@@ -378,5 +378,14 @@ def search(
     for names in screen.beside(best.names, 3):
         if names not in settled:
             settled[names] = settle(scene, noises, by_name, names, zeta, best.point)
+    for name in (n for n in CONFINED if n in by_name):
+        best = max(settled.values(), key=lambda s: s.log_evidence)
+        names = law_whole((*best.names, name))
+        if name in best.names:
+            continue
+        if names not in settled:
+            settled[names] = settle(scene, noises, by_name, names, zeta, best.point)
+        more = settled[names]
+        settled[names] = replace(more, candidate=beside_all(more.products, more.candidate, name, zeta))
     order = sorted(settled.values(), key=lambda s: -s.log_evidence)
     return Found(tuple(order), compared)
