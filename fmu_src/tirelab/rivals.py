@@ -60,7 +60,7 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
 
 
-HIDING = ("series_compliance", "gas_compression")
+HIDING = ("series_compliance", "gas_compression", "bottoming")
 """What a law that is free on every surface can stand for, at one pressure and on one rig."""
 
 SHAPE_DOUBT = 30.0
@@ -71,7 +71,7 @@ its own for what the law's shape, itself wrong by up to 13.5 %, may be."""
 def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], float]]:
     """Return the sets with another function of deflection and surface in the place of the first one's, and their gap.
 
-    Beside a free law a compliance or the air's compression can always be there, unseen.
+    Beside a free law a compliance, the air's compression or a light rim strike can always be there, unseen.
     """
     best = settled[0]
     names = named(best)
