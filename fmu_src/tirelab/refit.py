@@ -303,9 +303,9 @@ def _plain(knob: Knob) -> float:
     return CATALOGUE[knob.owner].parameters[knob.index].start
 
 
-AWAKE = {"gathering": 0.02, "thinning": 30.0, "width": 1e-3, "knee": 10.0}
+AWAKE = {"gathering": 0.02, "thinning": 30.0, "width": 1e-3, "knee": 10.0, "quality": 0.6}
 """Where a freedom begins that has no slope where it is off: a stroke [m], the inverse of a usual rate [s/m], a length
-in the tread [m] and a percent of a usual force [N]."""
+in the tread [m], a percent of a usual force [N] and a low-pass between Bessel's and Butterworth's."""
 
 
 def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit | None) -> float:

@@ -51,7 +51,9 @@ def starts_of(effect: Effect, deepest: float, highest: float) -> list[State]:
         }
     if effect.name == "force_lag":
         return [
-            (a, b) for a, b in ((4e-3, 0.0), (0.0, 4e-3), (2e-2, 0.0), (0.0, 2e-2), (1e-3, 0.0), (0.0, 1e-3))
+            (lag, delay, 0.0)
+            for time in (1e-3, 4e-3, 2e-2)
+            for lag, delay in ((time, 0.0), (0.0, time), (0.5 * time, 0.5 * time))
         ]
     names = [p.name for p in effect.parameters]
     found = []

@@ -169,7 +169,9 @@ def test_values_of_an_effect_are_checked() -> None:
 
 def test_effects_act_in_the_order_of_the_signals_way() -> None:
     # offset before the law, lag and zero after it: a held tire reads A (x + x0)^B + F0
-    tire = tire_with(("deflection_offset", (1e-3,)), ("force_lag", (0.005, 0.0)), ("force_offset", (7.0,)))
+    tire = tire_with(
+        ("deflection_offset", (1e-3,)), ("force_lag", (0.005, 0.0, 0.0)), ("force_offset", (7.0,))
+    )
     force = drive(tire, np.linspace(0.0, 1.0, 101), 0.01)
     assert force[-1] == pytest.approx(power_law.force(0.011, 550.9, 1.422) + 7.0, rel=1e-12)
 

@@ -85,7 +85,7 @@ class PureDelay(RateEffect):
 
 @dataclass(frozen=True)
 class LowPass(RateEffect):
-    """A conditioning amplifier's low-pass of second or fourth order, Bessel or Butterworth.
+    """A conditioning amplifier's low-pass of third, fourth or sixth order, Bessel or Butterworth.
 
     `strength` is its delay at zero frequency [s]; the corner follows from it.
     """
@@ -100,7 +100,7 @@ class LowPass(RateEffect):
     @classmethod
     def drawn(cls, rng: np.random.Generator, scene: Scene) -> "LowPass":
         """Some milliseconds."""
-        return cls(0.005, int(rng.choice((2, 4))), bool(rng.random() < 0.6))
+        return cls(0.005, int(rng.choice((3, 4, 6))), bool(rng.random() < 0.6))
 
     def channel(self, motion: Motion, force: FloatArray) -> FloatArray:
         """Filtered force [N]; at rest at the first value before the start."""

@@ -19,7 +19,7 @@ class Point:
     """Where the columns are taken.
 
     shape (surfaces, 4): coefficients of log(force/law) in powers of the logarithm of the deflection
-    offset [m]; compliance [m/N]; lag [s] and the number of first-order stages that share it, 0 for a pure delay
+    offset [m]; compliance [m/N]; lag [s] and the order of its low-pass, 0 for a pure delay
     lifted: for each recording, where the tire has lost the ground: it cannot pull, so that nothing acts there
     beside [N]: for each recording, what the set adds to the elastic force before the reading reaches its ceiling
     """

@@ -87,3 +87,33 @@ def test_looking_again_at_a_moment_does_not_shorten_the_memory() -> None:
         for _ in range(20):
             force, often = tire.step(*step, often)
         assert force == expected
+
+
+@pytest.mark.parametrize(
+    "quality", [0.1, 0.4999999, 0.5, 0.5000001, 1.0 / math.sqrt(3.0), 1.0 / math.sqrt(2.0), 1.0]
+)
+@pytest.mark.parametrize("tau", [0.002, 0.03])
+def test_a_low_pass_of_second_order_has_its_gain_and_phase(tau: float, quality: float) -> None:
+    # As above; from rest at the bottom of the sine little is left after 5 cycles.
+    expected = A / (1.0 + 1j * OMEGA * tau + (1j * OMEGA * quality * tau) ** 2)
+    assert abs(read(lag=tau, quality=quality) - expected) < 1e-4 * A
+
+
+def test_without_quality_the_order_is_the_first() -> None:
+    time = np.linspace(0.0, 0.5, 200)
+    x = 0.01 + 0.002 * np.sin(20.0 * time)
+    nearly = drive(only("force_lag", law=LINEAR, lag=0.03, quality=1e-5), time, x)
+    assert nearly == pytest.approx(drive(only("force_lag", law=LINEAR, lag=0.03), time, x), rel=1e-7)
+
+
+@pytest.mark.parametrize("quality", [0.3, 0.7])
+def test_after_a_step_a_low_pass_of_second_order_has_its_step_response(quality: float) -> None:
+    # Roots r of (Q tau)^2 r^2 + tau r + 1: the step leaves (r2 exp(r1 t) - r1 exp(r2 t)) / (r2 - r1), complex or not.
+    tau = 0.03
+    root = cmath.sqrt(1.0 - 4.0 * quality**2)
+    first, second = ((-1.0 + sign * root) / (2.0 * quality**2 * tau) for sign in (1.0, -1.0))
+    time = np.concatenate([[0.0, 1e-9], np.linspace(0.01, 0.1, 10)])
+    x = np.concatenate([[0.01], np.full(11, 0.02)])
+    force = drive(only("force_lag", law=LINEAR, lag=tau, quality=quality), time, x)
+    left = ((second * np.exp(first * time) - first * np.exp(second * time)) / (second - first)).real
+    assert force[1:] == pytest.approx(STIFFNESS * (0.02 - 0.01 * left[1:]), rel=1e-6)
