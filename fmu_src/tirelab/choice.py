@@ -23,8 +23,9 @@ from .refit import Case, Refit, gain_of, refit
 from .rivals import one_constant_rate
 from .starts import strengths
 
-WEAK = 0.5
-"""An effect whose own part is below so many noises is asked: what is larger is no error of another's form."""
+WEAK, WEAK_BESIDE = 0.5, 0.1
+"""An effect whose own part is below so many noises, or this part of another one's size, is asked: what is larger is no
+error of another's form."""
 
 ASKED = 3
 """So many are asked at most, the weakest first."""
@@ -45,16 +46,34 @@ def choose(
     while True:
         fitted = fitted_set(left[0], believed, cases, scene, power)
         gains = _gains(left[0], fitted, believed, cases, scene, power)
-        failing = min(gains, key=lambda name: gains[name], default=None)
-        if failing is None or gains[failing] >= 0.0 or len(doubted) == TRIES - 1:
+        failing = sorted((n for n in gains if gains[n] < 0.0), key=lambda n: gains[n])
+        following = {n: _without(left, n, gains[n]) for n in failing}
+        gone = next((n for n in failing if following[n]), None)
+        if gone is None or len(doubted) == TRIES - 1:
             break
-        others = [s for s in left if failing not in named(s)]
-        if not others or others[0].log_evidence < left[0].log_evidence - CLOSE:
-            break
-        doubted.append((left[0], gains[failing]))
-        left = others
+        doubted.append((left[0], gains[gone]))
+        left = following[gone]
     best = left[0].log_evidence
     return (*left, *(_doubted(s, best + gain) for s, gain in doubted)), fitted
+
+
+def _without(left: Sequence[Settled], failing: str, gain: float) -> list[Settled]:
+    """Return the sets without an effect, the one to be believed first; nothing where none comes near.
+
+    gain: what the effect gains in the catalogue's form; the set without it is as much likelier there, whatever the
+    columns say, which follow that form less well. Of an effect beyond its bounds (-inf) nothing is known.
+    """
+    others = [s for s in left if failing not in named(s)]
+    best = left[0]
+    same = [
+        s for s in others if set(named(s)) == set(named(best)) - {failing} and np.isfinite(s.log_evidence)
+    ]
+    if same and np.isfinite(gain):
+        likely = best.log_evidence - gain
+        raised = replace(same[0], candidate=replace(same[0].candidate, log_evidence=likely, likely=likely))
+        return [raised, *(s for s in others if s is not same[0])]
+    near = bool(others) and others[0].log_evidence >= best.log_evidence - CLOSE
+    return others if near else []
 
 
 def _gains(
@@ -65,7 +84,10 @@ def _gains(
     groups = dict(zip(settled.names, settled.candidate.groups, strict=True))
     names = [n for n in named(settled) if n in own]
     gains = {n: -np.inf for n in names if _beyond_bounds(n, fitted)}
-    weak = sorted((n for n in names if own[n] < WEAK and n not in gains), key=lambda n: own[n])
+    sizes = dict(zip(settled.names, settled.candidate.explained.size, strict=True))
+    beside = {n: max((sizes[m] for m in names if m != n), default=0.0) for n in names}
+    asked = [n for n in names if own[n] < max(WEAK, WEAK_BESIDE * beside[n]) and n not in gains]
+    weak = sorted(asked, key=lambda n: own[n])
     cleared = cleared_of(settled, cases, scene)
     for name in weak[:ASKED]:
         prior = prior_of(settled.layout.families[name], "recalibration" in names)

@@ -39,7 +39,7 @@ def fitted(recording, tire, names):
     part = simulate(tire, recording)[record.rows] - elastic
     own = [e.name for e, _ in tire.effects]
     parts = {n: [part if n in own else -1e-3 * elastic] for n in names}
-    found = refit(BARE, names, parts, np.zeros((1, 2)), cases, scene.radii, scene.deepest, scene.strongest)
+    found = refit(BARE, names, parts, np.zeros((1, 2)), cases, scene.radii, scene.deepest, scene.highest)
     return found, cases, scene
 
 
@@ -91,3 +91,15 @@ def test_a_strength_at_its_bound_is_believed_where_nothing_else_comes_near():
     assert "mullins_softening" in verdict.names
     share = next(e for e in verdict.effects if e.name == "mullins_softening").parameters["share"]
     assert share.value == pytest.approx(0.9)
+
+
+def test_what_stands_for_the_form_of_a_large_lag_is_not_believed():
+    """Butterworth's low-pass at 80 ms in a sweep: the columns of the search lack its form, the catalogue's has it."""
+    time = np.arange(10_000) * 0.004
+    turns = 0.1 * time + 0.5 * (6.0 - 0.1) / time[-1] * time**2
+    deflection = 0.012 - 0.004 * np.cos(2.0 * np.pi * turns)
+    bare = read("sweep", time, deflection, np.zeros(time.size), 10, noise=0.0)
+    force = simulate(with_effect("force_lag", lag=0.08, quality=1.0 / np.sqrt(2.0)), bare)
+    verdict = diagnose([read("sweep", time, deflection, force, 10)])
+    assert verdict.names == ("force_lag",)
+    assert verdict.effects[0].parameters["lag"].value == pytest.approx(0.08, rel=0.01)
