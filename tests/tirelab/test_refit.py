@@ -78,3 +78,21 @@ def test_what_acts_in_a_few_samples_is_found_if_they_show_it(seed):
     limit = float(limits[np.argmin(np.abs(cut - 80.0))])
     verdict = diagnose([ridden(seed, TireModel(effects=((CATALOGUE["saturation"], (limit, 0.0)),)))])
     assert verdict.names == ("saturation",)
+
+
+def test_a_late_reading_of_a_tire_that_relaxes_is_told_apart():
+    """Either undoes some of the other: shares below nothing would stand for the lag, and no one effect fits."""
+    relaxing, late = CATALOGUE["viscoelastic_relaxation"], CATALOGUE["force_lag"]
+    shares = {"share_1": 0.1, "relaxation_time_1": 0.3}
+    tire = TireModel(
+        effects=(
+            (relaxing, tuple(shares.get(p.name, p.start) for p in relaxing.parameters)),
+            (late, (0.003, 0.0, 0.0)),
+        )
+    )
+    verdict = diagnose([ridden(31, tire)])
+    assert set(verdict.names) == {"viscoelastic_relaxation", "force_lag"}
+    found = {k: p.value for e in verdict.effects for k, p in e.parameters.items()}
+    # 5 N of noise on 6000 samples; a delay may stand for a part of the lag.
+    assert found["share_1"] == pytest.approx(0.1, rel=0.02)
+    assert found["lag"] + found["delay"] == pytest.approx(0.003, rel=0.1)

@@ -148,7 +148,7 @@ def _viscous(p: Place) -> FloatArray:
 
 def relaxation_times(scene: Scene) -> FloatArray:
     """Return the relaxation times [s] that the recordings can show, a factor of about 2.5 apart."""
-    low, high = 2.0 * scene.finest, 0.7 * scene.longest
+    low, high = 2.0 * scene.finest, 1.5 * scene.longest
     return np.geomspace(low, high, max(2, int(np.ceil(np.log(high / low) / np.log(2.5))) + 1))
 
 

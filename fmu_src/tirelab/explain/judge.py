@@ -6,12 +6,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import nnls
 
 from .columns import Layout
 from .evidence import Explained, Products, explain
 from .families import STATIC, Family
-from .motion import FloatArray, IndexArray
+from .motion import IndexArray
 
 EFFECT_PRIOR = -4.0
 """Log prior odds of one more effect: one in fifty, the choice among fifteen and one in three that there is one more."""
@@ -103,6 +102,8 @@ def judge(p: Products, layout: Layout, names: SetName, zeta: float) -> Candidate
         number = names.index("force_lag")
         groups = tuple(g[:1] if i == number else g for i, g in enumerate(groups))
         explained = explain(p, groups, zeta)
+    if RELAXATION in names:
+        groups, explained = _above_nothing(p, groups, explained, names.index(RELAXATION), zeta)
     evidence = explained.log_evidence + prior
     held = _signs_hold(p, layout, names, groups, explained) and not _cancel(p, names, groups, explained)
     if not np.isfinite(evidence) or not held:
@@ -236,8 +237,7 @@ WHOLE_SIGN = (
 )
 """Effects whose columns all have the sign; of others the leading column has it."""
 
-AGAINST = 0.5
-"""Part of a relaxation's power that may be due to shares below nothing: it is then no relaxation."""
+RELAXATION = "viscoelastic_relaxation"
 
 
 def _signs_hold(
@@ -249,8 +249,8 @@ def _signs_hold(
             continue
         scale = np.where(np.isfinite(p.scale[group]), p.scale[group], 0.0)
         amounts = coefficients * scale
-        if name == "viscoelastic_relaxation":
-            if _against(p.gram[np.ix_(group, group)], amounts) > AGAINST:
+        if name == RELAXATION:
+            if np.any(amounts < 0.0):
                 return False
             continue
         lead = group if name in WHOLE_SIGN else group[:1]
@@ -275,12 +275,17 @@ def _cancel(p: Products, names: SetName, groups: Sequence[IndexArray], explained
     return together < CANCEL * min(explained.size[i] for i in numbers)
 
 
-def _against(gram: FloatArray, amounts: FloatArray) -> float:
-    """Return the part of a sum's power that no amounts above nothing can follow."""
-    root = np.linalg.cholesky(gram + 1e-9 * np.trace(gram) * np.eye(amounts.size)).T
-    wanted = root @ amounts
-    _, left = nnls(root, wanted, maxiter=100 * amounts.size)
-    return float(left**2 / max(wanted @ wanted, 1e-300))
+def _above_nothing(
+    p: Products, groups: tuple[IndexArray, ...], explained: Explained, number: int, zeta: float
+) -> tuple[tuple[IndexArray, ...], Explained]:
+    """Return a set explained anew without the columns of one family whose amounts are below nothing."""
+    while groups[number].size > 1 and np.any(explained.coefficients[number] < 0.0):
+        kept = explained.coefficients[number] > 0.0
+        if not kept.any():
+            break
+        groups = tuple(g[kept] if i == number else g for i, g in enumerate(groups))
+        explained = explain(p, groups, zeta)
+    return groups, explained
 
 
 def law_whole(names: Iterable[str]) -> SetName:

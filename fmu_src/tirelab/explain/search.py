@@ -54,6 +54,12 @@ AGAIN = 3
 
 LAG_STAGES = (0, 1, 2)
 
+UNDOING = ("force_lag", "viscoelastic_relaxation")
+"""What one of them adds to a quick change the other takes away: where both act neither fits alone."""
+
+LAG_STARTS = (2e-3, 8e-3, 32e-3)
+"""Lags [s] from which both are settled: without any lag the relaxation takes its place."""
+
 
 @dataclass(frozen=True)
 class Settled:
@@ -92,6 +98,11 @@ def settle(
     # Once a lag has been found its kind is known too, and stays.
     stages = LAG_STAGES if "force_lag" in names and start.lag <= 0.0 else (start.stages,)
     found = [_settle(scene, noises, families, names, zeta, replace(start, stages=s)) for s in stages]
+    if len(stages) > 1 and set(UNDOING) <= set(names):
+        found += [
+            _settle(scene, noises, families, names, zeta, replace(start, stages=1, lag=lag))
+            for lag in LAG_STARTS
+        ]
     return max(found, key=lambda s: (s.log_evidence, s.likely))
 
 
@@ -234,6 +245,9 @@ class Screen:
                 if self.allowed(left, n):
                     self.judged((*left, n))
                     self.judged((*left, n, *law))
+            if all(n in self.layout.families for n in UNDOING):
+                self.judged((*left, *(n for n in UNDOING if n not in left)))
+                self.judged((*left, *(n for n in UNDOING if n not in left), *law))
         for free in self.freed(names):
             self.judged(free)
 
@@ -244,14 +258,17 @@ class Screen:
         return [law_whole((*(n for n in names if n not in STATIC), "recalibration"))]
 
     def seeds(self) -> list[SetName]:
-        """Return every family of the catalogue alone, then beside a free law."""
+        """Return every family of the catalogue alone, then with UNDOING, and all of them beside a free law."""
         known = [
             n
             for n, f in self.layout.families.items()
             if not f.agnostic and n not in ("shape", "recalibration")
         ]
-        beside = [law_whole((n, "recalibration")) for n in known if "recalibration" in self.layout.families]
-        return [*((n,) for n in known), *beside]
+        alone: list[SetName] = [(n,) for n in known]
+        if all(n in known for n in UNDOING):
+            alone.append(UNDOING)
+        beside = [law_whole((*s, "recalibration")) for s in alone if "recalibration" in self.layout.families]
+        return [*alone, *beside]
 
     def instead_of_unknown(self, names: SetName) -> list[SetName]:
         """Return, for what is beyond the catalogue in a set, the three effects that do best in its place."""
