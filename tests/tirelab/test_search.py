@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 from drives import flat_force, read, ride, triangle
+from scipy.signal import lfilter
 from tirelab.diagnosis import diagnose
 
 
@@ -47,6 +48,7 @@ def test_a_zero_that_is_off_by_the_noise_is_named():
 
 TOLD = """
 from drives import flat_force, read, triangle
+from scipy.signal import lfilter
 from tirelab.diagnosis import diagnose
 time, deflection = triangle(600)
 force = flat_force(deflection) * (1.0 - 0.01 * time / time[-1]) + 4.0
@@ -85,3 +87,14 @@ def test_a_ceiling_is_met_by_the_whole_force():
     force = np.maximum(flat_force(deflection) + 1500.0 * rate, 0.0)
     verdict = diagnose([read("ride", time, deflection, np.minimum(force, np.quantile(force, 0.97)), 12)])
     assert set(verdict.names) == {"saturation", "viscous_damping"}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_wave_of_slow_noise_is_no_jump_of_the_amplifier(seed):
+    """A third of the noise's power wanders within a second, in 16 s: its swings last as long as a span may."""
+    time, deflection, _ = ride(60 + seed, samples=3200)
+    rng = np.random.default_rng(160 + seed)
+    keep = np.exp(-0.005)
+    drift = lfilter([np.sqrt(1.0 - keep**2)], [1.0, -keep], rng.standard_normal(time.size))
+    verdict = diagnose([read("ride", time, deflection, flat_force(deflection) + 3.5 * drift, seed)])
+    assert verdict.names == ()

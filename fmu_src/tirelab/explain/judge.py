@@ -46,6 +46,12 @@ OWN = 0.1
 
 CONFINED = ("bottoming", "saturation")
 
+SPAN, SPAN_COLUMNS = "span", 2
+"""What acts within spans of time: an offset and a part of the force in each."""
+
+MATERIAL_SPAN = 0.8
+"""The same for it, inside the spans: slow noise of half the noise's power, 0.7, wanders off by as much for a while."""
+
 LAW = ("recalibration", "shape")
 
 MATERIAL_OFFSET = 0.08
@@ -172,6 +178,9 @@ def _negligible(
             usual, doubt = MATERIAL_CONFINED, (CONFINED_FORM if confined else 1.0) * doubt
         elif name in OFFSETS and "recalibration" in names:
             usual = MATERIAL_OFFSET
+        elif name == SPAN:
+            inside = float(np.sum(p.acting[groups[names.index(name)]])) / SPAN_COLUMNS / p.samples
+            usual = max(usual, MATERIAL_SPAN * float(np.sqrt(min(inside, 1.0))))
         if unique < max(usual, doubt):
             found.append(name)
     return found
