@@ -130,9 +130,9 @@ def _reliability(axes: Axes, points: Sequence[Point]) -> None:
 
 def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
     for outside, alike, colour, label in (
-        (False, False, LIGHT_BLUE, "in the catalogue, tests of another kind"),
-        (False, True, BLUE, "in the catalogue, tests like those diagnosed"),
-        (True, True, ORANGE, "outside the catalogue, tests like those diagnosed"),
+        (False, False, LIGHT_BLUE, "tests of another kind"),
+        (False, True, BLUE, "tests like those diagnosed"),
+        (True, True, ORANGE, "the same, outside the catalogue"),
     ):
         held = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
         found = [h.alike if alike else h.other for h in held]
