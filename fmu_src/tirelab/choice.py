@@ -17,7 +17,8 @@ from .explain.columns import build
 from .explain.judge import power_of, prior_of
 from .explain.motion import FloatArray
 from .explain.scene import Scene
-from .explain.search import CLOSE, Settled
+from .explain.screen import CLOSE
+from .explain.search import Settled
 from .naming import BEYOND, named
 from .refit import Case, Refit, gain_of, refit
 from .rivals import one_constant_rate
