@@ -5,7 +5,7 @@ import pytest
 from drives import flat_force, read, ride
 from radialtire import TireModel
 from scipy.stats import multivariate_normal
-from tirelab.explain.evidence import explain, products_of
+from tirelab.explain.evidence import Products, explain, products_of
 from tirelab.explain.families import CATALOGUE_FAMILIES, high_pass, jenkins
 from tirelab.explain.lag import lagged
 from tirelab.explain.motion import motion_of
@@ -102,3 +102,11 @@ def test_a_spring_in_series_is_solved():
         scene.records[0].motion.deflection, abs=1e-9
     )
     assert place.elastic == pytest.approx(flat_force(place.deflection), rel=1e-9)
+
+
+def test_columns_so_alike_that_only_rounding_is_left_are_no_evidence():
+    # No columns have such products: of two of length 1 the product is at most 1.
+    p = Products(
+        100.0 * np.array([[1.0, 1.01], [1.01, 1.0]]), np.array([50.0, -50.0]), 100.0, 100, np.ones(2)
+    )
+    assert explain(p, [np.array([0]), np.array([1])], 1.0).log_evidence == -np.inf

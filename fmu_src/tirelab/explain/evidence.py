@@ -30,6 +30,10 @@ STANDING = 0.02
 """Relative change of every scale below which the rounds end: the evidence is flat there, it changes by the square."""
 
 
+ROUNDING = 1e-9
+"""Relative error of a product that is only rounding."""
+
+
 @dataclass(frozen=True)
 class Products:
     """What every comparison needs: products of the whitened columns and the data, in units of the noise.
@@ -119,9 +123,12 @@ def explain(p: Products, groups: Sequence[IndexArray], zeta: float) -> Explained
     covariance = np.linalg.inv(gram + np.diag(precision))
     mean = covariance @ moment
     root = np.sqrt(1.0 / precision)
-    log_determinant = np.linalg.slogdet(np.eye(index.size) + gram * np.outer(root, root))[1]
+    sign, log_determinant = np.linalg.slogdet(np.eye(index.size) + gram * np.outer(root, root))
     gain = float(moment @ mean)
     log_evidence = -0.5 * (zeta * p.power - gain + log_determinant) - SCALE_COST * len(groups)
+    # More than there is, or no determinant of a positive matrix: of columns so alike only rounding is left.
+    if gain > (1.0 + ROUNDING) * zeta * p.power or sign <= 0.0 or log_determinant < -ROUNDING:
+        log_evidence = -np.inf
     raw = gram / zeta
     chi_square = (p.power - 2.0 * float(moment @ mean) / zeta + float(mean @ raw @ mean)) / p.samples
     free = covariance
