@@ -20,9 +20,10 @@ from .explain.scene import Scene
 from .explain.screen import CLOSE
 from .explain.search import Settled
 from .naming import BEYOND, named
-from .refit import Case, Refit, gain_of, refit
+from .refit import Case, Refit, refit
 from .rivals import one_constant_rate
 from .starts import strengths
+from .worth import begun_anew, gain, without
 
 WEAK, WEAK_BESIDE = 0.5, 0.1
 """An effect whose own part is below so many noises, or this part of another one's size, is asked: what is larger is no
@@ -46,7 +47,7 @@ def choose(
     left, doubted = list(settled), list[tuple[Settled, float]]()
     while True:
         fitted = fitted_set(left[0], believed, cases, scene, power)
-        gains = _gains(left[0], fitted, believed, cases, scene, power)
+        gains, fitted = _gains(left[0], fitted, believed, cases, scene, power)
         failing = sorted((n for n in gains if gains[n] < 0.0), key=lambda n: gains[n])
         following = {n: _without(left, n, gains[n]) for n in failing}
         gone = next((n for n in failing if following[n]), None)
@@ -79,8 +80,10 @@ def _without(left: Sequence[Settled], failing: str, gain: float) -> list[Settled
 
 def _gains(
     settled: Settled, fitted: Refit, believed: TireModel, cases: Sequence[Case], scene: Scene, power: float
-) -> dict[str, float]:
-    """Return the log posterior odds of each weak effect of a fitted set; none of one that is beyond its bounds."""
+) -> tuple[dict[str, float], Refit]:
+    """Return the log posterior odds of each weak effect of a fitted set (none of one that is beyond its bounds), and
+    the fit, begun anew where an effect seemed not to gain.
+    """
     own = dict(zip(settled.names, settled.candidate.explained.unique, strict=True))
     groups = dict(zip(settled.names, settled.candidate.groups, strict=True))
     names = [n for n in named(settled) if n in own]
@@ -93,8 +96,14 @@ def _gains(
     for name in weak[:ASKED]:
         prior = prior_of(settled.layout.families[name], "recalibration" in names)
         counted = power_of(settled.products, name, groups[name], power)
-        gains[name] = gain_of(name, fitted, believed, cleared, scene.radii, counted) + prior
-    return gains
+        less = without(name, fitted, believed, cleared, scene.radii)
+        gains[name] = gain(fitted, less, counted) + prior
+        if gains[name] < 0.0:
+            fitted = begun_anew(
+                name, fitted, less, believed, cleared, scene.radii, scene.deepest, scene.highest
+            )
+            gains[name] = gain(fitted, less, counted) + prior
+    return gains, fitted
 
 
 def _beyond_bounds(name: str, fitted: Refit) -> bool:

@@ -199,7 +199,7 @@ def refit(
             tire = with_effect(tire, CATALOGUE[name], starts[name])
     knobs = tuple(k for k in knobs_of(names, radii, True, deepest) if not (one_rate and k.label in OF_RATE))
     plain = tuple(k for k in knobs if not _extra(k))
-    fitted = _fit(believed, plain, np.array([_start(k, starts, law, None) for k in plain]), cases, radii)
+    fitted = fit_knobs(believed, plain, np.array([_start(k, starts, law, None) for k in plain]), cases, radii)
     if len(plain) == len(knobs):
         return fitted
     # Two freedoms may end in a valley of their own: first those that begin at no effect, and each gain has to pay.
@@ -208,46 +208,27 @@ def refit(
         if len(group) == len(plain):
             continue
         start = [terms.get(k.label, _start(k, starts, law, whole)) for k in group]
-        whole, terms = _fit(believed, group, np.array(start), cases, radii), {}
+        whole, terms = fit_knobs(believed, group, np.array(start), cases, radii), {}
         evaluations += whole.evaluations
         kept = earned(whole, power)
         if kept in (group, plain):
             found.append(whole if kept == group else fitted)
             continue
-        found.append(_fit(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii))
+        found.append(fit_knobs(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii))
         evaluations += found[-1].evaluations
-    chosen = min(found, key=lambda f: power * f.cost + len(f.knobs) * _price(f, power))
+    chosen = min(found, key=lambda f: power * f.cost + len(f.knobs) * price_of(f, power))
     return replace(chosen, evaluations=evaluations)
 
 
 def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequence[float]) -> Refit:
     """Return the knobs of a fit fitted anew to other cases; the law starts as believed, and stays so where unseen."""
     start = [0.0 if k.owner == "law" else float(v) for k, v in zip(fitted.knobs, fitted.values, strict=True)]
-    return _fit(believed, fitted.knobs, np.array(start), cases, radii)
+    return fit_knobs(believed, fitted.knobs, np.array(start), cases, radii)
 
 
 def owners_of(name: str) -> tuple[str, ...]:
     """Return the owners of the knobs that belong to a name of the verdict."""
     return ("law", "elastic_shape") if name == "recalibration" else (name,)
-
-
-def gain_of(
-    name: str,
-    fitted: Refit,
-    believed: TireModel,
-    cases: Sequence[Case],
-    radii: Sequence[float],
-    power: float,
-) -> float:
-    """Return what an effect of a fit gains in log likelihood, less the price of its parameters (see `earned`).
-
-    All other knobs are fitted anew without it.
-    """
-    owners = owners_of(name)
-    left = [(k, v) for k, v in zip(fitted.knobs, fitted.values, strict=True) if k.owner not in owners]
-    without = _fit(believed, tuple(k for k, _ in left), np.array([v for _, v in left]), cases, radii)
-    parameters = len(fitted.knobs) - len(left)
-    return power * (without.cost - fitted.cost) - parameters * _price(fitted, power)
 
 
 def _extra(knob: Knob) -> bool:
@@ -261,7 +242,7 @@ def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
     where the samples determine it (see DETERMINED) and, counted by `power`, the log likelihood gains more than half the
     logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978).
     """
-    price = _price(whole, power)
+    price = price_of(whole, power)
     knobs = list(whole.knobs)
     scale = np.array([k.scale for k in knobs])
     values = whole.values / scale
@@ -282,7 +263,7 @@ def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
         del knobs[least]
 
 
-def _price(fitted: Refit, power: float) -> float:
+def price_of(fitted: Refit, power: float) -> float:
     """Return what one more parameter has to gain in log likelihood."""
     return 0.5 * math.log(max(power * fitted.jacobian.shape[0], math.e))
 
@@ -320,13 +301,14 @@ def _start(knob: Knob, starts: dict[str, State], law: FloatArray, before: Refit 
     return AWAKE.get(knob.label, float(CATALOGUE[knob.owner].parameters[knob.index].start))
 
 
-def _fit(
+def fit_knobs(
     believed: TireModel,
     knobs: tuple[Knob, ...],
     start: FloatArray,
     cases: Sequence[Case],
     radii: Sequence[float],
 ) -> Refit:
+    """Return the knobs fitted to the cases from `start` on."""
     scale = np.array([k.scale for k in knobs])
     low, high = np.array([k.low for k in knobs]) / scale, np.array([k.high for k in knobs]) / scale
     evaluations = 0

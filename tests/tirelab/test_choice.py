@@ -3,71 +3,9 @@
 import numpy as np
 import pytest
 from drives import read, ride
-from radialtire import CATALOGUE, TireModel
+from fits import BARE, with_effect
 from tirelab.diagnosis import diagnose
-from tirelab.explain.scene import scene_of
-from tirelab.noise import Noise
-from tirelab.refit import Case, gain_of, refit, smooth_of
 from tirelab.simulate import simulate
-
-BARE = TireModel()
-NOISE = 5.0
-
-
-def with_effect(name, **values):
-    effect = CATALOGUE[name]
-    return TireModel(effects=((effect, tuple(values.get(p.name, p.start) for p in effect.parameters)),))
-
-
-def ridden(seed, tire, noise=NOISE):
-    time, deflection, _ = ride(seed)
-    bare = read("ride", time, deflection, np.zeros(time.size), seed, noise=0.0)
-    return read("ride", time, deflection, simulate(tire, bare), seed, noise=noise)
-
-
-def fitted(recording, tire, names):
-    """The effects of `tire`, and others that are not there, fitted together."""
-    scene = scene_of(
-        [(recording.time, recording.deflection, recording.surface_radius, recording.force)], BARE
-    )
-    (record,) = scene.records
-    ones = np.ones(record.rows.size)
-    noise = Noise(NOISE, NOISE, np.ones(1), ones, ones)
-    smooth = smooth_of(recording, record.motion)
-    cases = [Case(recording, smooth, recording.force, noise, record.rows, 0.0 * ones)]
-    elastic = simulate(BARE, recording)[record.rows]
-    part = simulate(tire, recording)[record.rows] - elastic
-    own = [e.name for e, _ in tire.effects]
-    parts = {n: [part if n in own else -1e-3 * elastic] for n in names}
-    found = refit(BARE, names, parts, np.zeros((1, 2)), cases, scene.radii, scene.deepest, scene.highest)
-    return found, cases, scene
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_what_is_there_gains_and_what_is_not_costs(seed):
-    tire = with_effect("viscous_damping", damping=100.0)
-    recording = ridden(seed, tire)
-    found, cases, scene = fitted(recording, tire, ["mullins_softening", "viscous_damping"])
-    gain = {
-        n: gain_of(n, found, BARE, cases, scene.radii, 1.0) for n in ("mullins_softening", "viscous_damping")
-    }
-    assert gain["viscous_damping"] > 0.0
-    # Two parameters at half the logarithm of 6000 each; what noise gives back is chi square of two: 7 once in 1000.
-    assert gain["mullins_softening"] < 7.0 - 2.0 * 0.5 * np.log(6000.0)
-
-
-def test_the_gain_of_the_only_effect_is_half_of_what_it_takes_off_the_sum_of_squares():
-    tire = with_effect("viscous_damping", damping=60.0)
-    recording = ridden(5, tire)
-    found, cases, scene = fitted(recording, tire, ["viscous_damping"])
-    rows = scene.records[0].rows
-    before, after = ((recording.force - simulate(t, recording))[rows] / NOISE for t in (BARE, found.tire))
-    price = len(found.knobs) * 0.5 * np.log(rows.size)
-    taken = 0.5 * float(before @ before - after @ after)
-    # The loss counts what lies beyond three noises less, and so a normal residual by a tenth.
-    assert gain_of("viscous_damping", found, BARE, cases, scene.radii, 1.0) + price == pytest.approx(
-        taken, rel=0.2
-    )
 
 
 def test_a_mass_beyond_all_bounds_is_not_believed():
