@@ -20,6 +20,7 @@ from .explain.place import Point
 from .explain.plainer import noise_of_less
 from .explain.scene import Scene, scene_of
 from .explain.search import Settled, search
+from .explain.second_look import second_look
 from .held_out import HeldOut, Recorded, given, rmse, split
 from .learn import learned
 from .locate import beyond_law, locate
@@ -88,10 +89,15 @@ def diagnose(
     zero = Point(np.zeros((len(scene.radii), 4)), lifted=lifted_from_force(scene))
     tell("finding the noise")
     noises = background(scene, families, zero)
-    families = worth_trying(families, scene)
+    everything, families = families, worth_trying(families, scene)
     _check_signal(scene, noises)
     power = coarsening(scene, noises, families, zero)
     found = search(scene, noises, families, power, tell)
+    clearer = second_look(found.settled[0], scene, everything, zero)
+    if clearer is not None:
+        tell("looking at spans that stand out")
+        noises, families = clearer, worth_trying(everything, scene)
+        found = search(scene, noises, families, power, tell)
     for _ in range(LESS):
         tell("asking whether less would do")
         wider = noise_of_less(found.settled[0], scene, noises, families, power)

@@ -37,6 +37,11 @@ def background(scene: Scene, families: Sequence[Family], point: Point) -> tuple[
     # Smooth courses of time blur the edges of what begins and ends at once, and a mode rings with any line near it.
     blind = [f for f in worth_trying(families, scene) if (f.standing or not f.slow) and f.name != "resonance"]
     _look(scene, blind, point)
+    return noises_beside(scene, families, point)
+
+
+def noises_beside(scene: Scene, families: Sequence[Family], point: Point) -> tuple[Noise, ...]:
+    """Return the noise of each recording beside the lines and spans that are known to stand out."""
     return _noises(scene, worth_trying(families, scene), point, ROUNDS)[0]
 
 

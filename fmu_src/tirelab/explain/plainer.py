@@ -72,6 +72,12 @@ def _wider(less: Settled, scene: Scene, noises: Sequence[Noise]) -> list[Noise]:
     return found
 
 
+def left_by(settled: Settled, scene: Scene) -> list[FloatArray]:
+    """Return what a settled set leaves of each recording [N], at its thin samples."""
+    built = build(scene, settled.point, [settled.layout.families[n] for n in settled.names])
+    return [_left(settled, b.residual, b.columns) for b in built]
+
+
 def _left(less: Settled, residual: FloatArray, columns: dict[str, FloatArray]) -> FloatArray:
     left = np.array(residual)
     for name, group, values in zip(

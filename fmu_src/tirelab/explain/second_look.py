@@ -1,0 +1,51 @@
+"""A second look for lines and spans of time, at what the best set leaves.
+
+The first look goes by what all families together leave, and together they can follow a jump, or a line that swells with
+the load. The best set of the search follows what belongs to it alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..noise import Noise
+from .background import noises_beside
+from .families import Family
+from .outstanding import Outstanding, outstanding
+from .place import Point
+from .plainer import left_by
+from .scene import Scene
+from .search import Settled
+
+SAME_LINE = 1.0
+"""Lines within so many turns of each other in a recording are one."""
+
+
+def second_look(
+    best: Settled, scene: Scene, families: Sequence[Family], point: Point
+) -> tuple[Noise, ...] | None:
+    """Return the noises beside what stands out of what the best set leaves, None where nothing new does.
+
+    Nor is it asked where something unknown has been found already: the verdict would be the same.
+    families: all of them, those of lines and spans too; what is new is added to what is known of each recording
+    """
+    if any(best.layout.families[n].agnostic for n in best.names):
+        return None
+    found = False
+    for record, left in zip(scene.records, left_by(best, scene), strict=True):
+        thin = record.thin
+        known = np.where(thin.motion.resolved, left, 0.0)
+        seen = outstanding(thin.time, known, thin.elastic(thin.motion.deflection))
+        whole = _together(record.outstanding, seen, float(thin.time[-1] - thin.time[0]))
+        if whole != record.outstanding:
+            found = True
+            record.standing[:] = [whole]
+    return noises_beside(scene, families, point) if found else None
+
+
+def _together(first: Outstanding, second: Outstanding, duration: float) -> Outstanding:
+    lines = [x for x in second.lines if all(abs(x - y) * duration > SAME_LINE for y in first.lines)]
+    spans = [s for s in second.spans if not any(s[0] < end and begin < s[1] for begin, end in first.spans)]
+    return Outstanding((*first.lines, *lines), (*first.spans, *spans))
