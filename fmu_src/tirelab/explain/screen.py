@@ -22,6 +22,9 @@ BESIDE = 5.0
 UNDOING = ("force_lag", "viscoelastic_relaxation")
 """What one of them adds to a quick change the other takes away: where both act neither fits alone."""
 
+OF_RATE = ("viscous_damping", "viscoelastic_relaxation", "inertia")
+"""What a large lag hides: around no lag at all the sets with both do not stand out."""
+
 
 class Screen:
     """Candidates compared around one point, each judged once."""
@@ -86,15 +89,14 @@ class Screen:
         return [law_whole((*(n for n in names if n not in STATIC), "recalibration"))]
 
     def seeds(self) -> list[SetName]:
-        """Return every family of the catalogue alone, then with UNDOING, and all of them beside a free law."""
+        """Return every family of the catalogue alone, then a lag with each of OF_RATE, all also beside a free law."""
         known = [
             n
             for n, f in self.layout.families.items()
             if not f.agnostic and n not in ("shape", "recalibration")
         ]
         alone: list[SetName] = [(n,) for n in known]
-        if all(n in known for n in UNDOING):
-            alone.append(UNDOING)
+        alone += [("force_lag", n) for n in OF_RATE if n in known and "force_lag" in known]
         beside = [law_whole((*s, "recalibration")) for s in alone if "recalibration" in self.layout.families]
         return [*alone, *beside]
 
