@@ -22,6 +22,8 @@ CONCERNS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
             }
         ),
     ),
+    # What acts on one way only has half of itself in the mean of both.
+    (frozenset({"rate and deflection"}), frozenset({"bottoming", "saturation"})),
     (
         frozenset({"time", "time, added", "jump", "period", "period, added"}),
         frozenset({"pressure_leak", "warm_up", "force_drift", "mullins_softening"}),
