@@ -13,9 +13,11 @@ from .naming import named
 from .titles import UNKNOWN
 from .verdict import Rival
 
-DECIDABLE = 6.0
-"""Sets within this log evidence of the best one are rivals: odds of 400 to 1, by evidence that is itself uncertain by
-the form of the effects."""
+DECIDABLE = 10.0
+"""Sets within this log evidence of the best one are rivals: odds of 1000 to 1, as FORM_DOUBT counts them."""
+
+UNSEEN = 6.0
+"""Log odds against what may be there unseen."""
 
 SPEAKS = 4.0
 """The same for a set with one effect more: without any sample that speaks for it an effect costs five."""
@@ -24,7 +26,7 @@ DOUBTED = 1.5
 """Least log odds against what is smaller than the others' own error of form, and most against what one rate tells from
 the best by the form of its loop alone: the evidence may be that error's."""
 
-MOST_RIVALS = 5
+MOST_RIVALS = 7
 """So many are stated, likeliest first, beside those that one rate cannot tell at all."""
 
 FORM_DOUBT = 0.7
@@ -60,8 +62,9 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
 
 
-HIDING = ("series_compliance", "gas_compression", "bottoming")
-"""What a law that is free on every surface can stand for, at one pressure and on one rig."""
+HIDING = ("series_compliance", "gas_compression", "bottoming", "deflection_offset")
+"""What a law that is free on every surface can stand for, at one pressure and on one rig: of each less than a tenth is
+left beside such a law."""
 
 SHAPE_DOUBT = 30.0
 """Sets that differ in functions of deflection and surface alone are rivals within this log evidence: each has a form of
@@ -71,7 +74,7 @@ its own for what the law's shape, itself wrong by up to 13.5 %, may be."""
 def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], float]]:
     """Return the sets with another function of deflection and surface in the place of the first one's, and their gap.
 
-    Beside a free law a compliance, the air's compression or a light rim strike can always be there, unseen.
+    Beside a free law one of HIDING can always be there, unseen, or in the place of another that is hardly seen.
     """
     best = settled[0]
     names = named(best)
@@ -86,7 +89,9 @@ def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], flo
         if gap < SHAPE_DOUBT and others != set(names) and others - {"recalibration", *HIDING} == rest:
             found.append((named(s), gap))
     if "recalibration" in names:
-        found += [(tuple(sorted({*names, h})), DECIDABLE) for h in HIDING if h not in names]
+        less = [set(other) for other, _ in found if set(other) < set(names) and "recalibration" in other]
+        seen = set.intersection(set(names), *less)
+        found += [(tuple(sorted({*seen, h})), UNSEEN) for h in HIDING if h not in names]
     return found
 
 
