@@ -4,13 +4,9 @@ import numpy as np
 import pytest
 from drives import flat_force, read, ride, triangle
 from radialtire import TireModel
+from settled_sets import settled
 from tirelab.diagnosis import diagnose
-from tirelab.explain.columns import Layout
-from tirelab.explain.evidence import Explained, Products
-from tirelab.explain.judge import Candidate
-from tirelab.explain.place import Point
 from tirelab.explain.scene import scene_of
-from tirelab.explain.search import Settled
 from tirelab.rivals import (
     DECIDABLE,
     HIDING,
@@ -72,13 +68,8 @@ def test_what_is_too_small_to_be_believed_is_a_rival():
     assert verdict.confidence < 0.75
 
 
-def settled(evidence, *names):
-    """A settled set with its log evidence, and nothing else."""
-    candidate = Candidate(names, evidence, evidence, (), Explained(evidence, 1.0, (), (), (), 0.0))
-    point = Point(np.zeros((1, 4)))
-    return Settled(
-        candidate, point, Products(np.zeros((0, 0)), np.zeros(0), 1.0, 1, np.zeros(0)), Layout({}, {}, {}, {})
-    )
+def of(evidence, *names):
+    return settled(evidence, dict.fromkeys(names, 1.0))
 
 
 def stated(*sets):
@@ -86,18 +77,18 @@ def stated(*sets):
 
 
 def test_beside_a_free_law_what_it_can_stand_for_may_always_be_there():
-    found = stated(settled(0.0, "inertia", "recalibration"))
+    found = stated(of(0.0, "inertia", "recalibration"))
     assert found == {frozenset({"inertia", "recalibration", h}): UNSEEN for h in HIDING}
 
 
 def test_what_is_hardly_seen_beside_a_free_law_may_be_another_such():
-    seen = settled(0.0, "bottoming", "recalibration")
-    hardly = stated(seen, settled(-12.0, "recalibration"))
+    seen = of(0.0, "bottoming", "recalibration")
+    hardly = stated(seen, of(-12.0, "recalibration"))
     assert hardly == {frozenset({"recalibration"}): 12.0} | {
         frozenset({"recalibration", h}): UNSEEN for h in HIDING if h != "bottoming"
     }
     # Seen for certain, it stays, and the others may be there beside it.
-    surely = stated(seen, settled(-200.0, "recalibration"))
+    surely = stated(seen, of(-200.0, "recalibration"))
     assert surely == {
         frozenset({"bottoming", "recalibration", h}): UNSEEN for h in HIDING if h != "bottoming"
     }
@@ -105,5 +96,5 @@ def test_what_is_hardly_seen_beside_a_free_law_may_be_another_such():
 
 @pytest.mark.parametrize("gap", [3.0, 9.0])
 def test_a_set_that_comes_near_is_a_rival(gap):
-    sets = [settled(0.0, "warm_up"), settled(-gap, "force_drift"), settled(-40.0, "inertia")]
+    sets = [of(0.0, "warm_up"), of(-gap, "force_drift"), of(-40.0, "inertia")]
     assert [r.names for r in rivals_of(sets, scene(*ride(1)[:2]))] == [("force_drift",)]
