@@ -26,7 +26,7 @@ DOUBTED = 1.5
 """Least log odds against what is smaller than the others' own error of form, and most against what one rate tells from
 the best by the form of its loop alone: the evidence may be that error's."""
 
-MOST_RIVALS = 7
+MOST_RIVALS = 10
 """So many are stated, likeliest first, beside those that one rate cannot tell at all."""
 
 FORM_DOUBT = 0.7
@@ -46,12 +46,18 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     best = settled[0]
     found: dict[tuple[str, ...], float] = {}
     for s in settled[1:]:
-        names, more = named(s), set(named(s)) > set(named(best))
-        gap = best.log_evidence - s.log_evidence
-        if not np.isfinite(gap) and more and UNKNOWN not in names:
-            # Too small to be believed, but it may be there.
+        names = named(s)
+        if names == named(best):
+            continue
+        gap, nearest = best.log_evidence - s.log_evidence, DECIDABLE
+        if not np.isfinite(gap) and UNKNOWN not in names and _speaks(s, settled):
+            # Part of it is too small to be believed, but it may be there.
             gap = max(best.log_evidence - s.likely, DOUBTED)
-        if names != named(best) and gap < (SPEAKS if more else DECIDABLE):
+        if set(names) > set(named(best)):
+            nearest = SPEAKS
+        elif UNKNOWN in named(best) and UNKNOWN not in names:
+            nearest = SHAPE_DOUBT
+        if gap < nearest:
             found[names] = min(gap, found.get(names, np.inf))
     for names, gap in static_rivals(settled):
         found.setdefault(names, gap)
@@ -62,13 +68,20 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
 
 
+def _speaks(one: Settled, settled: Sequence[Settled]) -> bool:
+    """Return whether something speaks for all of a set: none of the smaller ones is as likely but for the price."""
+    smaller = [s.log_evidence for s in settled if set(s.names) < set(one.names)]
+    return one.likely > max(smaller, default=-np.inf) - SPEAKS
+
+
 HIDING = ("series_compliance", "gas_compression", "bottoming", "deflection_offset")
 """What a law that is free on every surface can stand for, at one pressure and on one rig: of each less than a tenth is
 left beside such a law."""
 
 SHAPE_DOUBT = 30.0
 """Sets that differ in functions of deflection and surface alone are rivals within this log evidence: each has a form of
-its own for what the law's shape, itself wrong by up to 13.5 %, may be."""
+its own for what the law's shape, itself wrong by up to 13.5 %, may be. So is a set of known effects beside something
+unknown, whose form is anybody's."""
 
 
 def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], float]]:
@@ -91,7 +104,8 @@ def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], flo
     if "recalibration" in names:
         less = [set(other) for other, _ in found if set(other) < set(names) and "recalibration" in other]
         seen = set.intersection(set(names), *less)
-        found += [(tuple(sorted({*seen, h})), UNSEEN) for h in HIDING if h not in names]
+        bases = [seen, set(names)] if seen < set(names) else [seen]
+        found += [(tuple(sorted({*base, h})), UNSEEN) for base in bases for h in HIDING if h not in names]
     return found
 
 

@@ -1,5 +1,7 @@
 """What is said, how sure, and what else it could be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import flat_force, read, ride, triangle
@@ -83,15 +85,35 @@ def test_beside_a_free_law_what_it_can_stand_for_may_always_be_there():
 
 def test_what_is_hardly_seen_beside_a_free_law_may_be_another_such():
     seen = of(0.0, "bottoming", "recalibration")
+    others = [h for h in HIDING if h != "bottoming"]
+    beside = {frozenset({"bottoming", "recalibration", h}): UNSEEN for h in others}
+    instead = {frozenset({"recalibration", h}): UNSEEN for h in others}
     hardly = stated(seen, of(-12.0, "recalibration"))
-    assert hardly == {frozenset({"recalibration"}): 12.0} | {
-        frozenset({"recalibration", h}): UNSEEN for h in HIDING if h != "bottoming"
-    }
-    # Seen for certain, it stays, and the others may be there beside it.
-    surely = stated(seen, of(-200.0, "recalibration"))
-    assert surely == {
-        frozenset({"bottoming", "recalibration", h}): UNSEEN for h in HIDING if h != "bottoming"
-    }
+    assert hardly == {frozenset({"recalibration"}): 12.0} | instead | beside
+    assert stated(seen, of(-200.0, "recalibration")) == beside
+
+
+def small(likely, *names):
+    """A set of which a part is too small to be believed."""
+    one = of(likely, *names)
+    return replace(one, candidate=replace(one.candidate, log_evidence=-np.inf))
+
+
+def rivals_beside(*sets):
+    return [set(r.names) for r in rivals_of(sets, scene(*ride(1)[:2]))]
+
+
+def test_a_likelier_set_of_which_a_part_is_too_small_to_be_believed_is_a_rival():
+    best, alone = of(0.0, "inertia", "warm_up"), of(-70.0, "warm_up")
+    assert rivals_beside(best, alone, small(20.0, "warm_up", "force_drift")) == [{"warm_up", "force_drift"}]
+    # Nothing speaks for the drift where the set without it is likelier by the price of one effect.
+    assert rivals_beside(best, of(-7.0, "warm_up"), small(-12.0, "warm_up", "force_drift")) == [{"warm_up"}]
+
+
+def test_beside_something_unknown_what_is_known_and_comes_near_is_a_rival():
+    best = of(0.0, "rate", "warm_up")
+    known, far = of(-22.0, "force_lag", "warm_up"), of(-60.0, "warm_up")
+    assert rivals_beside(best, known, far) == [{"force_lag", "warm_up"}]
 
 
 @pytest.mark.parametrize("gap", [3.0, 9.0])

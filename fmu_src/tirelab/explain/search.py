@@ -24,7 +24,7 @@ from .columns import (
     moved,
 )
 from .evidence import Products
-from .families import Family
+from .families import STATIC, Family
 from .judge import CONFINED, Candidate, SetName, beside_all, judge, law_whole, material
 from .motion import IndexArray
 from .place import Point
@@ -181,13 +181,13 @@ class Found:
     compared: int
 
 
-SHAPES = ("recalibration", "series_compliance", "gas_compression", "deflection_offset", "force_offset")
+SHAPES = ("recalibration", *STATIC, "force_offset", "bottoming")
 """What may be taken for another function of deflection and surface."""
 
 
 def _other_shapes(names: SetName, families: dict[str, Family]) -> list[SetName]:
     """Return the set with each other function of deflection and surface in the place of its own ones."""
-    if not {"recalibration", "series_compliance", "gas_compression"} & set(names):
+    if not {"recalibration", "bottoming", *STATIC} & set(names):
         return []
     rest = [n for n in names if n not in (*SHAPES, "shape")]
     return [law_whole((*rest, n)) for n in SHAPES if n in families]
@@ -199,6 +199,10 @@ def _confined(names: SetName, families: dict[str, Family]) -> list[SetName]:
         return []
     rest = [n for n in names if not families[n].agnostic]
     return [law_whole((*rest, n)) for n in CONFINED if n in families]
+
+
+def _better(one: Settled, other: Settled) -> bool:
+    return (one.log_evidence, one.likely) > (other.log_evidence, other.likely)
 
 
 def _grounded(zero: Point, screened: Callable[[Point], Screen]) -> tuple[Point, Screen]:
@@ -269,12 +273,12 @@ def search(
         [law_whole(n for n in best.names if n != gone) for gone in best.names if gone != "shape"], point
     )
     top = max(settled.values(), key=lambda s: s.log_evidence).names
-    settle_all(_other_shapes(top, by_name), point)
     # Around a point that is far off a set may come to rest short of its best: the likeliest begin once more.
-    order = sorted(settled.values(), key=lambda s: -s.log_evidence)[:AGAIN]
-    for names in dict.fromkeys([s.names for s in order] + _confined(top, by_name)):
+    likeliest = [s.names for s in sorted(settled.values(), key=lambda s: -s.log_evidence)[:AGAIN]]
+    shapes = [names for one in likeliest for names in _other_shapes(one, by_name)]
+    for names in dict.fromkeys([*likeliest, *shapes, *_confined(top, by_name)]):
         fresh = settle(scene, noises, by_name, names, zeta, zero)
-        if names not in settled or fresh.log_evidence > settled[names].log_evidence:
+        if names not in settled or _better(fresh, settled[names]):
             settled[names] = fresh
     best = max(settled.values(), key=lambda s: s.log_evidence)
     for names in screen.beside(best.names, 3):

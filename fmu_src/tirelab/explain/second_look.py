@@ -13,6 +13,7 @@ import numpy as np
 from ..noise import Noise
 from .background import noises_beside
 from .families import Family
+from .motion import FloatArray
 from .outstanding import Outstanding, outstanding
 from .place import Point
 from .plainer import left_by
@@ -38,14 +39,17 @@ def second_look(
         thin = record.thin
         known = np.where(thin.motion.resolved, left, 0.0)
         seen = outstanding(thin.time, known, thin.elastic(thin.motion.deflection))
-        whole = _together(record.outstanding, seen, float(thin.time[-1] - thin.time[0]))
+        whole = _together(record.outstanding, seen, thin.time)
         if whole != record.outstanding:
             found = True
             record.standing[:] = [whole]
     return noises_beside(scene, families, point) if found else None
 
 
-def _together(first: Outstanding, second: Outstanding, duration: float) -> Outstanding:
-    lines = [x for x in second.lines if all(abs(x - y) * duration > SAME_LINE for y in first.lines)]
-    spans = [s for s in second.spans if not any(s[0] < end and begin < s[1] for begin, end in first.spans)]
+def _together(first: Outstanding, second: Outstanding, time: FloatArray) -> Outstanding:
+    """Return both, of the second only what is new, spans with both ends: slow noise has half waves there."""
+    turn = SAME_LINE / float(time[-1] - time[0])
+    lines = [x for x in second.lines if all(abs(x - y) > turn for y in first.lines)]
+    inside = [s for s in second.spans if s[0] > 0 and s[1] < time.size]
+    spans = [s for s in inside if not any(s[0] < end and begin < s[1] for begin, end in first.spans)]
     return Outstanding((*first.lines, *lines), (*first.spans, *spans))
