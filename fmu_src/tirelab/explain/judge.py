@@ -35,6 +35,10 @@ MATERIAL = 0.1
 percent, sqrt(1 + 0.1^2): it is not named, whatever its significance (but may be a rival). It is twice the error of form
 that every family may have (`diagnosis.LEAST_ERROR`)."""
 
+MATERIAL_UNKNOWN = 0.2
+"""The same for what is beyond the catalogue: its columns, up to twenty-six of no form of their own, also follow what the
+measure of the noise's colour is off by."""
+
 MATERIAL_CONFINED = 0.05
 """The same for what acts in a few percent of the samples: there it is several times as large."""
 
@@ -178,6 +182,8 @@ def _negligible(
             usual, doubt = MATERIAL_CONFINED, (CONFINED_FORM if confined else 1.0) * doubt
         elif name in OFFSETS and "recalibration" in names:
             usual = MATERIAL_OFFSET
+        elif beyond and name != SPAN:
+            usual = MATERIAL_UNKNOWN
         elif name == SPAN:
             inside = float(np.sum(p.acting[groups[names.index(name)]])) / SPAN_COLUMNS / p.samples
             usual = max(usual, MATERIAL_SPAN * float(np.sqrt(min(inside, 1.0))))
