@@ -35,7 +35,7 @@ def summarise(
         said.append(_learned(corrections))
     said.append(sure(confidence))
     if rivals:
-        said.append(_rivalled(rivals))
+        said += _rivalled(names, rivals)
     if test is not None and not test.tells:
         said.append(test.sentence)
     return " ".join(said)
@@ -80,12 +80,23 @@ def _learned(corrections: Sequence[Correction]) -> str:
     return f"{told}{unseen if math.isfinite(best.held_out_after) else ''}; it is a description, not physics."
 
 
-def _rivalled(rivals: Sequence[Rival]) -> str:
-    """Return what else it could be, the reason said once where it is one."""
+def _rivalled(names: Sequence[str], rivals: Sequence[Rival]) -> list[str]:
+    """Return what else it could be: sets in the place of the verdict's `names`, and what may be there beside them."""
+    beside = [r for r in rivals if names and len(r.names) == len(names) + 1 and set(r.names) > set(names)]
+    if len(beside) < 2:
+        return [_told("It could also be", rivals, [set_title(r.names) for r in rivals])]
+    instead = [r for r in rivals if r not in beside]
+    more = [set_title([n for n in r.names if n not in names]) for r in beside]
+    found = [_told("It could also be", instead, [set_title(r.names) for r in instead])] if instead else []
+    return [*found, _told("Beside what was found there may be, unseen,", beside, more)]
+
+
+def _told(start: str, rivals: Sequence[Rival], titles: Sequence[str]) -> str:
+    """Return a sentence that lists `titles` of rivals, the reason said once where it is one."""
     if len({r.reason for r in rivals}) == 1:
-        return f"It could also be {listed([set_title(r.names) for r in rivals], 'or')}: {rivals[0].reason}."
-    told = listed([f"{set_title(r.names)} ({r.reason})" for r in rivals], "or")
-    return f"It could also be {told}."
+        return f"{start} {listed(titles, 'or')}: {rivals[0].reason}."
+    told = listed([f"{t} ({r.reason})" for t, r in zip(titles, rivals, strict=True)], "or")
+    return f"{start} {told}."
 
 
 def _capital(text: str) -> str:

@@ -71,6 +71,20 @@ def test_one_reason_is_said_once_and_several_each():
     assert "It could also be viscous damping (one surface) or force lag (one rate)." in told
 
 
+def test_what_may_be_there_beside_the_verdict_is_told_apart_from_what_may_be_in_its_place():
+    reason = "one pressure"
+    beside = [Rival((n, "inertia"), 6.0, reason) for n in ("gas_compression", "series_compliance")]
+    told = summarise((NamedEffect("inertia", {}, 1.0),), (), (), 0.9, FELL)
+    assert "may" not in told
+    told = summarise((NamedEffect("inertia", {}, 1.0),), beside, (), 0.9, FELL)
+    assert told.endswith(
+        "Beside what was found there may be, unseen, gas compression or series compliance: one pressure."
+    )
+    instead = Rival(("force_lag",), 2.0, "one rate")
+    told = summarise((NamedEffect("inertia", {}, 1.0),), [instead, *beside], (), 0.9, FELL)
+    assert "It could also be force lag: one rate. Beside what was found there may be, unseen, gas" in told
+
+
 def test_that_no_test_would_tell_is_said():
     motion = Test("sweep", np.arange(3.0), np.zeros(3), np.full(3, np.inf))
     between = (("recalibration",), ("series_compliance",))

@@ -36,8 +36,8 @@ percent, sqrt(1 + 0.1^2): it is not named, whatever its significance (but may be
 that every family may have (`diagnosis.LEAST_ERROR`)."""
 
 MATERIAL_UNKNOWN = 0.2
-"""The same for what is beyond the catalogue: its columns, up to twenty-six of no form of their own, also follow what the
-measure of the noise's colour is off by."""
+"""The same for what is beyond the catalogue: its columns, up to twenty-six without a form of their own, also follow
+what the measure of the noise's colour is off by."""
 
 MATERIAL_CONFINED = 0.05
 """The same for what acts in a few percent of the samples: there it is several times as large."""
