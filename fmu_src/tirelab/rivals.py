@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .explain.judge import FORM_ERROR
 from .explain.motion import FloatArray
 from .explain.scene import Scene
 from .explain.search import Settled
@@ -99,6 +100,8 @@ def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], flo
     for s in settled[1:]:
         gap = best.log_evidence - s.log_evidence
         others = set(named(s))
+        if np.isfinite(gap) and "recalibration" in set(names) - others and _is_error_of_form(s, best):
+            gap = min(gap, UNSEEN)
         if gap < SHAPE_DOUBT and others != set(names) and others - {"recalibration", *HIDING} == rest:
             found.append((named(s), gap))
     if "recalibration" in names:
@@ -107,6 +110,12 @@ def static_rivals(settled: Sequence[Settled]) -> list[tuple[tuple[str, ...], flo
         bases = [seen, set(names)] if seen < set(names) else [seen]
         found += [(tuple(sorted({*base, h})), UNSEEN) for base in bases for h in HIDING if h not in names]
     return found
+
+
+def _is_error_of_form(other: Settled, best: Settled) -> bool:
+    """Return whether a set leaves no more power than its largest effect's form may miss, which a free law takes up."""
+    more = other.candidate.explained.chi_square - best.candidate.explained.chi_square
+    return more < (FORM_ERROR * max(other.candidate.explained.size, default=0.0)) ** 2
 
 
 def confidence_of(rivals: Sequence[Rival]) -> float:

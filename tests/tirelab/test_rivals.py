@@ -74,6 +74,13 @@ def of(evidence, *names):
     return settled(evidence, dict.fromkeys(names, 1.0))
 
 
+def leaving(chi_square, one):
+    return replace(
+        one,
+        candidate=replace(one.candidate, explained=replace(one.candidate.explained, chi_square=chi_square)),
+    )
+
+
 def stated(*sets):
     return {frozenset(names): gap for names, gap in static_rivals(sets)}
 
@@ -88,9 +95,17 @@ def test_what_is_hardly_seen_beside_a_free_law_may_be_another_such():
     others = [h for h in HIDING if h != "bottoming"]
     beside = {frozenset({"bottoming", "recalibration", h}): UNSEEN for h in others}
     instead = {frozenset({"recalibration", h}): UNSEEN for h in others}
-    hardly = stated(seen, of(-12.0, "recalibration"))
+    hardly = stated(seen, leaving(1.02, of(-12.0, "recalibration")))
     assert hardly == {frozenset({"recalibration"}): 12.0} | instead | beside
-    assert stated(seen, of(-200.0, "recalibration")) == beside
+    assert stated(seen, leaving(1.5, of(-200.0, "recalibration"))) == beside
+
+
+def test_another_function_of_the_deflection_is_a_rival_where_the_error_of_its_form_is_all_it_leaves():
+    law = of(0.0, "recalibration")
+    for size, stands in ((30.0, True), (10.0, False)):
+        far = leaving(1.7, settled(-500.0, {"gas_compression": size}))
+        # 3 % of 30 noises are 0.9, of power 0.8; of 10 noises they are 0.3, of power 0.09.
+        assert (frozenset({"gas_compression"}) in stated(law, far)) is stands
 
 
 def small(likely, *names):

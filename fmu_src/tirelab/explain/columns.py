@@ -249,7 +249,7 @@ def measure(
             np.zeros(()),
         )
         for f in families
-        if f.slow
+        if f.like_noise
     }
     p = discounted(
         products_of(np.concatenate(columns), np.concatenate(data)),

@@ -45,6 +45,11 @@ class Family:
     slow: bool = False
     standing: bool = False
 
+    @property
+    def like_noise(self) -> bool:
+        """Whether the amplifier's noise looks like it: a drift of its zero, or hum at a multiple of the sampling."""
+        return self.slow or self.name == "force_drift"
+
 
 def scale_of(p: Place, what: str) -> float:
     return max(float(np.sqrt(np.mean(getattr(r.motion, what) ** 2))) for r in p.scene.records) + 1e-12

@@ -163,7 +163,7 @@ def _negligible(
         if name == "shape":
             continue
         unique = law if name == "recalibration" else own[name]
-        slow = layout.families[name].slow
+        slow = layout.families[name].like_noise
         if slow and _as_it_is(p, layout, names, groups, explained, name) < MATERIAL_SLOW:
             found.append(name)
             continue
