@@ -40,6 +40,16 @@ def test_hum_at_a_multiple_of_the_sampling_is_no_zero_that_is_off(seed):
     assert verdict.names == ()
 
 
+@pytest.mark.parametrize(("drift", "names"), [(4.5, ()), (13.0, ("force_drift",))])
+def test_a_drift_is_named_where_it_is_no_hum_at_a_multiple_of_the_sampling(drift, names):
+    """49.9925 Hz read at 50 Hz turns once in 133 s: over 50 s hum is a drift. 4.5 N of it are 2.6 N RMS under 5 N of
+    noise, 13 N are 7.5 N.
+    """
+    time, deflection = triangle(2500)
+    force = flat_force(deflection) + drift * time / time[-1]
+    assert diagnose([read("triangle", time, deflection, force, 12)]).names == names
+
+
 def test_a_zero_that_is_off_by_the_noise_is_named():
     time, deflection = triangle(600)
     verdict = diagnose([read("triangle", time, deflection, flat_force(deflection) + 6.0, 5)])
