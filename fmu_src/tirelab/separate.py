@@ -16,7 +16,7 @@ from radialtire import TireModel
 from .explain.motion import FloatArray
 from .refit import Knob, assemble
 from .simulate import simulate
-from .titles import listed, set_title
+from .titles import set_title
 
 DECISIVE = 5.7
 """Least separation S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
@@ -202,17 +202,18 @@ def _sentence(
 ) -> str:
     radius, path = float(test.surface_radius[0]), test.deflection
     place = "flat ground" if not np.isfinite(radius) else f"a surface of radius {100.0 * radius:.4g} cm"
-    sets = listed([set_title(names) for names in between])
+    first, second = (set_title(names) for names in between)
     if separation < DECISIVE:
         return (
-            f"No motion within the rig's limits would tell {sets} apart: the best one tried, {test.name} on {place}, "
-            f"sets them {separation:.2g} times the noise apart over all its samples, and {DECISIVE:g} are needed."
+            f"No motion within the rig's limits would tell {first} from {second}: the best one tried, {test.name} on "
+            f"{place}, sets them {separation:.2g} times the noise apart over all its samples, and {DECISIVE:g} are "
+            "needed."
         )
     rate = 1e3 * float(np.abs(np.diff(path) / np.diff(test.time)).max())
     return (
         f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, up to {rate:.0f} mm/s for "
-        f"{test.time[-1] - test.time[0]:.0f} s: {sets} then differ by {typical:.2g} times the noise in a typical "
-        f"sample, {separation:.0f} times over all of them."
+        f"{test.time[-1] - test.time[0]:.0f} s: {first} then differs from {second} by {typical:.2g} times the noise "
+        f"in a typical sample, {separation:.0f} times over all of them."
     )
 
 

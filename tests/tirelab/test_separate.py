@@ -68,7 +68,7 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     )
     assert not found.tells
     assert found.sentence.startswith(
-        "No motion within the rig's limits would tell rate-independent hysteresis and"
+        "No motion within the rig's limits would tell rate-independent hysteresis from"
     )
     assert "5.7 are needed" in found.sentence
     assert fitted(6.0).tells
