@@ -95,7 +95,7 @@ def diagnose(
     found = search(scene, noises, families, power, tell)
     clearer = second_look(found.settled[0], scene, everything, zero)
     if clearer is not None:
-        tell("looking at spans that stand out")
+        tell("looking at lines and spans that stand out")
         noises, families = clearer, worth_trying(everything, scene)
         found = search(scene, noises, families, power, tell)
     for _ in range(LESS):

@@ -17,11 +17,11 @@ from .verdict import Rival
 DECIDABLE = 10.0
 """Sets within this log evidence of the best one are rivals: odds of 1000 to 1, as FORM_DOUBT counts them."""
 
-UNSEEN = 6.0
-"""Log odds against what may be there unseen."""
-
 SPEAKS = 4.0
 """The same for a set with one effect more: without any sample that speaks for it an effect costs five."""
+
+UNSEEN = 6.0
+"""Log odds against each effect that a free law may hide: chosen, as the price of one that gains nothing."""
 
 DOUBTED = 1.5
 """Least log odds against what is smaller than the others' own error of form, and most against what one rate tells from

@@ -15,9 +15,9 @@ from .columns import Built, Layout, build, layout_of
 from .evidence import Products, explain, products_of
 from .families import Family
 from .motion import BoolArray, FloatArray, IndexArray, Motion
-from .outstanding import outstanding
+from .outstanding import Outstanding, outstanding
 from .place import Point
-from .scene import Scene
+from .scene import Record, Scene
 
 SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""
@@ -49,10 +49,15 @@ def _look(scene: Scene, families: Sequence[Family], point: Point) -> None:
     """Find what stands out of what all other families leave."""
     _, left = _noises(scene, families, point, 1)
     for record, values in zip(scene.records, left, strict=True):
-        thin = record.thin
-        known = np.where(thin.motion.resolved, values, 0.0)
-        found = outstanding(thin.time, known, thin.elastic(thin.motion.deflection))
-        record.standing[:] = [found]
+        record.standing[:] = [standing_out(record, values)]
+
+
+def standing_out(record: Record, left: FloatArray) -> Outstanding:
+    """Return what stands out of what is left of a recording [N] at its thin samples, corners of the motion aside."""
+    thin = record.thin
+    return outstanding(
+        thin.time, np.where(thin.motion.resolved, left, 0.0), thin.elastic(thin.motion.deflection)
+    )
 
 
 def _noises(

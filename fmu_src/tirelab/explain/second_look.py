@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ..noise import Noise
-from .background import noises_beside
+from .background import noises_beside, standing_out
 from .families import Family
 from .motion import FloatArray
-from .outstanding import Outstanding, outstanding
+from .outstanding import Outstanding
 from .place import Point
 from .plainer import left_by
 from .scene import Scene
@@ -36,10 +34,7 @@ def second_look(
         return None
     found = False
     for record, left in zip(scene.records, left_by(best, scene), strict=True):
-        thin = record.thin
-        known = np.where(thin.motion.resolved, left, 0.0)
-        seen = outstanding(thin.time, known, thin.elastic(thin.motion.deflection))
-        whole = _together(record.outstanding, seen, thin.time)
+        whole = _together(record.outstanding, standing_out(record, left), record.thin.time)
         if whole != record.outstanding:
             found = True
             record.standing[:] = [whole]
@@ -47,7 +42,7 @@ def second_look(
 
 
 def _together(first: Outstanding, second: Outstanding, time: FloatArray) -> Outstanding:
-    """Return both, of the second only what is new, spans with both ends: slow noise has half waves there."""
+    """Return both; of the second what is new, and no span at an end, where slow noise has half waves."""
     turn = SAME_LINE / float(time[-1] - time[0])
     lines = [x for x in second.lines if all(abs(x - y) > turn for y in first.lines)]
     inside = [s for s in second.spans if s[0] > 0 and s[1] < time.size]
