@@ -19,14 +19,14 @@ DEFLECTION_LOWEST = -1e3
 DEFLECTION_HIGHEST = 0.33
 """Highest deflection accepted [m]: the radius of a 26 in wheel; with more the axle would be below the ground."""
 
-TRACKING_TIME = Parameter(
-    "tracking_time",
-    "T",
+READING_NOISE = Parameter(
+    "reading_noise",
     "s",
+    "m",
     0.0,
     0.0,
-    1.0,
-    "memory with which rate and acceleration follow the deflection read",
+    0.01,
+    "standard deviation of the noise with which the deflection is read",
 )
 
 TANGENT_STEP = 1e-7
@@ -98,8 +98,8 @@ class ModelState(NamedTuple):
             started,
             tuple(tuple(state) for state in effects),
             start,
-            tuple(reading),
-            tuple(compression),
+            tracking.restored(reading),
+            tracking.restored(compression),
         )
 
 
@@ -123,8 +123,8 @@ class TireModel:
 
     effects: pairs of an effect and its parameters' values, at most one of each name, ordered by place
     tested_range: where the tire was measured, or None where that is not known
-    tracking_time: [s] memory with which rate and acceleration follow the deflection (see `tracking`); 0 takes the
-    deflection as free of noise
+    reading_noise: [m] standard deviation of the deflection's reading, which rate and acceleration must not follow (see
+    `tracking`); 0 takes the deflection as exact
     """
 
     law: Law = Hull1996()
@@ -132,10 +132,10 @@ class TireModel:
     tested_range: TestedRange | None = TestedRange()
     name: str = "Hull, Wang & Moore 1996"
     source: str = "Hull, Wang & Moore, Cycling Science, Spring 1996"
-    tracking_time: float = 0.0
+    reading_noise: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "tracking_time", TRACKING_TIME.checked(self.tracking_time))
+        object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
         names = [effect.name for effect, _ in self.effects]
         if len(set(names)) < len(names):
             raise ParameterError(f"an effect occurs twice in {', '.join(names)}; keep one of each")
@@ -214,7 +214,7 @@ class TireModel:
         if first:
             return tracking.begin(deflection)
         if interval > 0.0:
-            return tracking.follow(track, interval, deflection, self.tracking_time)
+            return tracking.follow(track, interval, deflection, self.reading_noise)
         return track
 
     def stiffness(self, deflection: float, surface_radius: float, state: ModelState) -> float:

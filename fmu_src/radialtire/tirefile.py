@@ -3,11 +3,11 @@
     {"schema": 1, "name": "...", "source": "...",
      "law": {"name": "power_law", "parameters": {"coefficient": 718.5, "exponent": 1.4}},
      "effects": [{"name": "viscous_damping", "parameters": {"damping": 300.0}}],
-     "tracking_time": 0.002,
+     "reading_noise": 8e-6,
      "tested_range": {"curvature_min": -2.62, "curvature_max": 78.7, "deflection_max": 0.0318, "force_max": 2240.0}}
 
 A parameter that is not given has its start value; an unknown name is an error, never passed over. `tested_range` may be
-null: then it is not known. `tracking_time` [s], 0 where it is not given, is that of `TireModel`.
+null: then it is not known. `reading_noise` [m], 0 where it is not given, is that of `TireModel`.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def to_text(tire: TireModel) -> str:
         "source": tire.source,
         "law": _law_entry(tire.law),
         "effects": effects,
-        "tracking_time": tire.tracking_time,
+        "reading_noise": tire.reading_noise,
         "tested_range": None if tire.tested_range is None else asdict(tire.tested_range),
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
@@ -86,7 +86,7 @@ def from_text(text: str) -> TireModel:
         content = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
-    known = {"schema", "name", "source", "law", "effects", "tracking_time", "tested_range"}
+    known = {"schema", "name", "source", "law", "effects", "reading_noise", "tested_range"}
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
         raise TireFileError(
@@ -99,7 +99,7 @@ def from_text(text: str) -> TireModel:
             tested_range=_tested_range(entry.get("tested_range")),
             name=_text(entry, "name"),
             source=_text(entry, "source"),
-            tracking_time=entry.get("tracking_time", 0.0),
+            reading_noise=entry.get("reading_noise", 0.0),
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None

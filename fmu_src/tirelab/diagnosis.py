@@ -32,7 +32,6 @@ from .separate import Limits, SeparatingTest, separate
 from .simulate import simulate
 from .summary import summarise
 from .titles import UNKNOWN
-from .tracking_time import likeliest_tracking, serving_tracking
 from .verdict import Estimate, Evidence, Fit, NamedEffect, Rival, Verdict
 
 CATALOGUE_NAMES: tuple[str, ...] = ("recalibration", *(f.name for f in CATALOGUE_FAMILIES))
@@ -107,7 +106,7 @@ def diagnose(
         found = search(scene, noises, families, power, tell)
 
     tell("fitting the parameters")
-    believed = replace(tire, tracking_time=likeliest_tracking(recordings).tracking_time)
+    believed = replace(tire, reading_noise=float(np.median([r.motion.noise for r in scene.records])))
     cases = [
         Case(
             recording,
@@ -122,10 +121,6 @@ def diagnose(
     settled, fitted = choose(found.settled, believed, cases, scene, power)
     best = settled[0]
     cleared = cleared_of(best, cases, scene)
-    motions = [r.motion for r in scene.records]
-    noise, resolved = max(m.noise for m in motions), [m.resolved for m in motions]
-    believed = replace(believed, tracking_time=serving_tracking(fitted.tire, recordings, resolved, noise))
-    fitted = _tracked(fitted, believed, recordings)
     before = [r.force - simulate(tire, r) for r in recordings]
     beyond = tuple(n for n in best.names if n in BEYOND)
     tell("judging the correction on what it was not fitted to")
@@ -225,12 +220,6 @@ def _check_signal(scene: Scene, noises: Sequence[Noise]) -> None:
                 f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "
                 "check channels and units"
             )
-
-
-def _tracked(fitted: Refit, believed: TireModel, recordings: Sequence[Recorded]) -> Refit:
-    """Return the fit with the believed tire's tracking time."""
-    tire = replace(fitted.tire, tracking_time=believed.tracking_time)
-    return replace(fitted, tire=tire, residuals=tuple(r.force - simulate(tire, r) for r in recordings))
 
 
 def _effects(settled: Settled, fitted: Refit) -> tuple[NamedEffect, ...]:

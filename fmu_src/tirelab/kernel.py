@@ -6,8 +6,6 @@ compile the result.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 from radialtire.effect import Instant, State
@@ -56,7 +54,7 @@ def respond_loop(
 def track_loop(
     time: FloatArray,
     deflection: FloatArray,
-    tracking_time: float,
+    reading_noise: float,
     speed: FloatArray,
     speeding: FloatArray,
 ) -> None:
@@ -64,29 +62,9 @@ def track_loop(
     track = begin(deflection[0])
     for i in range(deflection.size):
         if i > 0 and time[i] > time[i - 1]:
-            track = follow(track, time[i] - time[i - 1], deflection[i], tracking_time)
+            track = follow(track, time[i] - time[i - 1], deflection[i], reading_noise)
         speed[i] = rate(track)
         speeding[i] = acceleration(track)
-
-
-def surprise_loop(
-    time: FloatArray, deflection: FloatArray, tracking_time: float, settling: int
-) -> tuple[float, float]:
-    """Return the sums of e^2/V and log V over all readings after the first `settling` ones.
-
-    e [m] is what a reading differs from what was expected of it, V its variance over that of the reading's noise. Both
-    follow from the track after it, whose gain is 1 - 1/V and whose deflection is e/V off the reading.
-    """
-    squares = logs = 0.0
-    track = begin(deflection[0])
-    for i in range(1, deflection.size):
-        track = follow(track, time[i] - time[i - 1], deflection[i], tracking_time)
-        if i >= settling:
-            certainty = 1.0 - track[3]
-            off = deflection[i] - track[0]
-            squares += off * off / certainty
-            logs -= math.log(certainty)
-    return squares, logs
 
 
 def elastic_loop(

@@ -98,7 +98,7 @@ def elastic_stage(
     rate = history.rate
     if any(effect.place in UPSTREAM for effect, _ in tire.effects) and differentiates(tire):
         if moved is None:
-            rate, _ = track(history.time, x, tire.tracking_time)
+            rate, _ = track(history.time, x, tire.reading_noise)
         else:
             rate = rate + np.gradient(x - recording.deflection, history.time)
     bare = elastic_force(x, history.coefficient, history.exponent)
@@ -128,7 +128,7 @@ def history_of(
     if moved is not None:
         rate, acceleration = moved.rate, moved.acceleration
     elif differentiates(tire):
-        rate, acceleration = track(time, deflection, tire.tracking_time)
+        rate, acceleration = track(time, deflection, tire.reading_noise)
     A, B = coefficients(tire.law, surface_radius)
     flat = np.abs(surface_radius) >= FLAT_RADIUS
     curvature = np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, surface_radius))
@@ -178,8 +178,8 @@ def coefficients(law: Law, surface_radius: FloatArray) -> tuple[FloatArray, Floa
     return np.ascontiguousarray(A), np.ascontiguousarray(B)
 
 
-def track(time: FloatArray, deflection: FloatArray, tracking_time: float) -> tuple[FloatArray, FloatArray]:
+def track(time: FloatArray, deflection: FloatArray, reading_noise: float) -> tuple[FloatArray, FloatArray]:
     """Return rate [m/s] and acceleration [m/s^2] as the tire follows them, without look-ahead (see `tracking`)."""
     rate, acceleration = np.empty_like(deflection), np.empty_like(deflection)
-    compiled.loop("track_loop", "track")(time, deflection, float(tracking_time), rate, acceleration)
+    compiled.loop("track_loop", "track")(time, deflection, float(reading_noise), rate, acceleration)
     return rate, acceleration

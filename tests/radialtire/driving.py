@@ -22,13 +22,13 @@ STIFFNESS = 1e5
 
 
 def tire_with(
-    *effects: tuple[str, Sequence[float]], tracking_time: float = 0.0, law: object = None
+    *effects: tuple[str, Sequence[float]], reading_noise: float = 0.0, law: object = None
 ) -> TireModel:
     """Return a tire with the effects of these names and values, put in the order of the signal's way."""
     pairs = [(CATALOGUE[name], tuple(values)) for name, values in effects]
     pairs.sort(key=lambda pair: (PLACES.index(pair[0].place), list(CATALOGUE).index(pair[0].name)))
-    tire = TireModel(effects=tuple(pairs), tracking_time=tracking_time)
-    return tire if law is None else TireModel(law, tuple(pairs), tracking_time=tracking_time)  # type: ignore[arg-type]
+    tire = TireModel(effects=tuple(pairs), reading_noise=reading_noise)
+    return tire if law is None else TireModel(law, tuple(pairs), reading_noise=reading_noise)  # type: ignore[arg-type]
 
 
 def values_of(effect: Effect, **changed: float) -> tuple[float, ...]:
@@ -38,9 +38,9 @@ def values_of(effect: Effect, **changed: float) -> tuple[float, ...]:
     return tuple(changed.get(name, value) for name, value in zip(names, effect.off, strict=True))
 
 
-def only(name: str, law: object = None, tracking_time: float = 0.0, **changed: float) -> TireModel:
+def only(name: str, law: object = None, reading_noise: float = 0.0, **changed: float) -> TireModel:
     """Return a tire with one effect, off but for the values of `changed`."""
-    return tire_with((name, values_of(CATALOGUE[name], **changed)), tracking_time=tracking_time, law=law)
+    return tire_with((name, values_of(CATALOGUE[name], **changed)), reading_noise=reading_noise, law=law)
 
 
 def drive(

@@ -145,7 +145,7 @@ def test_on_changes_the_force(effect: Effect) -> None:
 @settings(max_examples=30, deadline=None)
 def test_it_is_finite_over_its_bounds(effect: Effect, data: st.DataObject) -> None:
     tire = tire_with(
-        (effect.name, data.draw(any_values(effect))), tracking_time=data.draw(st.floats(0.0, 1.0))
+        (effect.name, data.draw(any_values(effect))), reading_noise=data.draw(st.floats(0.0, 0.01))
     )
     assert np.all(np.isfinite(drive(tire, *data.draw(motions()))))
 

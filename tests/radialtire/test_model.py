@@ -26,7 +26,7 @@ from radialtire import (
     power_law,
 )
 
-EVERYTHING = tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), tracking_time=1e-3)
+EVERYTHING = tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), reading_noise=8e-6)
 
 
 @given(st.floats(-0.1, 0.3), st.sampled_from([0.0127, 0.5, math.inf, -0.4]), st.floats(0.0, 1e6))
@@ -163,8 +163,8 @@ def test_effects_against_the_signals_way_are_refused() -> None:
 def test_values_of_an_effect_are_checked() -> None:
     with pytest.raises(ParameterError, match="mass = -1 is not allowed"):
         TireModel(effects=((CATALOGUE["inertia"], (-1.0,)),))
-    with pytest.raises(ParameterError, match="tracking_time = 2 is not allowed"):
-        TireModel(tracking_time=2.0)
+    with pytest.raises(ParameterError, match="reading_noise = 2 is not allowed"):
+        TireModel(reading_noise=2.0)
 
 
 def test_effects_act_in_the_order_of_the_signals_way() -> None:

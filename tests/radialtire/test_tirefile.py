@@ -26,7 +26,7 @@ TIRES = [
     TireModel(),
     TireModel(PowerLaw(1500.0, 1.0), tested_range=None, name="road", source="quoted"),
     TireModel(Hull1996(flat_coefficient=600.1), tested_range=TestedRange(force_max=0.1 + 0.2)),
-    tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), tracking_time=2.3e-3),
+    tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), reading_noise=8e-6),
 ]
 
 
@@ -101,7 +101,7 @@ LAW = {"name": "hull1996"}
             {"schema": 1, "law": LAW, "effects": [{"name": "inertia", "parameters": {"mass": -1}}]},
             "mass = -1 is not allowed; it must lie between 0 and 100 kg",
         ),
-        ({"schema": 1, "law": LAW, "tracking_time": "fast"}, "tracking_time = 'fast' is not a number"),
+        ({"schema": 1, "law": LAW, "reading_noise": "much"}, "reading_noise = 'much' is not a number"),
         ({"schema": 1, "law": LAW, "tested_range": {"force_max": 1.0}}, "tested_range lacks its entry"),
         (
             '{"schema": 1, "law": {"name": "hull1996"}, "tested_range": {"curvature_min": -1, "curvature_max": NaN, '

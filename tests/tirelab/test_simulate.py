@@ -83,7 +83,7 @@ def random_tire(names: list[str], seed: int) -> TireModel:
         if random.random() < 0.5
         else PowerLaw(random.uniform(100.0, 900.0), random.uniform(0.8, 1.8))
     )
-    return TireModel(law, tuple(effects), tracking_time=float(random.choice([0.0, 2e-3])))
+    return TireModel(law, tuple(effects), reading_noise=float(random.choice([0.0, 8e-6])))
 
 
 def same(tire: TireModel, motion: Motion) -> None:
