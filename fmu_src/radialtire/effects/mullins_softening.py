@@ -9,7 +9,8 @@ one surface to another they differ. D is the share lost far below m_max; r and w
 proportion and fixed (rubber has no length of its own: w stays 0 unless the recordings ask for it; with A_0 and B_0 of
 Hull's tire on flat ground it is the same on every surface); p = 1 sets in at once, p = 2 smoothly. Above m_max the tire
 is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the way travelled below
-m_max: with l > 0 the softening gathers over the cycles, with l = 0 it is there at once (g = 1).
+m_max: with l > 0 the softening gathers over the cycles, with l = 0 it is there at once (g = 1). To and fro within PLAY
+is no way: a gauge that reads a tire at rest with 0.01 mm of noise would walk 0.1 m in ten seconds.
 
 Ogden & Roxburgh write the dependence in the energy, with an error function. No Mullins share of bicycle tires was found
 in the open: the bounds are wide.
@@ -25,32 +26,37 @@ import math
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
 
+PLAY = 1e-4
+"""Distance [m] from where the way was last counted that has to be left before it counts on."""
+
 FLAT_A, FLAT_B = 550.9, 1.422
 """A [N/cm^B] and B [1] of Hull's tire on flat ground (equations 3 to 6 there)."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by the softening; the state: largest measure so far, last deflection, way below [m]."""
+    """Multiply the factor by the softening; the state: largest measure, where the way was counted, way [m]."""
     share, ratio, width, sharpness, history, gathering, load = values
     x = instant.deflection
-    largest, last, way = state
+    largest, counted, way = state
     power = 1.0 + load * instant.exponent
     by_surface = instant.coefficient**load
     if instant.first:
-        largest, last = by_surface * (100.0 * history) ** power, x
+        largest, counted = by_surface * (100.0 * history) ** power, max(x, 0.0)
     borne = by_surface * (100.0 * max(x, 0.0)) ** power
-    if borne < largest:
-        way += abs(max(x, 0.0) - max(last, 0.0))
-    largest = max(borne, largest)
+    gone = abs(max(x, 0.0) - counted)
+    if borne >= largest:
+        largest, counted, gone = borne, max(x, 0.0), 0.0
+    elif gone > PLAY:
+        way, counted, gone = way + gone, max(x, 0.0), 0.0
     if share == 0.0 or x <= 0.0 or borne >= largest:
-        return signal, (largest, x, way)
+        return signal, (largest, counted, way)
     fixed = FLAT_A**load * (100.0 * width) ** (1.0 + load * FLAT_B)
     below = (largest - borne) / (ratio * largest + fixed)
     if sharpness != 1.0:
         below = below**sharpness
     if gathering > 0.0:
-        share *= -math.expm1(-way / gathering)
-    return signal * (1.0 + share * math.expm1(-below)), (largest, x, way)
+        share *= -math.expm1(-(way + gone) / gathering)
+    return signal * (1.0 + share * math.expm1(-below)), (largest, counted, way)
 
 
 MULLINS_SOFTENING = Effect(

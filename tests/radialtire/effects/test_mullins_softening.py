@@ -102,3 +102,14 @@ def test_it_gathers_along_the_way_below() -> None:
     force = driven(share=0.3, ratio=0.05, gathering=0.011)
     gathered = -math.expm1(-2.0)
     assert force[i] / BARE[i] == pytest.approx(1.0 - 0.3 * gathered * -math.expm1(-18.0), rel=1e-9)
+
+
+def test_the_noise_of_a_gauge_at_rest_is_no_way() -> None:
+    # 5000 readings of 1e-5 m of noise walk 5000 * 2/sqrt(pi) * 1e-5 = 56 mm
+    held = 0.01 + 1e-5 * np.random.default_rng(8).standard_normal(5000)
+    x = np.concatenate([[0.02], held])
+    noisy = drive(only("mullins_softening", share=0.3, ratio=0.05, gathering=0.02), np.arange(5001.0), x)
+    bare = drive(TireModel(), np.arange(5001.0), x)
+    gathered = -math.expm1(-0.01 / 0.02)
+    # what is left of the noise: 1e-5 m beside the 20 mm of the way
+    assert noisy[-1] / bare[-1] == pytest.approx(1.0 - 0.3 * gathered * -math.expm1(-10.0), rel=1e-3)
