@@ -96,9 +96,9 @@ def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
     files: dict[str, FileTruth] = {}
 
     def record(name: str, motion: Motion) -> None:
-        made, floor = recorded(bench, instrument, motion, name, rng)
+        made, floors = recorded(bench, instrument, motion, name, rng)
         records.append(made)
-        files[name] = _file_truth(made, belief.believed, floor)
+        files[name] = _file_truth(made, belief.believed, floors)
 
     for i, motion in enumerate(train):
         record(f"train_{i}.csv", motion)
@@ -251,10 +251,10 @@ def _effects(bench: Bench, plan: Plan, belief: Belief) -> dict[str, Parameters]:
     return effects
 
 
-def _file_truth(record: Record, believed: PowerTire, floor: float) -> FileTruth:
+def _file_truth(record: Record, believed: PowerTire, floors: tuple[float, float]) -> FileTruth:
     force = believed.force(record.deflection, record.radius, np.ones_like(record.force))
     baseline = float(np.sqrt(np.mean((record.force - force) ** 2)))
-    return FileTruth(record.time.size, record.excitation, baseline, floor)
+    return FileTruth(record.time.size, record.excitation, baseline, *floors)
 
 
 def _places(bench: Bench, train: tuple[Motion, ...]) -> tuple[Parameters, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from concealed.bench import Bench
 from concealed.measurement import Instrument
 from concealed.motion import FINEST_STEP, FloatArray, Motion, even_grid, rounded
+from concealed.reading import told
 from concealed.sizing import Size
 from concealed.tires import PowerTire
 
@@ -31,16 +32,18 @@ class Record:
 
 @dataclass(frozen=True)
 class FileTruth:
-    """What is known of one recording: samples, excitation, RMSE [N] of the believed tire and the floor.
+    """What is known of one recording: samples, excitation, RMSE [N] of the believed tire and the floors.
 
-    The floor is what the truth would still miss: the error of the force, and what the error of the recorded
-    deflection moves through the tire's spring. What the latter moves through a mass or a damper is not in it.
+    floor_rmse is what the truth would still miss if it knew rate and acceleration: the error of the force, and
+    what the error of the recorded deflection moves through the tire's spring. read_floor_rmse is what it would
+    miss on the readings as they are, from which it has to tell rate and acceleration (see `reading.told`).
     """
 
     samples: int
     excitation: str
     baseline_rmse: float
     floor_rmse: float
+    read_floor_rmse: float
 
 
 @dataclass(frozen=True)
@@ -91,8 +94,8 @@ class Trial:
 
 def recorded(
     bench: Bench, instrument: Instrument, motion: Motion, name: str, rng: np.random.Generator
-) -> tuple[Record, float]:
-    """A recording of a motion, and its floor [N] (see `FileTruth`)."""
+) -> tuple[Record, tuple[float, float]]:
+    """A recording of a motion, and its two floors [N] (see `FileTruth`)."""
     clean = bench.force(motion)
     time, true = motion.recorded(motion.time), motion.recorded(motion.deflection)
     radius = motion.recorded(motion.radius)
@@ -102,8 +105,10 @@ def recorded(
     )
     ones = np.ones_like(true)
     misled = bench.tire.force(shown, radius, ones) - bench.tire.force(true, radius, ones)
-    floor = float(np.sqrt(np.mean((force - motion.recorded(clean) - misled) ** 2)))
-    return Record(name, motion.name, time, shown, radius, force), floor
+    left = force - motion.recorded(clean) - misled
+    passed_on = motion.recorded(bench.force(told(motion, shown)) - clean)
+    floor, read_floor = (float(np.sqrt(np.mean(error**2))) for error in (left, left - passed_on))
+    return Record(name, motion.name, time, shown, radius, force), (floor, read_floor)
 
 
 def rerun(

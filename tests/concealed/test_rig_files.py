@@ -66,7 +66,7 @@ def test_the_answer_is_strict_json_and_sealed(trial: Trial, tmp_path: Path) -> N
     assert answer["noise"] == pytest.approx(trial.noise)
     assert set(answer["files"]) == {record.name for record in (*trial.train, *trial.heldout)}
     for file in answer["files"].values():
-        assert {"samples", "baseline_rmse", "floor_rmse"} <= set(file)
+        assert {"samples", "baseline_rmse", "floor_rmse", "read_floor_rmse"} <= set(file)
 
 
 def test_the_believed_tire_covers_every_surface(trial: Trial, tmp_path: Path) -> None:

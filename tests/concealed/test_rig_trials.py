@@ -136,6 +136,8 @@ def test_the_floor_is_the_noise_and_the_baseline_is_above_it(trials: list[Trial]
     for trial in trials:
         for file in trial.answer.files.values():
             assert 0.75 * trial.noise < file.floor_rmse < 2.0 * trial.noise
+            if not {"inertia", "viscous_damping"} & set(trial.answer.effects) and trial.answer.kind != "open":
+                assert file.read_floor_rmse == file.floor_rmse
             if trial.answer.kind == "none" and "misshapen" not in trial.answer.rule:
                 assert file.baseline_rmse == pytest.approx(file.floor_rmse, rel=0.02)
 

@@ -137,7 +137,7 @@ def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
         held = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
         found = [h.alike if alike else h.other for h in held]
         if found:
-            before, after = ([getattr(e, name) / e.floor for e in found] for name in ("before", "after"))
+            before, after = ([getattr(e, name) / e.read_floor for e in found] for name in ("before", "after"))
             axes.plot(before, after, "o", ms=4, alpha=0.8, mec="none", color=colour, label=label)
     axes.axhline(1.0 + NEAR_FLOOR, color=GREY, lw=1, ls="--", label="10 % above the floor")
     axes.axline((1.0, 1.0), slope=1.0, color=GREY, lw=1, ls=":", label="no better than before")

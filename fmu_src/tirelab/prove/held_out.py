@@ -24,18 +24,21 @@ REPLAYED = 1000
 class Errors:
     """Root mean square errors [N] over some held-out recordings of a trial, pooled by samples.
 
-    before: the believed tire; after: the corrected one; floor: what the truth would still miss (`concealed.FileTruth`)
-    cleared: the corrected tire told the motion without the noise of its reading, as a simulation tells it
+    before: the believed tire; after: the corrected one; read_floor: what the truth would miss on the same readings
+    cleared: the corrected tire told the motion without the noise of its reading, as a simulation tells it; floor: what
+    the truth would still miss if it knew rate and acceleration (see `concealed.FileTruth`)
     """
 
     before: float
     after: float
     cleared: float
     floor: float
+    read_floor: float
 
     def near(self, within: float, *, cleared: bool = False) -> bool:
-        """Whether the corrected tire's error is at most 1 + `within` times the floor."""
-        return (self.cleared if cleared else self.after) <= (1.0 + within) * self.floor
+        """Whether the corrected tire's error, `cleared` or as read, is at most 1 + `within` times its floor."""
+        error, floor = (self.cleared, self.floor) if cleared else (self.after, self.read_floor)
+        return error <= (1.0 + within) * floor
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ def held_out(
     recordings: Sequence[Recording],
     truths: Mapping[str, Mapping[str, Any]],
 ) -> HeldOut:
-    """Return the errors; truths: `{FILE: {"floor_rmse": [N], "excitation": KIND, ...}}` of the opened answer."""
+    """Return the errors; truths: what is known of each file (`concealed.FileTruth`), from the opened answer."""
     shown = {truth["excitation"] for file, truth in truths.items() if file.startswith("train_")}
     alike = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] in shown]
     other = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] not in shown]
@@ -93,6 +96,7 @@ def _errors(
                 np.mean((r.force - simulate(corrected, r)) ** 2),
                 np.mean(without_reading_noise(corrected, r, motion_of(r.time, r.deflection)) ** 2),
                 float(truths[f"{r.name}.csv"]["floor_rmse"]) ** 2,
+                float(truths[f"{r.name}.csv"]["read_floor_rmse"]) ** 2,
             )
             for r in recordings
         ]

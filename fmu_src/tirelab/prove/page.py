@@ -16,7 +16,7 @@ from .bar import Line, against_the_bar
 from .score import Score
 from .summary import Mean, Point, Rate
 
-SCHEMA = 2
+SCHEMA = 3
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from .score import Score, right_sets, separation, sizes_over_noise
 from .seal import add_seal, draw_and_seal, key_of, opened, read_seals
 from .separation import run_suggested_test
 
-SCHEMA = 2
+SCHEMA = 3
 
 Told = Callable[[str], None]
 

@@ -64,7 +64,7 @@ def test_a_score_is_the_same_after_a_file(score: Make) -> None:
         rivals=["friction lag"],
         sizes={"friction": 2.5},
         places=(PlaceScore("friction", "time", 0.5),),
-        held_out=HeldOut(Errors(3.0, 1.1, 1.0, 0.9), Errors(4.0, 1.2, 1.1, 1.0), 1e-12),
+        held_out=HeldOut(Errors(3.0, 1.1, 1.0, 0.9, 1.0), Errors(4.0, 1.2, 1.1, 1.0, 1.1), 1e-12),
         separation=Separation(2, True, "told right"),
     )
     assert Score.from_json(found.to_json()) == found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from tirelab.prove import summary
@@ -62,13 +63,13 @@ def test_rates_take_the_trials_they_are_about(score: Make) -> None:
     assert summary.exact(scores) == Rate(1, 5)
 
 
-FAR = Errors(before=9.0, after=9.0, cleared=9.0, floor=1.0)
+FAR = Errors(before=9.0, after=9.0, cleared=9.0, floor=1.0, read_floor=1.0)
 """A correction that does nothing."""
 
 
 def test_near_the_floor_is_ten_percent_inside_the_catalogue(score: Make) -> None:
     def with_rmse(kind: str, after: float) -> Score:
-        return score(kind, "lag", "lag", held_out=HeldOut(Errors(9.0, after, 1.0, 1.0), FAR, None))
+        return score(kind, "lag", "lag", held_out=HeldOut(Errors(9.0, after, 1.0, 1.0, 1.0), FAR, None))
 
     scores = [
         with_rmse("single", 1.09),
@@ -134,14 +135,17 @@ def test_places_and_separations_are_counted(score: Make) -> None:
 
 
 def test_the_noise_of_the_reading_is_told_apart_from_the_error_of_the_model(score: Make) -> None:
-    noisy = Errors(before=9.0, after=2.5, cleared=1.05, floor=1.0)
+    noisy = Errors(before=9.0, after=2.5, cleared=1.05, floor=1.0, read_floor=2.0)
     found = [score("single", "lag", "lag", held_out=HeldOut(noisy, FAR, None))]
     assert summary.near_floor(found, 0.1, alike=True).hits == 0
     assert summary.near_floor(found, 0.1, alike=True, cleared=True).hits == 1
+    as_good_as_the_truth = replace(noisy, read_floor=2.3)
+    found = [score("single", "lag", "lag", held_out=HeldOut(as_good_as_the_truth, FAR, None))]
+    assert summary.near_floor(found, 0.1, alike=True).hits == 1
 
 
 def test_the_bar_is_met_or_not_or_not_measured(score: Make) -> None:
-    at_floor = Errors(before=2.0, after=1.0, cleared=1.0, floor=1.0)
+    at_floor = Errors(before=2.0, after=1.0, cleared=1.0, floor=1.0, read_floor=1.0)
     floor = HeldOut(at_floor, at_floor, None)
     lines = against_the_bar([score("single", "lag", "lag", confidence=1.0, held_out=floor)] * 9)
     assert [line.passes for line in lines] == [True, True, None, None, True, True, True, True, True]
