@@ -40,6 +40,9 @@ OF_RATE = ("rate_exponent", "thinning")
 """Parameters that say how a force changes with the rate: at one rate they are not determined, whatever the short
 reversals would have them be."""
 
+OF_READING = {"play": 4.0}
+"""Parameters that are not fitted but follow from the noise of the deflection's reading, as multiples of it."""
+
 
 @dataclass(frozen=True)
 class Smooth:
@@ -121,7 +124,7 @@ def assemble(
             changed = True
         else:
             effect = CATALOGUE[knob.owner]
-            chosen.setdefault(knob.owner, [p.start if p.extra else p.everyday for p in effect.parameters])[
+            chosen.setdefault(knob.owner, [_before(p, believed.reading_noise) for p in effect.parameters])[
                 knob.index
             ] = bounded
     effects = {e.name: (e, v) for e, v in believed.effects} | {
@@ -135,6 +138,13 @@ def assemble(
         rows = tuple((float(r), float(a), float(b)) for r, (a, b) in zip(radii, law, strict=True))
         new_law = Recalibrated(believed.law, rows)
     return replace(believed, law=new_law, effects=tuple(order))
+
+
+def _before(parameter: Parameter, reading_noise: float) -> float:
+    """Return a parameter's value before it is fitted."""
+    if parameter.name in OF_READING:
+        return min(OF_READING[parameter.name] * reading_noise, parameter.maximum)
+    return parameter.start if parameter.extra else parameter.everyday
 
 
 def knobs_of(names: Sequence[str], radii: Sequence[float], extras: bool, deepest: float) -> tuple[Knob, ...]:
@@ -151,7 +161,7 @@ def knobs_of(names: Sequence[str], radii: Sequence[float], extras: bool, deepest
             continue
         effect = CATALOGUE[name]
         for index, parameter in enumerate(effect.parameters):
-            if parameter.extra and not extras:
+            if parameter.name in OF_READING or (parameter.extra and not extras):
                 continue
             knobs.append(_knob(effect, index, _scale(parameter)))
     return tuple(knobs)
