@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from drives import flat_force, read, ride, triangle
+from drives import Drive, flat_force, read, ride, triangle
 from radialtire import CATALOGUE, TireModel
 from tirelab.diagnosis import diagnose
 from tirelab.simulate import simulate
@@ -96,3 +96,25 @@ def test_a_late_reading_of_a_tire_that_relaxes_is_told_apart():
     # 5 N of noise on 6000 samples; a delay may stand for a part of the lag.
     assert found["share_1"] == pytest.approx(0.1, rel=0.02)
     assert found["lag"] + found["delay"] == pytest.approx(0.003, rel=0.1)
+
+
+def test_friction_is_not_forgotten_in_holds_that_are_read_with_noise():
+    # half a triangle, a hold of ten seconds half way down, and again: noise counts as travel, so Dahl's element would
+    # forget all of its 40 N in the hold (see `rate_independent_hysteresis`): a tenth is allowed here
+    legs = np.array([0.0, 2.0, 3.0, 13.0, 14.0, 16.0])
+    step = 0.01
+    time = np.arange(0.0, 4.0 * legs[-1], step)
+    turns = np.concatenate([legs + i * legs[-1] for i in range(4)])
+    deflection = np.interp(time, turns, 0.022 * np.tile([0.0, 1.0, 0.5, 0.5, 0.0, 0.0], 4))
+    tire = TireModel(
+        effects=((CATALOGUE["rate_independent_hysteresis"], (40.0, 0.0, 1e-3, 0.0, 0.6, 0.0, 1.0)),)
+    )
+    bare = Drive("holds", time, deflection, np.full(time.size, np.inf), np.zeros(time.size))
+    verdict = diagnose([read("holds", time, deflection, simulate(tire, bare), 11)])
+    assert verdict.names == ("rate_independent_hysteresis",)
+    held = np.abs(np.gradient(deflection, step)) < 1e-9
+    late = held & (time % legs[-1] > 8.0) & (time % legs[-1] < 13.0)
+    read_back = read("holds", time, deflection, simulate(tire, bare), 12)
+    left = (read_back.force - simulate(verdict.tire, read_back))[late]
+    assert abs(float(np.mean(left))) < 0.1 * 40.0
+    assert np.std(left) == pytest.approx(5.0, rel=0.1)
