@@ -212,22 +212,25 @@ def refit(
     fitted = fit_knobs(believed, plain, np.array([_start(k, starts, law, None) for k in plain]), cases, radii)
     if len(plain) == len(knobs):
         return fitted
-    # Two freedoms may end in a valley of their own: first those that begin at no effect, and each gain has to pay.
-    found, evaluations, whole = [fitted], fitted.evaluations, fitted
-    for group in dict.fromkeys((tuple(k for k in knobs if k.label not in AWAKE), knobs)):
-        if len(group) == len(plain):
+    # Freedoms that wake together may end in a valley of their own: first those that begin at no effect, then those of
+    # one effect after the other; each gain has to pay.
+    evaluations, best = fitted.evaluations, fitted
+    for owner in (None, *dict.fromkeys(k.owner for k in knobs if k.label in AWAKE)):
+        if owner is None:
+            group = tuple(k for k in knobs if k.label not in AWAKE)
+        else:
+            group = tuple(k for k in knobs if k in best.knobs or (k.owner == owner and _extra(k)))
+        if group == best.knobs:
             continue
-        start = [terms.get(k.label, _start(k, starts, law, whole)) for k in group]
+        start = [terms.get(k.label, _start(k, starts, law, best)) for k in group]
         whole, terms = fit_knobs(believed, group, np.array(start), cases, radii), {}
         evaluations += whole.evaluations
         kept = earned(whole, power)
-        if kept in (group, plain):
-            found.append(whole if kept == group else fitted)
-            continue
-        found.append(fit_knobs(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii))
-        evaluations += found[-1].evaluations
-    chosen = min(found, key=lambda f: power * f.cost + len(f.knobs) * price_of(f, power))
-    return replace(chosen, evaluations=evaluations)
+        if kept != group:
+            whole = fit_knobs(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
+            evaluations += whole.evaluations
+        best = min((best, whole), key=lambda f: power * f.cost + len(f.knobs) * price_of(f, power))
+    return replace(best, evaluations=evaluations)
 
 
 def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequence[float]) -> Refit:
