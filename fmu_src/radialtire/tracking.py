@@ -57,6 +57,12 @@ TAIL = 4.0
 UNKNOWN = 1e4
 """Variance over s^2 of the scaled acceleration and jerk at the second reading: large, so the next ones decide."""
 
+APART = 1e6
+"""Largest squared difference over s^2 between two kinds that counts when they are mixed: more is lost in rounding."""
+
+PAUSE = 10.0
+"""An interval so many times the last one tells nothing of how the motion went on: the track begins anew."""
+
 JERK_MAX, SNAP_MAX = 32.0, 128.0
 """Largest scaled intensities: a memory (s^2/q)^(1/5 or 1/7) below d/2 counts as d/2. Shorter, it would overshoot."""
 
@@ -84,7 +90,9 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
     noise: standard deviation s >= 0 [m] of a reading.
     """
     kinds, likely, last = track
-    if last <= 0.0:  # the second reading: the difference, taken as free of acceleration until more are there
+    if (
+        last <= 0.0 or interval > PAUSE * last
+    ):  # the difference, as free of acceleration until more readings are there
         return _second(deflection, deflection - kinds[0][0], interval), likely, interval
     ratio = interval / last
     if noise < FINEST:
@@ -172,7 +180,8 @@ def _mixed(a: Moving, b: Moving, share: float, certainty: float) -> Moving:
     """Return mean and covariance of a motion that is b with the probability `share`, and a otherwise."""
     rest = 1.0 - share
     d0, d1, d2, d3 = b[0] - a[0], b[1] - a[1], b[2] - a[2], b[3] - a[3]
-    apart = rest * share * certainty
+    farthest = certainty * max(d0 * d0, d1 * d1, d2 * d2, d3 * d3)
+    apart = rest * share * (certainty if farthest < APART else certainty * APART / farthest)
     return (
         a[0] + share * d0,
         a[1] + share * d1,

@@ -180,3 +180,16 @@ def test_on_a_noisy_ride_it_beats_plain_differences() -> None:
     assert rms(acceleration - true_acceleration) == pytest.approx(0.8, rel=0.1)
     assert rms(difference - true_rate) == pytest.approx(9e-3, rel=0.1)
     assert rms(second - true_acceleration) == pytest.approx(3.2, rel=0.1)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.1e-6, 1e-5, 1e-3])
+def test_whatever_is_read_at_whatever_moments_stays_a_number(noise: float) -> None:
+    # steps of 20 mm at intervals from microseconds to minutes: none of the kinds of motion, and hard on the rounding
+    random = np.random.default_rng(9)
+    for shortest in (1e-6, 1e-3, 1.0):
+        time = np.cumsum(shortest * 10.0 ** random.uniform(0.0, 2.0, 400))
+        steps = 0.02 * random.integers(0, 2, 400)
+        for at in (time, np.cumsum(np.full(400, shortest))):
+            rate, acceleration = follow(at, steps, noise)
+            assert np.all(np.isfinite(rate))
+            assert np.all(np.isfinite(acceleration))
