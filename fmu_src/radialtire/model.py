@@ -155,7 +155,8 @@ class TireModel:
         }
 
     @cached_property
-    def _differentiates(self) -> bool:
+    def differentiates(self) -> bool:
+        """Whether an effect looks at rate or acceleration."""
         return any(effect.differentiates for effect, _ in self.effects)
 
     @property
@@ -209,7 +210,7 @@ class TireModel:
         return force, after
 
     def _tracked(self, track: Track, deflection: float, interval: float, first: bool) -> Track:
-        if not self._differentiates:
+        if not self.differentiates:
             return track
         if first:
             return tracking.begin(deflection)

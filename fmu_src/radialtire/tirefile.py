@@ -24,7 +24,7 @@ from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
-from .model import Law, TestedRange, TireModel
+from .model import READING_NOISE, Law, TestedRange, TireModel
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
 from .recalibrated import Recalibrated
@@ -113,7 +113,11 @@ def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
     of_law: dict[str, float] = {}
     of_effect: dict[str, dict[str, float]] = {}
     known = parameters_of(tire)
+    reading_noise = tire.reading_noise
     for key, value in values.items():
+        if key == READING_NOISE.name:
+            reading_noise = known[key][0].checked(value)
+            continue
         owner, name = key.split(".")
         with _owned_by(owner):
             known[key][0].checked(value)
@@ -124,14 +128,19 @@ def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
     )
     with _owned_by("law"):
         law = replace(tire.law, **of_law)  # type: ignore[type-var]
-    return replace(tire, law=law, effects=effects)
+    return replace(tire, law=law, effects=effects, reading_noise=reading_noise)
 
 
 def parameters_of(tire: TireModel) -> dict[str, tuple[Parameter, float]]:
-    """Return every parameter of `tire` with its value, by the name `law.NAME` or `EFFECT.NAME`."""
+    """Return every parameter of `tire` with its value, by the name `law.NAME` or `EFFECT.NAME`.
+
+    Where an effect looks at rate or acceleration, `reading_noise` is one too: who knows the motion exactly sets 0.
+    """
     found = {f"law.{p.name}": (p, float(getattr(tire.law, p.name))) for p in tire.law.parameters}
     for effect, values in tire.effects:
         found |= {f"{effect.name}.{p.name}": (p, v) for p, v in zip(effect.parameters, values, strict=True)}
+    if tire.differentiates:
+        found[READING_NOISE.name] = (READING_NOISE, tire.reading_noise)
     return found
 
 

@@ -96,7 +96,7 @@ def elastic_stage(
         history = replace(history, deflection=x)
         x = downstream(tire, history, x, (place,))
     rate = history.rate
-    if any(effect.place in UPSTREAM for effect, _ in tire.effects) and differentiates(tire):
+    if any(effect.place in UPSTREAM for effect, _ in tire.effects) and tire.differentiates:
         if moved is None:
             rate, _ = track(history.time, x, tire.reading_noise)
         else:
@@ -127,17 +127,12 @@ def history_of(
     rate = acceleration = np.zeros_like(deflection)
     if moved is not None:
         rate, acceleration = moved.rate, moved.acceleration
-    elif differentiates(tire):
+    elif tire.differentiates:
         rate, acceleration = track(time, deflection, tire.reading_noise)
     A, B = coefficients(tire.law, surface_radius)
     flat = np.abs(surface_radius) >= FLAT_RADIUS
     curvature = np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, surface_radius))
     return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection), curvature)
-
-
-def differentiates(tire: TireModel) -> bool:
-    """Return whether an effect of `tire` looks at rate or acceleration."""
-    return any(effect.differentiates for effect, _ in tire.effects)
 
 
 def respond_series(effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:

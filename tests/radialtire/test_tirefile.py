@@ -140,7 +140,17 @@ def test_parameters_are_named_by_their_owner() -> None:
     found = {name: value for name, (_, value) in parameters_of(tire).items()}
     assert found["law.flat_exponent"] == 1.422
     assert found["viscous_damping.damping"] == 300.0
-    assert len(found) == len(Hull1996.parameters) + 4
+    assert found["reading_noise"] == 0.0
+    assert len(found) == len(Hull1996.parameters) + 5
+
+
+def test_the_noise_of_the_reading_is_a_parameter_where_a_rate_is_looked_at() -> None:
+    tire = tire_with(("inertia", (2.0,)), reading_noise=8e-6)
+    assert with_parameters(tire, {"reading_noise": 0.0}) == tire_with(("inertia", (2.0,)))
+    with pytest.raises(ParameterError, match="reading_noise = -1 is not allowed"):
+        with_parameters(tire, {"reading_noise": -1.0})
+    assert "reading_noise" not in parameters_of(TireModel())
+    assert "reading_noise" not in parameters_of(tire_with(("force_offset", (5.0,))))
 
 
 def test_parameters_can_be_replaced_by_name() -> None:

@@ -182,6 +182,31 @@ def test_friction_loop_through_the_fmu(run_fmpy: Run, friction_fmu: Path) -> Non
     assert forces[26 + 13] - law == pytest.approx(-50.0, abs=1e-3)
 
 
+def test_the_noise_of_the_reading_can_be_set_and_its_history_restored(run_fmpy: Run, tmp_path: Path) -> None:
+    """10 kg on x = 10 mm + 0.5 a t^2: once nothing is taken for noise, 10 a beside the law's force."""
+    tire = TireModel(effects=((CATALOGUE["inertia"], (10.0,)),), reading_noise=1e-4)
+    fmu = build_fmu(tire, tmp_path).path
+    a = 0.5
+
+    def moved(first: int, last: int) -> list[list[object]]:
+        calls: list[list[object]] = []
+        for k in range(first, last):
+            calls += [
+                [0, "set", {"deflection": 0.01 + 0.5 * a * (0.01 * k) ** 2}],
+                [0, "step", 0.01 * k, 0.01],
+            ]
+        return [*calls, [0, "get", ["radial_force"]]]
+
+    set_to_nothing: list[object] = [0, "set", {"reading_noise": 0.0}]
+    (exact,) = run_fmpy([fmu], [set_to_nothing, *moved(0, 40)])[-1]
+    # the filter of exact readings follows a constant acceleration; what it starts from fades within ten readings
+    assert exact - article_force(1.0 + 50.0 * a * 0.39**2, math.inf) == pytest.approx(10.0 * a, rel=1e-6)
+
+    answers = run_fmpy([fmu], [*moved(0, 20), [0, "save"], *moved(20, 40), [0, "restore"], *moved(20, 40)])
+    assert answers[-1] == answers[40 + 1 + 1 + 40]
+    assert answers[-1][0] != exact
+
+
 def test_reset_forgets_inputs_and_history(run_fmpy: Run, friction_fmu: Path) -> None:
     calls = [
         [0, "set", {"deflection": 0.02}],
