@@ -30,6 +30,9 @@ MOST_ROUNDS = 40
 STEP = 1e-4
 """Step of the difference quotients, as a part of a parameter's scale."""
 
+HARDLY = 0.1
+"""Part of a parameter's price: what gains less than it is held before the rest is asked for the whole price."""
+
 DETERMINED = 0.25
 """An extra freedom is determined where its standard deviation is below this part of its prior's, that of a value
 anywhere within its bounds."""
@@ -225,11 +228,13 @@ def refit(
         start = [terms.get(k.label, _start(k, starts, law, best)) for k in group]
         whole, terms = fit_knobs(believed, group, np.array(start), cases, radii), {}
         evaluations += whole.evaluations
-        kept = earned(whole, power)
-        if kept != group:
-            whole = fit_knobs(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
-            evaluations += whole.evaluations
-        best = min((best, whole), key=lambda f: power * f.cost + len(f.knobs) * price_of(f, power))
+        # What hardly gains goes first: the fit may settle elsewhere then, and tells better what the rest is worth.
+        for part in (HARDLY, 1.0):
+            kept = earned(whole, power, part)
+            if kept != whole.knobs:
+                whole = fit_knobs(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
+                evaluations += whole.evaluations
+            best = min((best, whole), key=lambda f: power * f.cost + len(f.knobs) * price_of(f, power))
     return replace(best, evaluations=evaluations)
 
 
@@ -248,14 +253,14 @@ def _extra(knob: Knob) -> bool:
     return knob.owner != "law" and CATALOGUE[knob.owner].parameters[knob.index].extra
 
 
-def earned(whole: Refit, power: float) -> tuple[Knob, ...]:
+def earned(whole: Refit, power: float, part: float = 1.0) -> tuple[Knob, ...]:
     """Return the knobs of a fit without the extra ones that may as well stay at their plain values.
 
     Those are held one after the other, the least needed one first, in the fit's own quadratic. One keeps its freedom
     where the samples determine it (see DETERMINED) and, counted by `power`, the log likelihood gains more than half the
-    logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978).
+    logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978); part: of that price.
     """
-    price = price_of(whole, power)
+    price = part * price_of(whole, power)
     knobs = list(whole.knobs)
     scale = np.array([k.scale for k in knobs])
     values = whole.values / scale
