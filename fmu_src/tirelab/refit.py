@@ -43,6 +43,9 @@ OF_RATE = ("rate_exponent", "thinning")
 """Parameters that say how a force changes with the rate: at one rate they are not determined, whatever the short
 reversals would have them be."""
 
+TIMED = (RELAXATION, "viscous_damping", "force_lag", "deflection_lag", "warm_up", "pressure_leak")
+"""Effects of the time: what is not determined of them may go far astray in a test that is driven at another rate."""
+
 OF_READING = {"play": 4.0}
 """Parameters that are not fitted but follow from the noise of the deflection's reading, as multiples of it."""
 
@@ -227,15 +230,39 @@ def refit(
             continue
         start = [terms.get(k.label, _start(k, starts, law, best)) for k in group]
         whole, terms = fit_knobs(believed, group, np.array(start), cases, radii), {}
+        whole = _lighter(whole, power, believed, cases, radii)
         evaluations += whole.evaluations
-        # What hardly gains goes first: the fit may settle elsewhere then, and tells better what the rest is worth.
-        for part in (HARDLY, 1.0):
-            kept = earned(whole, power, part)
-            if kept != whole.knobs:
-                whole = fit_knobs(believed, kept, np.array([_value(whole, k) for k in kept]), cases, radii)
-                evaluations += whole.evaluations
-            best = min((best, whole), key=lambda f: power * f.cost + len(f.knobs) * price_of(f, power))
+        best = min((best, whole), key=lambda f: _priced(f, power))
     return replace(best, evaluations=evaluations)
+
+
+def _priced(fitted: Refit, power: float) -> float:
+    """Return what a fit leaves with the price of its parameters."""
+    return power * fitted.cost + len(fitted.knobs) * price_of(fitted, power)
+
+
+def _lighter(
+    whole: Refit, power: float, believed: TireModel, cases: Sequence[Case], radii: Sequence[float]
+) -> Refit:
+    """Return the fit without the extra knobs that do not earn their price.
+
+    What hardly gains goes first: the fit may settle elsewhere then, and tells better what the rest is worth. Where the
+    fit misses what the quadratic could spare, the more needed half comes back, but for the knobs of TIMED effects.
+    """
+    evaluations, found = whole.evaluations, list[Refit]()
+    for part in (HARDLY, 1.0):
+        spare = spare_knobs(whole, power, part)
+        while spare:
+            left = tuple(k for k in whole.knobs if k not in spare)
+            less = fit_knobs(believed, left, np.array([_value(whole, k) for k in left]), cases, radii)
+            evaluations += less.evaluations
+            missed = [k for k in spare if k.owner not in TIMED]
+            if _priced(less, power) <= _priced(whole, power) or not missed:
+                whole = less
+                break
+            spare = tuple(k for k in spare if k not in missed[len(missed) // 2 :])
+        found.append(whole)
+    return replace(min(found, key=lambda f: _priced(f, power)), evaluations=evaluations)
 
 
 def again(believed: TireModel, fitted: Refit, cases: Sequence[Case], radii: Sequence[float]) -> Refit:
@@ -253,15 +280,15 @@ def _extra(knob: Knob) -> bool:
     return knob.owner != "law" and CATALOGUE[knob.owner].parameters[knob.index].extra
 
 
-def earned(whole: Refit, power: float, part: float = 1.0) -> tuple[Knob, ...]:
-    """Return the knobs of a fit without the extra ones that may as well stay at their plain values.
+def spare_knobs(whole: Refit, power: float, part: float = 1.0) -> tuple[Knob, ...]:
+    """Return the extra knobs of a fit that may as well stay at their plain values, the least needed one first.
 
-    Those are held one after the other, the least needed one first, in the fit's own quadratic. One keeps its freedom
-    where the samples determine it (see DETERMINED) and, counted by `power`, the log likelihood gains more than half the
-    logarithm of their number, the price of one parameter (Schwarz, Ann. Stat. 6, 1978); part: of that price.
+    Those are held one after the other in the fit's own quadratic. One keeps its freedom where the samples determine it
+    (see DETERMINED) and, counted by `power`, the log likelihood gains more than half the logarithm of their number, the
+    price of one parameter (Schwarz, Ann. Stat. 6, 1978); part: of that price.
     """
     price = part * price_of(whole, power)
-    knobs = list(whole.knobs)
+    knobs, spare = list(whole.knobs), list[Knob]()
     scale = np.array([k.scale for k in knobs])
     values = whole.values / scale
     information = whole.jacobian.T @ whole.jacobian + np.eye(len(knobs)) / LOOSE**2
@@ -273,12 +300,12 @@ def earned(whole: Refit, power: float, part: float = 1.0) -> tuple[Knob, ...]:
         ]
         least = int(np.argmin(needs))
         if needs[least] > 1.0:
-            return tuple(knobs)
+            return tuple(spare)
         away = _plain(knobs[least]) / knobs[least].scale - values[least]
         values = values + covariance[:, least] / covariance[least, least] * away
         left = [i for i in range(len(knobs)) if i != least]
         information, values = information[np.ix_(left, left)], values[left]
-        del knobs[least]
+        spare.append(knobs.pop(least))
 
 
 def price_of(fitted: Refit, power: float) -> float:

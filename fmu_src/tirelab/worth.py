@@ -22,7 +22,7 @@ def without(
 
 
 def gain(fitted: Refit, less: Refit, power: float) -> float:
-    """Return what a fit gains over one of fewer knobs in log likelihood, less the price of its own (see `earned`)."""
+    """Return what a fit gains over one of fewer knobs in log likelihood, less the price of its own (`price_of`)."""
     return power * (less.cost - fitted.cost) - (len(fitted.knobs) - len(less.knobs)) * price_of(fitted, power)
 
 
