@@ -118,3 +118,18 @@ def test_friction_is_not_forgotten_in_holds_that_are_read_with_noise():
     left = (read_back.force - simulate(verdict.tire, read_back))[late]
     assert abs(float(np.mean(left))) < 0.1 * 40.0
     assert np.std(left) == pytest.approx(5.0, rel=0.1)
+
+
+def test_freedoms_of_two_effects_do_not_lead_each_other_astray():
+    # Softening measured nearly by energy, partly over a fixed one, beside a damper: woken together with the damper's
+    # thinning the fit ended 1.6 noises away.
+    time, deflection, _ = ride(7)
+    deflection = deflection * (0.4 + 0.6 * time / time[-1])
+    softening = (CATALOGUE["mullins_softening"], (0.05, 0.23, 0.0125, 1.2, 0.0, 0.0, 0.86))
+    damper = (CATALOGUE["viscous_damping"], (300.0, 1.15, 0.0, 0.0))
+    bare = Drive("growing", time, deflection, np.full(time.size, np.inf), np.zeros(time.size))
+    force = simulate(TireModel(effects=(softening, damper)), bare)
+    verdict = diagnose([read("growing", time, deflection, force, 13, noise=2.0)])
+    assert set(verdict.names) == {"mullins_softening", "viscous_damping"}
+    # 2 N, and 5e-6 m of the deflection's noise at up to 1.3e5 N/m: 2.1 N; and 3 % more for the fit
+    assert verdict.fit.after < 1.08 * 2.0
