@@ -10,8 +10,8 @@ likely its kind was before, its kind is now likely in proportion to Student's
     c V^(-1/2) (1 + e^2 / (n V s^2))^(-(n + 1)/2)     with n = 4
 
 and rate and acceleration are the means over the four. The noise s of the gauge is all that has to be known. Readings
-free of noise are followed by one filter of white jerk with the shortest memory: the errors then fall with d^2 (rate)
-and d (acceleration).
+free of noise are followed by one filter of either sort with the shortest memory, likely in proportion to the power
+-(n + 1) of their surprises: on smooth motions the errors then fall with d^3 (rate) and d^2 (acceleration).
 
 On a ride to 8 Hz and 5 mm, read at 400 Hz with 8e-6 m of noise, the errors are 3.0 mm/s and 0.8 m/s^2; plain
 differences leave 9 mm/s, most of it their delay of half an interval, and 3.2 m/s^2.
@@ -53,6 +53,9 @@ FINEST = 1e-6
 
 TAIL = 4.0
 """Degrees of freedom of a reading's surprise: few, so that one that surprises every filter decides little."""
+
+EXACT = 1e-12
+"""Surprise [m] of an exact reading below which it does not matter."""
 
 UNKNOWN = 1e4
 """Variance over s^2 of the scaled acceleration and jerk at the second reading: large, so the next ones decide."""
@@ -96,8 +99,7 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
         return _second(deflection, deflection - kinds[0][0], interval), likely, interval
     ratio = interval / last
     if noise < FINEST:
-        exact = _read(_jerked(_on(kinds[1], ratio), JERK_MAX), deflection)
-        return (exact, exact, exact, exact), (0.0, 1.0, 0.0, 0.0), interval
+        return _exactly(kinds[1], kinds[3], likely[1], likely[3], ratio, deflection, interval)
     certainty = 1.0 / (noise * noise)
     fifth = interval * interval * interval * interval * interval * certainty
     seventh = fifth * interval * interval
@@ -153,6 +155,19 @@ def acceleration(track: Track) -> float:
     for i in range(4):
         scaled += likely[i] * kinds[i][2]
     return 2.0 * scaled / (last * last)
+
+
+def _exactly(
+    ride: Moving, sharp: Moving, w1: float, w3: float, ratio: float, deflection: float, interval: float
+) -> Track:
+    """Return the track after an exact reading: two filters of the shortest memory, each for itself."""
+    ride = _jerked(_on(ride, ratio), JERK_MAX)
+    sharp = _snapped(_on(sharp, ratio), SNAP_MAX)
+    before = SWITCH + (1.0 - 2.0 * SWITCH) * w3 / (w1 + w3)
+    w1 = (1.0 - before) * _exact_likelihood(ride, deflection)
+    w3 = before * _exact_likelihood(sharp, deflection)
+    ride, sharp = _read(ride, deflection), _read(sharp, deflection)
+    return (ride, ride, sharp, sharp), (0.0, w1 / (w1 + w3), 0.0, w3 / (w1 + w3)), interval
 
 
 def _second(x: float, v: float, interval: float) -> tuple[Moving, Moving, Moving, Moving]:
@@ -288,6 +303,13 @@ def _log_likelihood(moving: Moving, deflection: float, certainty: float) -> floa
     return -0.5 * (
         math.log(spread) + (TAIL + 1.0) * math.log1p(surprise * surprise * certainty / (TAIL * spread))
     )
+
+
+def _exact_likelihood(moving: Moving, deflection: float) -> float:
+    """Return the likelihood of an exact reading [m], whose surprise is all the motion's: only ratios have a meaning."""
+    spread = moving[4] + 1.0
+    surprise = deflection - moving[0]
+    return float((surprise * surprise / spread + EXACT * EXACT) ** (-0.5 * (TAIL + 1.0)) / math.sqrt(spread))
 
 
 def _read(moving: Moving, deflection: float) -> Moving:
