@@ -93,9 +93,8 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
     noise: standard deviation s >= 0 [m] of a reading.
     """
     kinds, likely, last = track
-    if (
-        last <= 0.0 or interval > PAUSE * last
-    ):  # the difference, as free of acceleration until more readings are there
+    # The difference, taken as free of acceleration until more readings are there.
+    if last <= 0.0 or interval > PAUSE * last:
         return _second(deflection, deflection - kinds[0][0], interval), likely, interval
     ratio = interval / last
     if noise < FINEST:
