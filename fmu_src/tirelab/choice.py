@@ -3,6 +3,7 @@
 The search speaks in columns, more of them than an effect has parameters: together they can follow what another effect's
 form has missed. So the weak effects of a set are left out of its fit once more, one by one. One that does not gain what
 it costs there is not believed, and the likeliest set without it, if one comes near, is fitted in its turn.
+So it is with a set that leaves more of the forces than the believed tire did.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from .explain.search import Settled
 from .naming import BEYOND, named
 from .refit import Case, Refit, refit
 from .rivals import one_constant_rate
+from .simulate import simulate
 from .starts import strengths
 from .worth import begun_anew, gain, without
 
@@ -48,6 +50,8 @@ def choose(
     while True:
         fitted = fitted_set(left[0], believed, cases, scene, power)
         gains, fitted = _gains(left[0], fitted, believed, cases, scene, power)
+        if _leaves_more(left[0], fitted, believed, cases):
+            gains |= dict.fromkeys(named(left[0]), -np.inf)
         failing = sorted((n for n in gains if gains[n] < 0.0), key=lambda n: gains[n])
         following = {n: _without(left, n, gains[n]) for n in failing}
         gone = next((n for n in failing if following[n]), None)
@@ -115,6 +119,20 @@ def _beyond_bounds(name: str, fitted: Refit) -> bool:
         k.owner == name and k.index in at and value >= k.high
         for k, value in zip(fitted.knobs, fitted.values, strict=True)
     )
+
+
+def _leaves_more(settled: Settled, fitted: Refit, believed: TireModel, cases: Sequence[Case]) -> bool:
+    """Return whether a set of known effects leaves more of the forces than the believed tire did: no correction at all.
+
+    What follows whitened residuals may do so where an offset that slow noise allows would make up for it.
+    """
+    if any(n in BEYOND for n in settled.names):
+        return False
+    after, before = (
+        sum(float(np.sum((c.force - simulate(tire, c.smooth, c.smooth)) ** 2)) for c in cases)
+        for tire in (fitted.tire, believed)
+    )
+    return after > before
 
 
 def _doubted(settled: Settled, likely: float) -> Settled:

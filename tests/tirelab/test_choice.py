@@ -1,9 +1,13 @@
 """What is believed earns its place in the catalogue's own form, within the catalogue's bounds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import read, ride
-from fits import BARE, with_effect
+from fits import BARE, fitted, ridden, with_effect
+from settled_sets import settled
+from tirelab import choice
 from tirelab.diagnosis import diagnose
 from tirelab.simulate import simulate
 
@@ -41,3 +45,15 @@ def test_what_stands_for_the_form_of_a_large_lag_is_not_believed():
     verdict = diagnose([read("sweep", time, deflection, force, 10)])
     assert verdict.names == ("force_lag",)
     assert verdict.effects[0].parameters["lag"].value == pytest.approx(0.08, rel=0.01)
+
+
+def test_a_set_that_leaves_more_than_the_believed_tire_did_is_not_believed(monkeypatch):
+    recording = ridden(3, with_effect("force_offset", offset=20.0))
+    fit, cases, scene = fitted(recording, with_effect("force_offset", offset=20.0), ["force_offset"])
+    tires = {"series_compliance": with_effect("series_compliance", compliance=1e-6), "force_offset": fit.tire}
+    monkeypatch.setattr(choice, "fitted_set", lambda s, *_: replace(fit, tire=tires[s.names[0]]))
+    monkeypatch.setattr(choice, "_gains", lambda s, fitted, *_: ({}, fitted))
+    sets = [settled(100.0, {"series_compliance": 1.0}), settled(98.0, {"force_offset": 1.0})]
+    order, chosen = choice.choose(sets, BARE, cases, scene, 1.0)
+    assert chosen.tire == fit.tire
+    assert [s.names for s in order] == [("force_offset",), ("series_compliance",)]
