@@ -10,7 +10,7 @@ proportion and fixed (rubber has no length of its own: w stays 0 unless the reco
 Hull's tire on flat ground it is the same on every surface); p = 1 sets in at once, p = 2 smoothly. Above m_max the tire
 is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the way travelled below
 m_max: with l > 0 the softening gathers over the cycles, with l = 0 it is there at once (g = 1). To and fro within PLAY
-is no way: a gauge that reads a tire at rest with 0.01 mm of noise would walk 0.1 m in ten seconds.
+is no way: a gauge that reads a tire at rest at 400 Hz with 0.01 mm of noise would walk 45 mm in ten seconds.
 
 Ogden & Roxburgh write the dependence in the energy, with an error function. No Mullins share of bicycle tires was found
 in the open: the bounds are wide.
