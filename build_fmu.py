@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent / "fmu_src"))
 
 try:
-    from tirelab.commands.build import command
+    from tirelab.cli.build import command
 except ModuleNotFoundError as error:
     sys.exit(
         f"Error: the package {error.name} is missing; install what tirelab needs: python -m pip install -e ."

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from tirelab.recording import Recording
+from tirelab.recordings.recording import Recording
 
 FloatArray = NDArray[np.float64]
 

@@ -35,10 +35,10 @@ import numpy as np
 from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
 from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
-from tirelab.diagnosis import diagnose
-from tirelab.recording import Recording, read_recording
-from tirelab.simulate import simulate
-from tirelab.verdict import Verdict
+from tirelab.diagnosis.diagnose import diagnose
+from tirelab.diagnosis.verdict import Verdict
+from tirelab.recordings.recording import Recording, read_recording
+from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
 

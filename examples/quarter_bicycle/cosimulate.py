@@ -19,7 +19,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.ssp.ssd import read_ssd
 from numpy.typing import NDArray
 from tirelab.errors import TirelabError
-from tirelab.replay import OpenFmu, opened
+from tirelab.fmu.replay import OpenFmu, opened
 
 Table = dict[str, NDArray[np.float64]]
 """Time [s] and every output as COMPONENT.NAME; shape (n,)."""

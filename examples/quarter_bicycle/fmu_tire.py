@@ -9,7 +9,7 @@ from pathlib import Path
 from coupled import SteppedTire
 from fmpy.fmi1 import FMICallException
 from tirelab.errors import TirelabError
-from tirelab.replay import OpenFmu, opened
+from tirelab.fmu.replay import OpenFmu, opened
 
 FLAT = 1e5
 """Surface radius [m] that the FMU takes for flat, as it does infinity."""

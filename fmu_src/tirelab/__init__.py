@@ -1,8 +1,8 @@
 """From recordings of a tire to a model of it, an FMU, and the physics that a simulation left out."""
 
-from .diagnosis import diagnose
+from .diagnosis.diagnose import diagnose
+from .diagnosis.verdict import Verdict
 from .errors import TirelabError
-from .recording import Recording, read_recording
-from .verdict import Verdict
+from .recordings.recording import Recording, read_recording
 
 __all__ = ["Recording", "TirelabError", "Verdict", "diagnose", "read_recording"]

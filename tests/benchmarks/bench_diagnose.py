@@ -17,7 +17,7 @@ import lmfit
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
-from tirelab.diagnosis import diagnose
+from tirelab.diagnosis.diagnose import diagnose
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tirelab"))
 from drives import Drive, flat_force, read, ride

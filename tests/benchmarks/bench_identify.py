@@ -18,11 +18,11 @@ from pathlib import Path
 
 import numpy as np
 from radialtire import TireModel
-from tirelab import rig
+from tirelab.article import press as rig
 from tirelab.identify import identify
 from tirelab.identify.power_fit import inner_products
 from tirelab.identify.surfaces import surfaces_of
-from tirelab.recording import Recording
+from tirelab.recordings.recording import Recording
 
 EVALUATION_MOST = 10.0
 """Most passes of numpy that one function evaluation may cost."""

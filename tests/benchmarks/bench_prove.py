@@ -14,8 +14,8 @@ from pathlib import Path
 
 import joblib
 import numpy as np
-from tirelab.prove import Folders, Series, prove
-from tirelab.workers import Cores
+from tirelab.batch.workers import Cores
+from tirelab.validation import Folders, Series, prove
 
 TRIALS = 12
 SEED = 4096

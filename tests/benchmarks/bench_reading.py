@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from tirelab.recording import read_recording
+from tirelab.recordings.recording import read_recording
 
 ROWS = 1_000_000
 ROUNDS = 25
@@ -26,7 +26,7 @@ LARGEST = 4.0
 _MEMORY = """
 import sys, threading, time
 from pathlib import Path
-from tirelab.recording import read_recording
+from tirelab.recordings.recording import read_recording
 
 def anonymous():
     lines = Path("/proc/self/status").read_text().splitlines()

@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 from radialtire import CATALOGUE, TireModel
-from tirelab.simulate import UPSTREAM, elastic_stage, respond_series, simulate
+from tirelab.simulation.simulate import UPSTREAM, elastic_stage, respond_series, simulate
 from tirelab.tracking_time import likeliest_tracking
 
 FloatArray = NDArray[np.float64]

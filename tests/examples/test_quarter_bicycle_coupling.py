@@ -275,7 +275,7 @@ def test_tire_fmu_in_the_loop(example: dict[str, ModuleType], bumpy: Any, tmp_pa
 def test_refusals_of_the_bicycle_fmu(example: dict[str, ModuleType], wavy: Any, tmp_path: Path) -> None:
     """One message that says why, the state as before, and on with the next good value."""
     path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3)
-    replay = importlib.import_module("tirelab.replay")
+    replay = importlib.import_module("tirelab.fmu.replay")
     with replay.opened(path) as unit:
         instance, force, hub = (
             unit.instance,

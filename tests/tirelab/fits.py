@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from drives import Drive, read, ride
 from radialtire import CATALOGUE, TireModel
-from tirelab.explain.scene import Scene, scene_of
-from tirelab.noise import Noise
-from tirelab.refit import Case, Refit, refit, smooth_of
-from tirelab.simulate import simulate
+from tirelab.engine.refit import Case, Refit, refit, smooth_of
+from tirelab.preprocessing.dataset import Scene, scene_of
+from tirelab.preprocessing.noise_model import Noise
+from tirelab.simulation.simulate import simulate
 
 BARE = TireModel()
 NOISE = 5.0

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tirelab.recording import RecordingError, read_recording
+from tirelab.recordings.recording import RecordingError, read_recording
 
 HOUSE_FORM = "time [s],deflection [cm],radius [cm],force [N]"
 

@@ -8,9 +8,9 @@ import numpy as np
 from drives import Drive, FloatArray
 from radialtire import CATALOGUE, Recalibrated, TireModel
 from scipy.ndimage import uniform_filter1d
-from tirelab.diagnosis import CATALOGUE_NAMES, diagnose
-from tirelab.simulate import simulate
-from tirelab.verdict import Verdict
+from tirelab.diagnosis.diagnose import CATALOGUE_NAMES, diagnose
+from tirelab.diagnosis.verdict import Verdict
+from tirelab.simulation.simulate import simulate
 
 NOISE = 6.0
 """[N]; every effect below moves the force by five to twenty times as much, root mean square."""

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tirelab.recording import Recording, RecordingError, read_recording
+from tirelab.recordings.recording import Recording, RecordingError, read_recording
 
 SAMPLES = 200
 TIME = np.arange(SAMPLES) / 100.0

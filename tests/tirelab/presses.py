@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 from radialtire import TireModel
-from tirelab import rig
-from tirelab.recording import Recording
+from tirelab.article import press as rig
+from tirelab.recordings.recording import Recording
 
 ARTICLE = TireModel()
 

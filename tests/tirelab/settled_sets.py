@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from tirelab.explain.columns import Layout
-from tirelab.explain.evidence import Explained, Products
-from tirelab.explain.judge import Candidate
-from tirelab.explain.place import Point
-from tirelab.explain.search import Settled
+from tirelab.engine.columns import Layout
+from tirelab.engine.evidence import Explained, Products
+from tirelab.engine.judge import Candidate
+from tirelab.engine.place import Point
+from tirelab.engine.search import Settled
 
 
 def settled(evidence: float, sizes: dict[str, float]) -> Settled:

@@ -18,9 +18,9 @@ from itertools import pairwise
 import numpy as np
 from radialtire import CATALOGUE, Hull1996, PowerLaw, TireModel, power_law
 
-from .. import rig
 from ..identify import identify
-from ..recording import Recording
+from ..recordings.recording import Recording
+from . import press as rig
 
 NEWTON_PER_POUND = 4.4482216152605
 """1 lbf [N], exact by definition."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .. import rig
 from . import checks
+from . import press as rig
 from .checks import CM_PER_INCH, NEWTON_PER_POUND, PASCAL_PER_PSI, Check, converted
 
 POUND = "a pound-force is 4.448 N; the article reckons with 4.48"

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, Hull1996, TireModel
 from radialtire.hull1996 import FORCE_MAX
 
-from .. import rig
+from . import press as rig
 from .checks import WANG_HULL, force
 from .outcomes import READINGS
 

@@ -17,8 +17,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from tirelab.cache_folder import keep, private_folder
-from tirelab.errors import TirelabError
+from ..cache_folder import keep, private_folder
+from ..errors import TirelabError
 
 SOURCES = ("loader.c", "interpreter.c")
 OLDEST_GLIBC = "2.17"

@@ -10,7 +10,7 @@ from radialtire import FLAT_RADIUS, Hull1996, PowerLaw, TestedRange, TireModel
 from radialtire.curvature_law import SURFACES_MAX, CurvatureLaw
 
 from ..errors import TirelabError
-from ..recording import Recording
+from ..recordings.recording import Recording
 from .forms import Form, HullForm, form_of
 from .intervals import profile
 from .joint import JointFit, joint_fit

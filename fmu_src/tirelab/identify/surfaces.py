@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS
 
 from ..errors import TirelabError
-from ..recording import Recording
+from ..recordings.recording import Recording
 from .branches import LOADING, RESTING, branches
 
 CM_PER_M = 100.0

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ..recording import Recording
+from ..recordings.recording import Recording
 from .svg import AFTER, BEFORE, drawing, inline_svg
 from .thinning import LONGEST_LINE, Limits, occupancy, trail
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..recording import Recording
-from ..titles import newtons
-from ..verdict import Correction, Verdict
+from ..diagnosis.titles import newtons
+from ..diagnosis.verdict import Correction, Verdict
+from ..recordings.recording import Recording
 
 FloatArray = NDArray[np.float64]
 

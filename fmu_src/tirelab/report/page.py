@@ -16,9 +16,9 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
-from .. import titles
+from ..diagnosis import titles
 from ..errors import TirelabError
-from ..recording import Recording
+from ..recordings.recording import Recording
 from . import words
 from .loops import Case, draw_difference, draw_loops
 from .residuals import (

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .. import titles
+from ..diagnosis import titles
 from . import words
 
 MOST_PLACES = 6

@@ -9,8 +9,8 @@ from typing import Any
 
 from radialtire import CATALOGUE, FLAT_RADIUS
 
-from .. import titles
-from ..titles import RECALIBRATION
+from ..diagnosis import titles
+from ..diagnosis.titles import RECALIBRATION
 
 RECALIBRATED = "the coefficients of the elastic law are another tire's; no physics is missing"
 

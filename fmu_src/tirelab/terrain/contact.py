@@ -30,8 +30,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .curvature import Ground, radius_of
 from .profile import Floats
 

@@ -27,8 +27,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.linalg import solveh_banded
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .profile import Floats, Profile
 
 FINEST_SPACING = 1e-3

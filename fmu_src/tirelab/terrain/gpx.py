@@ -14,8 +14,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .profile import Floats
 
 

@@ -16,8 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .profile import Floats, Profile, grid
 
 REFERENCE_FREQUENCY = 0.1

@@ -20,8 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .curvature import smoothed_heights
 from .profile import Floats, Profile
 

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import ArrayLike
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .limits import DOUBTS, Limit, percent
 from .profile import Floats
 from .ride import Ride

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tirelab.errors import TirelabError
+from ..errors import TirelabError
 
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -13,9 +13,8 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from tirelab.errors import TirelabError
-from tirelab.units import Conversion, UnitError, conversion, split_header
-
+from ..errors import TirelabError
+from ..recordings.units import Conversion, UnitError, conversion, split_header
 from .curvature import smoothed_heights
 from .gpx import track_points
 from .profile import Floats, Profile, check_points

@@ -10,8 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tirelab.errors import TirelabError
-
+from ..errors import TirelabError
 from .contact import WHEEL_RADIUS, Contact, contact, hub_positions, rolling_path
 from .curvature import Ground
 from .limits import Limit, LimitReport, limit_report, limits

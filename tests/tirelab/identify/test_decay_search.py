@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from radialtire import Hull1996
-from tirelab import rig
+from tirelab.article import press as rig
 from tirelab.identify.decay_search import Target, elsewhere, nearest
 from tirelab.identify.forms import HullForm
 

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from presses import on, triangle
 from radialtire import SECOND_READING, Hull1996, PowerLaw, TireModel
 from radialtire.curvature_law import CurvatureLaw
-from tirelab import rig
+from tirelab.article import press as rig
 from tirelab.errors import TirelabError
 from tirelab.identify import Identification, identify
-from tirelab.recording import Recording
+from tirelab.recordings.recording import Recording
 
 
 def inside(found: Identification, law: Hull1996) -> bool:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from presses import ARTICLE, triangle
-from tirelab import rig
+from tirelab.article import press as rig
 from tirelab.identify import identify
 from tirelab.identify.noise import with_covariance
 from tirelab.identify.power_fit import fit_power

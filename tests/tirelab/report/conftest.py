@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Hull1996, TireModel
-from tirelab.recording import Recording
+from tirelab.recordings.recording import Recording
 from tirelab.report.page import Simulated
-from tirelab.simulate import simulate
+from tirelab.simulation.simulate import simulate
 
 NOISE = 6.0
 """Noise [N] of the recordings made here."""

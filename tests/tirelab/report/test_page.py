@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tirelab.errors import TirelabError
-from tirelab.recording import Recording
+from tirelab.recordings.recording import Recording
 from tirelab.report import write_report
 
 HOSTILE = (

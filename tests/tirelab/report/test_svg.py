@@ -8,7 +8,7 @@ import struct
 
 import numpy as np
 import pytest
-from tirelab.recording import Recording
+from tirelab.recordings.recording import Recording
 from tirelab.report.loops import Case, draw_difference, draw_loops
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tirelab import titles
+from tirelab.diagnosis import titles
 from tirelab.report import words
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from tirelab.commands.ride import command
+from tirelab.cli.ride import command
 
 
 def run(*arguments: str | Path) -> str:

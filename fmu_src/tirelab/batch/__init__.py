@@ -1,0 +1,1 @@
+"""One diagnosis for each of many recordings, on all cores."""

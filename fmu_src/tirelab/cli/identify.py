@@ -1,0 +1,87 @@
+"""tirelab identify: recordings in, a tire out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from radialtire import write_tire
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+from ..errors import TirelabError
+from ..identify import LAWS, Identification, identify
+from ..identify.table import constant_table, surface_table
+from ..recordings.recording import Recording
+from .options import FILE, Reading, SentenceCommand, reading
+
+WIDTH_LEAST = 100
+"""Columns that the tables need; a narrower terminal wraps them, a file has room."""
+
+
+@click.command("identify", cls=SentenceCommand)
+@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=FILE)
+@click.option(
+    "--out",
+    type=FILE,
+    default=Path("tire.json"),
+    show_default=True,
+    metavar="FILE",
+    help="The tire file written.",
+)
+@click.option(
+    "--law", type=click.Choice(LAWS), default="auto", show_default=True, help="The form of A(R) and B(R)."
+)
+@click.option("--name", default="", help="The tire's name.")
+@reading
+def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, reading: Reading) -> None:
+    """Identify the tire that RECORDING... show, and say how sure that is.
+
+    Writes the tire file, and beside it FILE.identification.json with uncertainties, intervals and Table 1.
+    """
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = WIDTH_LEAST
+    with _bars() as bars:
+        read = [reading(path) for path in bars.track(recordings, description="reading")]
+        tasks: dict[str, TaskID] = {}
+
+        def show(what: str, done: int, total: int) -> None:
+            if what not in tasks:
+                tasks[what] = bars.add_task(what)
+            bars.update(tasks[what], completed=done, total=total or None)
+
+        found = identify(read, law=law, name=name, progress=show)
+    _print(console, read, found)
+    beside = out.parent / f"{out.stem}.identification.json"
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        write_tire(found.tire, out)
+        beside.write_text(found.to_json(), encoding="utf-8")
+    except OSError as error:
+        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
+    console.print(f"tire: {out}\nuncertainties: {beside}", soft_wrap=True)
+
+
+def _bars() -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=not Console(stderr=True).is_terminal,
+    )
+
+
+def _print(console: Console, recordings: list[Recording], found: Identification) -> None:
+    for recording in recordings:
+        for note in recording.notes:
+            console.print(f"note: {recording.name}: {note}", markup=False, soft_wrap=True)
+    console.print(surface_table(found))
+    console.print(constant_table(found))
+    console.print(
+        f"RMSE of the law over all samples: {found.rmse:.3g} N (two stages: {found.two_stage_rmse:.3g} N)"
+    )
+    for note in found.notes:
+        console.print(f"- {note}", markup=False, soft_wrap=True)

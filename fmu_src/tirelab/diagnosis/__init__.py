@@ -1,0 +1,1 @@
+"""From recordings and a baseline model to a verdict."""

@@ -1,0 +1,141 @@
+"""What a diagnosis states: its diagnosis.json, read back and checked."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import TirelabError
+
+SCHEMA = 1
+
+Names = frozenset[str]
+
+NOTHING: Names = frozenset({"none"})
+"""The set that stands for: nothing is missing."""
+
+UNKNOWN = "unknown"
+"""The name for what no effect explains."""
+
+
+class DiagnosisFileError(TirelabError):
+    """A diagnosis.json that cannot be used; the sentence says where and why."""
+
+
+@dataclass(frozen=True)
+class StatedPlace:
+    """One place of the misfit: coordinate, span in `unit` (None: no end), share of the squared error, recording, and
+    what the place is called where numbers do not say it."""
+
+    by: str
+    begin: float | str | None
+    end: float | str | None
+    unit: str
+    share: float
+    recording: str | None
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A verdict as its file states it.
+
+    names: the effects, with "unknown" where something stays unexplained; {"none"} where nothing is missing
+    alternatives: the rivals, each a full set; confidence: 0 to 1
+    separating_test: file of the test that would tell the rivals apart, or None
+    fit: noise, before, after, held_out_before, held_out_after [N], None where not known
+    tire, corrected_fmu, report: the files, None where there is none
+    """
+
+    names: Names
+    alternatives: tuple[Names, ...]
+    confidence: float
+    unexplained: bool
+    summary: str
+    places: tuple[StatedPlace, ...]
+    separating_test: Path | None
+    fit: Mapping[str, float | None]
+    tire: Path | None
+    corrected_fmu: Path | None
+    report: Path | None
+
+
+def read_stated(folder: Path) -> Stated:
+    """Return what `folder`/diagnosis.json states; raises DiagnosisFileError where it cannot be read."""
+    path = folder / "diagnosis.json"
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        return _stated(content, folder)
+    except OSError as error:
+        raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise DiagnosisFileError(
+            f"{path}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
+        ) from None
+
+
+def _stated(content: Mapping[str, Any], folder: Path) -> Stated:
+    if content["schema"] != SCHEMA:
+        raise ValueError(f"schema {content['schema']!r} is not {SCHEMA}")
+    verdict = content["verdict"]
+    confidence = float(verdict["confidence"])
+    if not 0.0 <= confidence <= 1.0:
+        raise ValueError(f"confidence {confidence!r} does not lie between 0 and 1")
+    unexplained = bool(verdict["unexplained"])
+    names = {str(effect["name"]) for effect in verdict["effects"]} | ({UNKNOWN} if unexplained else set())
+    return Stated(
+        names=frozenset(names) or NOTHING,
+        alternatives=tuple(frozenset(map(str, names)) or NOTHING for names in verdict["alternatives"]),
+        confidence=confidence,
+        unexplained=unexplained,
+        summary=str(verdict["summary"]),
+        places=tuple(_place(place) for place in content["where"]),
+        separating_test=_test_file(verdict.get("separating_test"), folder),
+        fit={str(name): None if value is None else float(value) for name, value in content["fit"].items()},
+        tire=_file(content.get("tire"), folder),
+        corrected_fmu=_file(content.get("corrected_fmu"), folder),
+        report=_file(content.get("report"), folder),
+    )
+
+
+def _place(place: Mapping[str, Any]) -> StatedPlace:
+    recording = place.get("recording")
+    return StatedPlace(
+        by=str(place["by"]),
+        begin=_end(place["from"]),
+        end=_end(place["to"]),
+        unit=str(place["unit"]),
+        share=float(place["share"]),
+        recording=None if recording is None else str(recording),
+        label=str(place.get("label", "")),
+    )
+
+
+def _end(value: object) -> float | str | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        if value is None:
+            return None
+        raise ValueError(f"{value!r} is no end of a span")
+    try:
+        number = float(value)
+    except ValueError:
+        return str(value)
+    return number if math.isfinite(number) else None
+
+
+def _file(name: object, folder: Path) -> Path | None:
+    return folder / str(name) if name else None
+
+
+def _test_file(test: object, folder: Path) -> Path | None:
+    """The file of the separating test: its entry that names a CSV file."""
+    if not isinstance(test, Mapping):
+        return None
+    for value in test.values():
+        if isinstance(value, str) and value.endswith(".csv") and "\n" not in value:
+            return folder / value
+    return None

@@ -1,0 +1,230 @@
+"""The test that would tell: the waveform on which two fitted tires differ most, whatever their parameters then do.
+
+For every waveform that the rig can drive, both tires are simulated; what a refit of the rival's own parameters could
+take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). What is left, over the noise
+and the root of the number of samples, is the separation: the square root of twice the expected gain in log likelihood.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from radialtire import TireModel
+
+from ..engine.refit import Knob, assemble
+from ..preprocessing.kinematics import FloatArray
+from ..simulation.simulate import simulate
+from .titles import set_title
+
+DECISIVE = 5.7
+"""Least separation S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
+and deviation S; from here S^2/2 - 1.645 S > ln 1000, odds of 1000 to 1 in nineteen of twenty such tests."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the rig can do: largest deflection [m], fastest motion [m/s], sampling step [s], longest test [s]."""
+
+    deepest: float = 0.025
+    fastest: float = 0.25
+    step: float = 0.005
+    longest: float = 60.0
+
+
+@dataclass(frozen=True)
+class Test:
+    """A motion to drive: arrays of one length."""
+
+    name: str
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+
+    __test__ = False
+
+
+@dataclass(frozen=True)
+class SeparatingTest:
+    """The test that separates two sets of effects most.
+
+    between: the two sets; separation: expected distance in units of the noise, over all samples together; typical: root
+    mean square distance of one sample in units of the noise; sentence: what to do, or that nothing would tell
+    """
+
+    test: Test
+    between: tuple[tuple[str, ...], tuple[str, ...]]
+    separation: float
+    typical: float
+    sentence: str
+
+    @property
+    def tells(self) -> bool:
+        """Whether the test would tell the two sets apart."""
+        return self.separation >= DECISIVE
+
+    def to_contract(self) -> dict[str, object]:
+        """Return the entry `separating_test` of diagnosis.json."""
+        t = self.test
+        return {
+            "waveform": t.name,
+            "duration": float(t.time[-1]),
+            "amplitude": float(t.deflection.max()),
+            "rate_max": float(np.abs(np.gradient(t.deflection, t.time)).max()),
+            "surfaces": ["inf" if not np.isfinite(r) else float(r) for r in np.unique(t.surface_radius)],
+            "between": [list(s) for s in self.between],
+            "separation": self.separation,
+            "sentence": self.sentence,
+        }
+
+
+Waveform = Callable[[Limits], FloatArray]
+
+
+def _time(limits: Limits) -> FloatArray:
+    return np.arange(int(limits.longest / limits.step), dtype=np.float64) * limits.step
+
+
+def _triangle(limits: Limits, phase: FloatArray) -> FloatArray:
+    return limits.deepest * (1.0 - np.abs(1.0 - 2.0 * (phase % 1.0)))
+
+
+def three_rates(limits: Limits) -> FloatArray:
+    """Triangles at a fortieth, a fifth and the whole of the fastest rate, a third of the time each."""
+    t = _time(limits)
+    third = np.minimum((3.0 * t / limits.longest).astype(int), 2)
+    rate = limits.fastest * np.array([1.0 / 40.0, 1.0 / 5.0, 1.0])[third]
+    return _triangle(limits, np.cumsum(rate * limits.step) / (2.0 * limits.deepest))
+
+
+def ramp_and_hold(limits: Limits) -> FloatArray:
+    """Quick ramps to six levels, each held for a sixth of the time."""
+    t = _time(limits)
+    levels = limits.deepest * np.array([0.35, 0.7, 1.0, 0.55, 0.85, 0.2])
+    at = np.minimum((6.0 * t / limits.longest).astype(int), 5)
+    return _no_faster(levels[at], 0.5 * limits.fastest * limits.step)
+
+
+def sweep(limits: Limits) -> FloatArray:
+    """A sine about half the largest deflection, from 0.05 Hz to what the fastest rate allows, by decades."""
+    t = _time(limits)
+    swing = 0.3 * limits.deepest
+    high = limits.fastest / (2.0 * np.pi * swing)
+    growth = np.log(high / 0.05) / limits.longest
+    return np.asarray(
+        0.5 * limits.deepest - swing * np.cos(2.0 * np.pi * 0.05 * np.expm1(growth * t) / growth)
+    )
+
+
+def growing(limits: Limits) -> FloatArray:
+    """Triangles of growing depth, each depth twice, at a fifth of the fastest rate, and the first one again."""
+    peaks = limits.deepest * np.array([0.3, 0.3, 0.5, 0.5, 0.75, 0.75, 1.0, 1.0, 0.3, 0.3])
+    knots = np.zeros(2 * peaks.size + 1)
+    knots[1::2] = peaks
+    times = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(knots)))])
+    return np.interp(_time(limits), times * limits.longest / times[-1], knots)
+
+
+def two_means(limits: Limits) -> FloatArray:
+    """The same small sine about a low and a high mean deflection, slow and fast."""
+    t = _time(limits)
+    quarter = np.minimum((4.0 * t / limits.longest).astype(int), 3)
+    mean = limits.deepest * np.array([0.3, 0.8, 0.3, 0.8])[quarter]
+    swing = 0.18 * limits.deepest
+    frequency = np.array([0.2, 0.2, 1.0, 1.0])[quarter] * min(4.0, limits.fastest / (2.0 * np.pi * swing))
+    wave = mean + swing * np.sin(2.0 * np.pi * np.cumsum(frequency) * limits.step)
+    return _no_faster(wave, limits.fastest * limits.step)
+
+
+def rest_and_repeat(limits: Limits) -> FloatArray:
+    """Three slow cycles, a rest of a third of the time without load, and the same cycles again."""
+    t = _time(limits) / limits.longest
+    phase = np.where(t < 1.0 / 3.0, 9.0 * t, np.where(t < 2.0 / 3.0, 0.0, 9.0 * (t - 2.0 / 3.0)))
+    return _triangle(limits, phase)
+
+
+WAVEFORMS: dict[str, Waveform] = {
+    "triangles at three rates": three_rates,
+    "ramp and hold": ramp_and_hold,
+    "sweep": sweep,
+    "growing triangles": growing,
+    "small sines about two means": two_means,
+    "cycles, rest, cycles": rest_and_repeat,
+}
+
+
+def _no_faster(path: FloatArray, step: float) -> FloatArray:
+    limited = np.empty_like(path)
+    here = 0.0
+    for i, wanted in enumerate(path):
+        here += float(np.clip(wanted - here, -step, step))
+        limited[i] = here
+    return limited
+
+
+def separate(
+    first: tuple[TireModel, tuple[str, ...]],
+    second: tuple[TireModel, tuple[str, ...]],
+    believed: TireModel,
+    knobs: tuple[Knob, ...],
+    values: FloatArray,
+    radii: Sequence[float],
+    noise: float,
+    limits: Limits,
+) -> SeparatingTest:
+    """Return the test that separates two fitted tires most within `limits`.
+
+    first, second: tire and names of the effects in it; knobs, values: the second one's fit on `radii` [m], by which it
+    may follow the first one; noise [N] of one sample
+    """
+    best: SeparatingTest | None = None
+    surfaces = [radii[len(radii) // 2]] if len(radii) == 1 else [radii[0], radii[-1]]
+    for name, waveform in WAVEFORMS.items():
+        for radius in surfaces:
+            path = waveform(limits)
+            test = Test(name, _time(limits), path, np.full(path.size, radius))
+            gap = simulate(first[0], test) - simulate(second[0], test)
+            jacobian = _jacobian(believed, knobs, values, radii, test)
+            if jacobian.shape[1]:
+                gap = gap - jacobian @ np.linalg.lstsq(jacobian, gap, rcond=1e-8)[0]
+            typical = float(np.sqrt(np.mean(gap**2))) / noise
+            separation = typical * float(np.sqrt(gap.size))
+            if best is None or separation > best.separation:
+                sentence = _sentence(test, (first[1], second[1]), separation, typical)
+                best = SeparatingTest(test, (first[1], second[1]), separation, typical, sentence)
+    assert best is not None
+    return best
+
+
+def _sentence(
+    test: Test, between: tuple[tuple[str, ...], tuple[str, ...]], separation: float, typical: float
+) -> str:
+    radius, path = float(test.surface_radius[0]), test.deflection
+    place = "flat ground" if not np.isfinite(radius) else f"a surface of radius {100.0 * radius:.4g} cm"
+    first, second = (set_title(names) for names in between)
+    if separation < DECISIVE:
+        return (
+            f"No motion within the rig's limits would tell {first} from {second}: the best one tried, {test.name} on "
+            f"{place}, sets them {separation:.2g} times the noise apart over all its samples, and {DECISIVE:g} are "
+            "needed."
+        )
+    rate = 1e3 * float(np.abs(np.diff(path) / np.diff(test.time)).max())
+    return (
+        f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, up to {rate:.0f} mm/s for "
+        f"{test.time[-1] - test.time[0]:.0f} s: {first} then differs from {second} by {typical:.2g} times the noise "
+        f"in a typical sample, {separation:.0f} times over all of them."
+    )
+
+
+def _jacobian(
+    believed: TireModel, knobs: tuple[Knob, ...], values: FloatArray, radii: Sequence[float], test: Test
+) -> FloatArray:
+    base = simulate(assemble(believed, knobs, values, radii), test)
+    columns = []
+    for i, knob in enumerate(knobs):
+        step = 1e-3 * knob.scale
+        moved = values.copy()
+        moved[i] += step if values[i] + step <= knob.high else -step
+        columns.append((simulate(assemble(believed, knobs, moved, radii), test) - base) / step)
+    return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))

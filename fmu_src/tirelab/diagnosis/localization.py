@@ -1,0 +1,356 @@
+"""Where simulation and recording part: the residual against everything that a recording knows.
+
+Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording two
+kinds of span are looked for: where the squared error beyond the noise is denser than elsewhere, and where the mean
+residual is another than elsewhere. They are spans of largest sum (Kadane's, Bentley 1984), bounded where the residual
+says so and not by a grid. In time, cycles and history "elsewhere" means at the same deflections and directions of the
+same recording, else every cycle's deep half would be a place.
+
+Places are ranked by concentration: their part of the excess error less their part of the samples, or the part of it
+that their own mean takes away, whichever is more.
+
+A span is told where noise alone would hardly show it anywhere: its squares, and the squares of its bins' means, are
+held against chi square with as many degrees of freedom as the noise has independent samples (a block as long as its
+correlation counts once), and the chance is multiplied by the number of spans that were looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from radialtire import TireModel
+from scipy.stats import chi2
+
+from ..preprocessing.dataset import Record, Scene
+from ..preprocessing.kinematics import FloatArray, IndexArray
+from ..preprocessing.noise_model import Noise
+from ..simulation.simulate import simulate
+from .binning import Axis, axes_of
+from .held_out import Recorded
+
+DEPTHS = 12
+"""Spans of deflection which, loading and unloading apart, tell what error a sample has on average."""
+
+DENSE = 1.0
+"""Samples belong to a span where their excess is at least this part of the noise's variance: less would let a walk of
+noise alone carry an end away by more than a few samples that count as one."""
+
+LOCATED = 1e-3
+"""Chance, over all spans of all coordinates together, of telling any span where there is noise alone."""
+
+FAINT = 0.35
+"""Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
+
+LEAST, DENSER = 0.03, 1.5
+"""A place has at least this concentration; where it has it for its share, that share is so many times as dense as the
+rest: what holds its samples' share of the error is no place."""
+
+MOST_SPANS = 4
+"""Spans along one coordinate (in time: of one recording) at most."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """One place of the misfit.
+
+    by: coordinate; start, stop: its bounds in `unit` (direction: -1 unloading, +1 loading; cycle and recording: numbers
+    from 1; radius [m]: infinite is flat); label: what it is called where numbers do not say it; recording: the one
+    that is meant, where a time is told of one among several
+    share: part of the squared error beyond the noise, 0 to 1; samples: part of the samples, 0 to 1
+    mean_residual [N]: recording less simulation; chance: that noise alone shows such a place anywhere, 0 to 1
+    concentration: rank of the place, 0 to 1
+    """
+
+    by: str
+    start: float
+    stop: float
+    unit: str
+    label: str
+    recording: str | None
+    share: float
+    samples: float
+    mean_residual: float
+    chance: float
+    concentration: float
+
+    def to_contract(self) -> dict[str, object]:
+        """Return the span as the entry of `where` in diagnosis.json."""
+        entry: dict[str, object] = {
+            "by": self.by,
+            "from": _finite(self.start),
+            "to": _finite(self.stop),
+            "unit": self.unit,
+            "label": self.label,
+            "share": self.share,
+            "samples": self.samples,
+            "mean_residual": self.mean_residual,
+            "chance": self.chance,
+        }
+        return entry if self.recording is None else {**entry, "recording": self.recording}
+
+
+def _finite(value: float) -> float | str:
+    if np.isfinite(value):
+        return float(value)
+    return "inf" if value > 0.0 else "-inf"
+
+
+def locate(
+    recordings: Sequence[Recorded],
+    scene: Scene,
+    residuals: Sequence[FloatArray],
+    noises: Sequence[Noise],
+    left: Sequence[FloatArray] | None = None,
+) -> tuple[Span, ...]:
+    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
+
+    left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
+    """
+    samples = _samples(scene, residuals, noises, left)
+    axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, scene, samples.kept)]
+    looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
+    # Where the noise was taken for too large, the densest span has more than all samples together.
+    whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-12)
+    found = [s for axis, bins in axes for s in _spans(axis, replace(bins, whole=whole), looked_at)]
+    return tuple(sorted(found, key=lambda s: -s.concentration))
+
+
+def beyond_law(
+    recordings: Sequence[Recorded], before: Sequence[FloatArray], believed: TireModel, corrected: TireModel
+) -> list[FloatArray]:
+    """Return the residuals [N] in which physics has its place: what the corrected elastic law alone leaves.
+
+    before [N]: of the believed tire, returned where its law was not corrected, or nothing but its law
+    """
+    if corrected.law == believed.law or corrected.effects == believed.effects:
+        return list(before)
+    law = replace(believed, law=corrected.law)
+    return [r.force - simulate(law, r) for r in recordings]
+
+
+def _most(axis: Axis, values: FloatArray) -> float:
+    """Return the largest sum of neighbouring bins of an axis."""
+    bounds = zip(axis.parts[:-1], axis.parts[1:], strict=True)
+    return max(float(np.sum(values[slice(*_largest(values[a:b], a))])) for a, b in bounds)
+
+
+def _largest(values: FloatArray, offset: int) -> tuple[int, int]:
+    """Return the bounds of the largest sum of neighbouring values, counted from `offset` on."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    last = int(np.argmax(sums - np.minimum.accumulate(sums)))
+    return offset + int(np.argmin(sums[: last + 1])), offset + last
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """The compared samples of all recordings end to end, without spikes; arrays of one length.
+
+    residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike_excess [N^2], alike_residual [N]:
+    means of the samples like this one; together: of each recording, numbers of samples and how many of the noise then
+    count as one; kept: of each recording, indices into its rows
+    """
+
+    residual: FloatArray
+    variance: FloatArray
+    excess: FloatArray
+    alike_excess: FloatArray
+    alike_residual: FloatArray
+    together: tuple[tuple[FloatArray, FloatArray], ...]
+    kept: tuple[IndexArray, ...]
+
+
+def _samples(
+    scene: Scene,
+    residuals: Sequence[FloatArray],
+    noises: Sequence[Noise],
+    left: Sequence[FloatArray] | None,
+) -> _Samples:
+    parts, kept = [], []
+    for record, residual, noise in zip(scene.records, residuals, noises, strict=True):
+        chosen = np.flatnonzero(noise.weight > 0.0)
+        spread = noise.spread[chosen]
+        variance = noise.level**2 * spread**2 / float(np.mean(spread**2))
+        own = residual[record.rows][chosen]
+        excess = own**2 - variance
+        parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
+        kept.append(chosen)
+    own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
+    together = [(np.ones(1), np.array([n.correlation_samples])) for n in noises]
+    if left is not None:
+        rows = zip(scene.records, left, kept, strict=True)
+        together = [_wander(values[record.rows][chosen]) for record, values, chosen in rows]
+    return _Samples(own, variance, excess, alike, level, tuple(together), tuple(kept))
+
+
+def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return lengths n of blocks, and how many samples of a noise count as one in means of so many.
+
+    The variance of the mean of n samples that count as n/c is c/n times theirs; with 12 blocks it is known to a third.
+    """
+    length, power, found = 1, float(np.mean(noise**2)), [(1.0, 1.0)]
+    while noise.size >= 24 * length and power > 0.0:
+        length *= 2
+        blocks = noise[: noise.size // length * length].reshape(-1, length)
+        counted = length * float(np.mean(np.mean(blocks, axis=1) ** 2)) / power
+        found.append((float(length), max(found[-1][1], counted)))
+    lengths, counts = zip(*found, strict=True)
+    return np.array(lengths), np.array(counts)
+
+
+def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
+    """Return the means of `values` at the deflection and direction of each sample."""
+    depth = record.thin.motion.deflection[chosen]
+    edges = np.quantile(depth, np.linspace(0.0, 1.0, DEPTHS + 1)[1:-1])
+    cell = 2 * np.searchsorted(edges, depth) + (record.thin.motion.direction[chosen] > 0.0)
+    count = np.maximum(np.bincount(cell, minlength=2 * DEPTHS), 1)
+    return [(np.bincount(cell, v, minlength=2 * DEPTHS) / count)[cell] for v in values]
+
+
+@dataclass(frozen=True)
+class _Bins:
+    """What the bins of an axis hold; arrays of one value a bin.
+
+    numbers: of samples; total [N]: of the residual; apart [N]: of what it has beyond the mean elsewhere
+    variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: square
+    beyond the noise, and what so many samples have elsewhere; whole [N^2]: excess of all bins
+    together: as in `_Samples`
+    """
+
+    numbers: FloatArray
+    total: FloatArray
+    apart: FloatArray
+    variance: FloatArray
+    squares: FloatArray
+    excess: FloatArray
+    usual: FloatArray
+    whole: float
+    together: tuple[tuple[FloatArray, FloatArray], ...]
+
+    def counted(self, number: FloatArray | float) -> FloatArray:
+        """Return how many samples of the noise count as one among so many, those of the worst recording."""
+        return np.asarray(np.max([np.interp(number, *curve) for curve in self.together], axis=0))
+
+    @cached_property
+    def means(self) -> FloatArray:
+        """Square of each bin's mean residual over that of its noise."""
+        return self.total**2 / np.maximum(self.variance * self.counted(self.numbers), 1e-300)
+
+    def scores(self) -> tuple[FloatArray, ...]:
+        """Return what each bin adds to a span: by its samples' squares, by that of its mean, by its mean, by less it.
+
+        The mean's square shows a faint force sooner; half of the usual error parts the means from none.
+        """
+        unit = self.variance * self.counted(self.numbers) / np.maximum(self.numbers, 1.0)
+        usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
+        least = np.maximum(0.5 * usual * self.numbers, FAINT * np.sqrt(self.variance * self.numbers))
+        return (
+            self.excess - np.maximum(self.usual, DENSE * self.variance),
+            unit * (self.means - 1.0) - np.maximum(self.usual, DENSE * unit),
+            self.apart - least,
+            -self.apart - least,
+        )
+
+    def log_chance(self, a: int, b: int) -> float:
+        """Return the logarithm of the chance that noise alone fills the bins [a, b) so: the least of three tests."""
+        squares, means, total, variance = (
+            float(np.sum(v[a:b])) for v in (self.squares, self.means, self.total, self.variance)
+        )
+        number = float(np.sum(self.numbers[a:b]))
+        together = float(self.counted(number))
+        bins_together = together / float(self.counted(number / (b - a)))
+        tests = (
+            (squares / together, number / together),
+            (means / bins_together, (b - a) / bins_together),
+            (total**2 / (variance * together), 1.0),
+        )
+        return min(float(chi2.logsf(value, freedom)) for value, freedom in tests)
+
+    def share(self, a: int, b: int) -> float:
+        """Return the part of the excess error in the bins [a, b)."""
+        return float(np.clip(np.sum(self.excess[a:b]) / self.whole, 0.0, 1.0))
+
+    def concentration(self, a: int, b: int) -> float:
+        """Return the rank of the bins [a, b) as a place; 0 where they are none."""
+        share, usual = self.share(a, b), float(np.sum(self.usual[a:b])) / self.whole
+        number = float(np.sum(self.numbers[a:b]))
+        dense = share - number / float(np.sum(self.numbers))
+        if share - usual < LEAST or share * (1.0 - usual) < DENSER * usual * (1.0 - share):
+            dense = 0.0
+        apart = float(np.sum(self.apart[a:b]))
+        mean = min(apart**2 / number / self.whole, share)
+        if mean < LEAST or apart * float(np.sum(self.total[a:b])) <= 0.0:
+            mean = 0.0
+        return max(dense, mean)
+
+
+def _bins(axis: Axis, samples: _Samples) -> _Bins:
+    def summed(values: FloatArray) -> FloatArray:
+        return np.asarray(np.bincount(axis.bin_of, values, axis.start.size), dtype=np.float64)
+
+    one = np.ones(samples.excess.size)
+    usual, level = (
+        (samples.alike_excess, samples.alike_residual)
+        if axis.slow
+        else (one * np.mean(samples.excess), one * np.mean(samples.residual))
+    )
+    return _Bins(
+        summed(one),
+        summed(samples.residual),
+        summed(samples.residual - level),
+        summed(samples.variance),
+        summed(samples.residual**2 / samples.variance),
+        summed(samples.excess),
+        summed(usual),
+        float(np.sum(samples.excess)),
+        samples.together,
+    )
+
+
+def _spans(axis: Axis, bins: _Bins, looked_at: int) -> list[Span]:
+    """Return the places on an axis that noise alone does not show, at most `MOST_SPANS` in each part."""
+    scores, found = bins.scores(), []
+    for part, bounds in enumerate(zip(axis.parts[:-1], axis.parts[1:], strict=True)):
+        pieces = [bounds]
+        for _ in range(MOST_SPANS):
+            best = _best(pieces, scores, bins, np.log(LOCATED / looked_at))
+            if best is None:
+                break
+            concentration, a, b, piece = best
+            pieces.remove(piece)
+            pieces += [p for p in ((piece[0], a), (b, piece[1])) if p[1] > p[0]]
+            number = float(np.sum(bins.numbers[a:b]))
+            found.append(
+                Span(
+                    axis.by,
+                    float(np.min(axis.start[a:b])),
+                    float(np.max(axis.stop[a:b])),
+                    axis.unit,
+                    axis.label(a, b - 1),
+                    axis.recordings[part] if axis.recordings else None,
+                    bins.share(a, b),
+                    number / float(np.sum(bins.numbers)),
+                    float(np.sum(bins.total[a:b])) / number,
+                    float(np.exp(bins.log_chance(a, b) + np.log(looked_at))),
+                    concentration,
+                )
+            )
+    return found
+
+
+_Piece = tuple[int, int]
+
+
+def _best(
+    pieces: Sequence[_Piece], scores: Sequence[FloatArray], bins: _Bins, least: float
+) -> tuple[float, int, int, _Piece] | None:
+    """Return the most concentrated span in `pieces` whose log chance is below `least`: rank, bins [a, b), piece."""
+    found = []
+    for piece in pieces:
+        for score in scores:
+            a, b = _largest(score[piece[0] : piece[1]], piece[0])
+            if b > a and bins.log_chance(a, b) < least and (rank := bins.concentration(a, b)) > 0.0:
+                found.append((rank, a, b, piece))
+    return max(found, default=None)

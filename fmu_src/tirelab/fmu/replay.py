@@ -1,0 +1,144 @@
+"""An FMU on a recording: the force it gives for the deflection and the surface that were recorded."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Protocol
+
+import fmpy
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from numpy.typing import NDArray
+
+from ..errors import TirelabError
+
+INPUTS = ("deflection", "surface_radius")
+OUTPUT = "radial_force"
+
+
+class Motion(Protocol):
+    """What a replay needs of a recording, in SI."""
+
+    @property
+    def time(self) -> NDArray[np.float64]: ...
+    @property
+    def deflection(self) -> NDArray[np.float64]: ...
+    @property
+    def surface_radius(self) -> NDArray[np.float64]: ...
+
+
+@dataclass(frozen=True)
+class OpenFmu:
+    """An instance of an FMU with its variables' references and the messages it has logged."""
+
+    instance: FMU2Slave
+    references: dict[str, int]
+    messages: list[str]
+
+
+@contextmanager
+def opened(fmu: Path) -> Iterator[OpenFmu]:
+    """Unpack, load and instantiate `fmu`, and leave nothing behind.
+
+    An FMU is native code and runs with the rights of this process: open only FMUs that you trust.
+    Raises TirelabError where it cannot be read, is not FMI 2.0 Co-Simulation, or does not load here.
+    """
+    try:
+        description = fmpy.read_model_description(str(fmu))
+        kind = description.coSimulation
+        if description.fmiVersion != "2.0" or kind is None:
+            raise TirelabError(f"{fmu} is not an FMI 2.0 Co-Simulation unit; export it as one")
+    except TirelabError:
+        raise
+    except FileNotFoundError:
+        raise TirelabError(f"{fmu} does not exist; build it with build_fmu.py or name another") from None
+    except (OSError, zipfile.BadZipFile, KeyError) as error:
+        raise TirelabError(f"{fmu} cannot be read as an FMU ({error}); build it again") from None
+    except Exception as error:  # fmpy raises plain Exception for a description that breaks the standard
+        raise TirelabError(f"{fmu} breaks the FMI standard ({error}); build it again") from None
+
+    folder = tempfile.mkdtemp(prefix="tirelab_")
+    messages: list[str] = []
+    try:
+        fmpy.extract(str(fmu), folder)
+        instance = FMU2Slave(
+            guid=description.guid,
+            unzipDirectory=folder,
+            modelIdentifier=kind.modelIdentifier,
+            instanceName=Path(fmu).stem,
+        )
+
+        def logger(_: Any, __: bytes, ___: int, ____: bytes, message: bytes) -> None:
+            messages.append((message or b"").decode(errors="replace").replace("%%", "%"))
+
+        callbacks = fmi2CallbackFunctions(logger=fmi2CallbackLoggerTYPE(logger))
+        try:
+            instance.instantiate(callbacks=callbacks, loggingOn=True)
+        except Exception:
+            instance.freeLibrary()
+            raise TirelabError(f"{fmu} cannot be instantiated: {_last(messages)}") from None
+        try:
+            yield OpenFmu(instance, {v.name: v.valueReference for v in description.modelVariables}, messages)
+        finally:
+            instance.freeInstance()
+    except OSError as error:
+        raise TirelabError(
+            f"{fmu} does not load on this machine ({error}); see its documentation folder"
+        ) from None
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
+    """Return the FMU's radial force [N] at every sample of `motion`, without a sample of delay.
+
+    Each step sets the inputs of its end, steps, and reads the output (fmpy.simulate_fmu samples the output of a model
+    with direct feed-through one communication step late).
+    Raises TirelabError where the FMU lacks a variable or refuses a sample.
+    """
+    with opened(fmu) as unit:
+        for name in (*INPUTS, OUTPUT):
+            if name not in unit.references:
+                raise TirelabError(
+                    f"{fmu} has no variable {name!r}; a tire has {', '.join((*INPUTS, OUTPUT))}"
+                )
+        inputs = [unit.references[name] for name in INPUTS]
+        output = [unit.references[OUTPUT]]
+        instance = unit.instance
+        force = np.empty(len(motion.time))
+        samples = zip(
+            motion.time.tolist(), motion.deflection.tolist(), motion.surface_radius.tolist(), strict=True
+        )
+        at = SimpleNamespace(sample=0, time=float(motion.time[0]))
+        try:
+            instance.setupExperiment(startTime=at.time)
+            instance.enterInitializationMode()
+            for at.sample, (time, deflection, surface_radius) in enumerate(samples):
+                instance.setReal(inputs, [deflection, surface_radius])
+                if at.sample == 0:
+                    instance.exitInitializationMode()
+                else:
+                    instance.doStep(at.time, time - at.time)
+                force[at.sample] = instance.getReal(output)[0]
+                at.time = time
+            instance.terminate()
+        except FMICallException as error:
+            reason = _last(unit.messages) or str(error)
+            raise TirelabError(
+                f"{fmu} refused sample {at.sample} (after t = {at.time:g} s): {reason}"
+            ) from None
+    if not np.isfinite(force[0]):
+        raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
+    return force
+
+
+def _last(messages: list[str]) -> str:
+    return messages[-1] if messages else "it logged no reason"

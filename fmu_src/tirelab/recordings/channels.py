@@ -1,0 +1,245 @@
+"""The channels of a recording, and which column of a file is which."""
+
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from .formats import Header, RecordingError
+from .formats.table import listed, quoted
+from .units import measures
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One channel: our name for it, its SI unit, and the names and symbols the field gives it."""
+
+    name: str
+    unit: str
+    words: frozenset[str]
+    symbol: str
+    required: bool = True
+
+
+def _channel(name: str, unit: str, words: str, symbol: str, required: bool = True) -> Channel:
+    return Channel(name, unit, frozenset([name, *words.split(", ")]), symbol, required)
+
+
+CHANNELS = (
+    _channel("time", "s", "elapsed time, test time, time stamp, timestamp", "t"),
+    _channel(
+        "deflection",
+        "m",
+        "tire deflection, tyre deflection, radial deflection, displacement, stroke, compression, travel, "
+        "lvdt",
+        "x",
+    ),
+    _channel(
+        "radius",
+        "m",
+        "surface radius, radius of curvature, curvature radius, bump radius, obstacle radius, rb",
+        "R",
+        required=False,
+    ),
+    _channel(
+        "force",
+        "N",
+        "radial force, vertical force, normal force, compressive force, load, radial load, vertical load, "
+        "load cell, loadcell",
+        "F",
+    ),
+    _channel(
+        "pressure",
+        "Pa",
+        "inflation pressure, gauge pressure, absolute pressure, tire pressure, tyre pressure",
+        "p",
+        required=False,
+    ),
+    _channel("temperature", "K", "temp, tire temperature, tyre temperature", "T", required=False),
+    _channel("speed", "m/s", "forward speed, riding speed, travel speed, vehicle speed", "v", required=False),
+)
+"""The channels in the order of the house form of a recording."""
+
+UNIT_OF = {channel.name: channel.unit for channel in CHANNELS}
+"""The SI unit of each channel."""
+
+# "force_min" is a minimum and "stroke_in" an input as often as they are minutes and inches.
+_NO_SUFFIX_UNITS = frozenset({"in", "min", "max"})
+
+
+@dataclass(frozen=True)
+class Match:
+    """The column that holds a channel; sign 1 or -1 where the user says so, 0 where it is still open."""
+
+    index: int
+    sign: int = 0
+
+
+def parse_columns(text: str) -> dict[str, str]:
+    """The assignments in the text of an option: `deflection=Stroke,force="Load cell"`.
+
+    Errors: RecordingError for an unknown or repeated channel, a missing = or a quote left open.
+    """
+    return _assignments(text, "--columns", 'deflection=Stroke,force="Load cell"')
+
+
+def parse_units(text: str) -> dict[str, str]:
+    """The assignments in the text of an option: `time=ms,deflection=mm,force=kN`.
+
+    Errors: RecordingError for an unknown or repeated channel, a missing = or a quote left open.
+    """
+    return _assignments(text, "--units", "time=ms,deflection=mm,force=kN")
+
+
+def _assignments(text: str, option: str, example: str) -> dict[str, str]:
+    reader = shlex.shlex(text, posix=True)
+    reader.whitespace, reader.whitespace_split, reader.commenters, reader.escape = ",", True, "", ""
+    found: dict[str, str] = {}
+    try:
+        pieces = list(reader)
+    except ValueError:
+        raise RecordingError(
+            f"{option} {quoted(text)}: a quote is not closed; write like {example}"
+        ) from None
+    for piece in pieces:
+        name, equals, value = piece.partition("=")
+        name = name.strip().lower()
+        if not equals:
+            raise RecordingError(f"{option}: {quoted(piece)} has no =; write like {example}")
+        known_channel(name, option)
+        if name in found:
+            raise RecordingError(f"{option}: {name} is given twice; leave one out")
+        found[name] = value.strip()
+    return found
+
+
+def known_channel(name: str, where: str) -> None:
+    """Refuse a name that is none of the channels'."""
+    if name not in UNIT_OF:
+        raise RecordingError(f"{where}: {quoted(name)} is no channel; the channels are {', '.join(UNIT_OF)}")
+
+
+def match_channels(
+    path: Path, headers: Sequence[Header], time_axis: int | None, columns: Mapping[str, str]
+) -> dict[str, Match]:
+    """Which column holds which channel.
+
+    A column the user names is found by its text, by its name without the unit (both whatever the case), or by
+    its number (#1 the first); `+` or `-` before it settles its sign; an empty name leaves the channel out.
+    Others are found by the words and symbols of `CHANNELS`, symbols in their own case unless a fitting unit
+    follows.
+
+    Errors: RecordingError when a column named is not there, a required channel has none, or several may be.
+    """
+    for name in columns:
+        known_channel(name, f"{path.name}, columns")
+    matches: dict[str, Match] = {}
+    for name, text in columns.items():
+        if text.strip():
+            matches[name] = _named(path, headers, name, text.strip())
+    taken = {match.index: name for name, match in matches.items()}
+    if len(taken) < len(matches):
+        raise RecordingError(
+            f"{path.name}: one column is given for two channels; name another with --columns"
+        )
+    for channel in CHANNELS:
+        if channel.name in columns:
+            continue
+        if channel.name == "time" and time_axis is not None:
+            matches["time"] = Match(time_axis)
+            continue
+        found = [i for i, header in enumerate(headers) if i not in taken and _may_be(header, channel)]
+        if len(found) > 1:
+            told = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in found)
+            unused = "" if channel.required else f", or leave it out with {channel.name}="
+            raise RecordingError(
+                f"{path.name}: {told} may each be the {channel.name}; "
+                f"say which with --columns {channel.name}=#{found[0] + 1}{unused}"
+            )
+        if found:
+            matches[channel.name] = Match(found[0])
+    missing = [c.name for c in CHANNELS if c.required and c.name not in matches]
+    if missing:
+        raise _missing(path, headers, missing)
+    return matches
+
+
+def unit_of_column(header: Header, channel: str) -> str | None:
+    """The unit a column states, in brackets, in its properties, or at the end of its name: force_N."""
+    if header.unit:
+        return header.unit
+    _, mark, tail = header.name.rpartition("_")
+    fits = mark and tail not in _NO_SUFFIX_UNITS and measures(tail, UNIT_OF[channel])
+    return tail if fits else None
+
+
+def says_absolute(header: Header) -> bool:
+    """Whether the name of a pressure column says that it is absolute."""
+    return bool({"abs", "absolute"} & set(_words(header.name).split()))
+
+
+def _named(path: Path, headers: Sequence[Header], channel: str, text: str) -> Match:
+    exact = _finds(headers, text)
+    if exact:
+        sign = 0
+    elif text[0] in "+-":
+        exact, sign = _finds(headers, text[1:].strip()), 1 if text[0] == "+" else -1
+    if not exact:
+        raise RecordingError(
+            f"{path.name}: has no column {quoted(text)}; its columns are {_all(headers)}; "
+            f"correct --columns {channel}=NAME"
+        )
+    if len(exact) > 1:
+        told = " and ".join(f"#{i + 1}" for i in exact)
+        raise RecordingError(
+            f"{path.name}: columns {told} are both named {quoted(text)}; "
+            f"say which by its number: --columns {channel}=#{exact[0] + 1}"
+        )
+    return Match(exact[0], sign)
+
+
+def _finds(headers: Sequence[Header], text: str) -> list[int]:
+    if text.startswith("#") and text[1:].isdecimal() and text.isascii():
+        number = int(text[1:7])
+        return [number - 1] if 1 <= number <= len(headers) else []
+    for same in (
+        [i for i, h in enumerate(headers) if text == h.text],
+        [i for i, h in enumerate(headers) if text == h.name],
+        [i for i, h in enumerate(headers) if text.casefold() in (h.text.casefold(), h.name.casefold())],
+    ):
+        if same:
+            return same
+    return []
+
+
+def _may_be(header: Header, channel: Channel) -> bool:
+    name = header.name
+    if len(name) == 1:
+        if header.unit:
+            return name.lower() == channel.symbol.lower() and measures(header.unit, channel.unit)
+        return name == channel.symbol
+    if _words(name) in channel.words:
+        return True
+    base, _, _ = name.rpartition("_")
+    return _words(base) in channel.words and unit_of_column(header, channel.name) is not None
+
+
+def _words(name: str) -> str:
+    return " ".join(name.lower().replace("_", " ").replace("-", " ").split())
+
+
+def _all(headers: Sequence[Header]) -> str:
+    return listed([quoted(header.text) for header in headers], most=20) or "none"
+
+
+def _missing(path: Path, headers: Sequence[Header], missing: Sequence[str]) -> RecordingError:
+    if headers and all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
+        return RecordingError(
+            f"{path.name}: has no header row; put one above the numbers, such as time [s],deflection [mm],"
+            "force [N], or name columns by number: --columns time=#1,deflection=#2,force=#3 "
+            "--units time=s,deflection=mm,force=N"
+        )
+    return RecordingError(
+        f"{path.name}: no column for {', '.join(missing)}; its columns are {_all(headers)}; "
+        f"name it with --columns {','.join(f'{name}=NAME' for name in missing)}"
+    )

@@ -1,0 +1,168 @@
+"""Text read row by row: slower than by columns, and exact about what stands where."""
+
+import csv
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..units import FLAT_WORDS
+from .layout import DECIMAL_COMMA, MAYBE_THOUSANDS, Layout
+from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
+
+LONGEST_LINE = 1_048_576
+"""More characters than this in one line are not a row of numbers."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The columns wanted, and row by row the line of the file each came from, counted from 1."""
+
+    values: list[FloatArray]
+    lines: NDArray[np.int64]
+    next_line: int
+
+
+class RowReader:
+    """Reads the rows of one file, from any line on; the decimal mark it finds holds for the whole file."""
+
+    def __init__(self, path: Path, layout: Layout, wanted: Sequence[Wanted]) -> None:
+        self.path = path
+        self.layout = layout
+        self.wanted = wanted
+        self.comments: list[int] = []
+        self.cells = _Cells(path, layout)
+
+    def read(self, source: Iterable[str], first_line: int) -> Rows:
+        """The rows in some lines of the file; a blank cell is NaN, an empty line a row of NaN.
+
+        Errors: RecordingError naming row, column and value for text in a number, too many fields, two kinds
+        of decimal mark, a quote left open.
+        """
+        columns = [array("d") for _ in self.wanted]
+        lines = array("q")
+        targets = [
+            (column, want.index, self.layout.headers[want.index].text, want.channel == "radius")
+            for column, want in zip(columns, self.wanted, strict=True)
+        ]
+        rows = csv.reader(source, delimiter=self.layout.separator)
+        expected = len(self.layout.headers)
+        number = self.cells.number
+        line = first_line
+        try:
+            for row in rows:
+                start, line = line, first_line + rows.line_num
+                if row and is_comment(row[0]):
+                    self.comments.append(start)
+                    continue
+                if len(row) > expected:
+                    self._refuse_extra_fields(start, row)
+                lines.append(start)
+                for column, index, header, flat in targets:
+                    column.append(number(row[index] if index < len(row) else "", start, header, flat))
+        except csv.Error as error:
+            raise RecordingError(
+                f"{self.path.name}, row {line}: {error}; a quote may be left open there: mend it"
+            ) from None
+        values = [np.frombuffer(column, dtype=np.float64) if column else np.empty(0) for column in columns]
+        return Rows(values, np.array(lines, dtype=np.int64), first_line + rows.line_num)
+
+    def read_file(self) -> Rows:
+        """The rows of the whole file, whichever way its lines end."""
+        encoding = self.layout.encoding
+        errors = "surrogateescape" if encoding.startswith("utf-8") else "replace"
+        with self.path.open(encoding=encoding, errors=errors, newline="") as file:
+            lines = self._bounded_lines(file)
+            for _ in range(self.layout.lines_before_data):
+                next(lines)
+            return self.read(lines, self.layout.lines_before_data + 1)
+
+    def _bounded_lines(self, file: TextIO) -> Iterator[str]:
+        number = 0
+        while line := file.readline(LONGEST_LINE):
+            number += 1
+            if len(line) == LONGEST_LINE:
+                raise RecordingError(
+                    f"{self.path.name}, row {number}: the line does not end in {LONGEST_LINE} characters; "
+                    "the file is damaged there: export it anew"
+                )
+            yield line
+
+    def _refuse_extra_fields(self, line: int, row: Sequence[str]) -> None:
+        expected = len(self.layout.headers)
+        if not any(cell.strip() for cell in row[expected:]):
+            return
+        advice = (
+            "if these are decimal commas, separate the columns by semicolons"
+            if self.layout.separator == ","
+            else "correct the row or delete it"
+        )
+        raise RecordingError(
+            f"{self.path.name}, row {line}: has {len(row)} fields where the header has {expected} "
+            f"({quoted(row[expected])} is one too many); {advice}"
+        )
+
+
+class _Cells:
+    """The cells of one file, held to one decimal mark."""
+
+    def __init__(self, path: Path, layout: Layout) -> None:
+        self.path = path
+        self.commas = layout.separator != ","
+        self.mark = ""
+        self.mark_line = 0
+        self.settled = layout.decimal_comma
+        self.doubtful: RecordingError | None = None
+
+    def number(self, text: str, line: int, header: str, flat: bool) -> float:
+        if "," in text:
+            return self._with_comma(text, line, header)
+        # float() also takes 1_000 and the digits of other scripts; a recording means neither.
+        if text.isascii() and "_" not in text:
+            try:
+                value = float(text)
+            except ValueError:
+                pass
+            else:
+                if "." in text:
+                    self.hold_to(".", line, header, text)
+                return value
+        word = text.strip().lower()
+        if word in BLANK_WORDS:
+            return float("nan")
+        if flat and word in FLAT_WORDS:
+            return float("inf")
+        raise not_a_number(self.path, f"row {line}", header, text)
+
+    def _with_comma(self, text: str, line: int, header: str) -> float:
+        if not (self.commas and DECIMAL_COMMA.fullmatch(text)):
+            raise not_a_number(self.path, f"row {line}", header, text)
+        self.hold_to(",", line, header, text)
+        if not self.settled and not MAYBE_THOUSANDS.fullmatch(text):
+            self.settled = True
+        elif not self.settled and self.doubtful is None:
+            self.doubtful = RecordingError(
+                f"{self.path.name}, row {line}, column {quoted(header)}: {quoted(text)} may have a decimal "
+                "comma or a thousands mark, and no number here tells which; write decimal points"
+            )
+        return float(text.replace(",", "."))
+
+    def hold_to(self, mark: str, line: int, header: str = "", text: str = "") -> None:
+        """Note the decimal mark of the file; a second kind of mark is refused."""
+        if not self.mark:
+            self.mark, self.mark_line = mark, line
+        elif mark != self.mark:
+            raise RecordingError(
+                f"{self.path.name}, row {line}, column {quoted(header)}: {quoted(text)} has the decimal mark "
+                f"{mark!r} and row {self.mark_line} has {self.mark!r}; write all numbers with one mark"
+            )
+
+    def settled_mark(self) -> str:
+        """The decimal mark of the file; an error if its commas might as well be thousands marks."""
+        if self.doubtful is not None and not self.settled:
+            raise self.doubtful
+        return self.mark

@@ -1,0 +1,184 @@
+"""Text tables (CSV, TSV): by columns with polars when they are clean, row by row when they are not."""
+
+import io
+import warnings
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from .careful import LONGEST_LINE, RowReader, Rows
+from .layout import Layout, find_layout
+from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed
+
+BLOCK = 2 * 2**20
+"""How much of a file [B] is parsed at once: enough to keep every core busy, little beside the recording."""
+
+
+class DelimitedTable:
+    """A CSV or TSV file whose layout is known."""
+
+    time_axis: int | None = None
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.layout = find_layout(path)
+
+    @property
+    def headers(self) -> Sequence[Header]:
+        """The columns in the order of the file."""
+        return self.layout.headers
+
+    def bytes_needed(self, columns: int) -> int:
+        """Twice the columns (1.5 times were seen with 80 million rows), and the blocks being parsed."""
+        rows = self.path.stat().st_size / self.layout.bytes_per_row
+        return int(rows * columns * 8 * 2) + 32 * BLOCK
+
+    def read(self, wanted: Sequence[Wanted]) -> Columns:
+        """The columns wanted, block by block: by columns where that works, row by row where it does not."""
+        pieces = _Pieces(len(wanted))
+        reader = RowReader(self.path, self.layout, wanted)
+        if not (self.layout.plain and _read_blocks(pieces, reader)):
+            # What cannot be cut into blocks, or is wrong, is judged by one reading from the first row.
+            pieces = _Pieces(len(wanted))
+            reader = RowReader(self.path, self.layout, wanted)
+            pieces.add_rows(reader.read_file())
+        notes = list(self.layout.notes)
+        if reader.cells.settled_mark() == ",":
+            notes.append("commas read as decimal commas")
+        if reader.comments:
+            told = listed([str(line) for line in reader.comments])
+            notes.append(f"comment lines (#) skipped: row {told}")
+        return Columns(pieces.joined(), pieces.place, tuple(notes))
+
+
+class _Pieces:
+    """Columns in pieces, and the lines they came from."""
+
+    def __init__(self, columns: int) -> None:
+        self.columns: list[list[FloatArray]] = [[] for _ in range(columns)]
+        self.starts: list[int] = []
+        self.lines: list[NDArray[np.int64] | int] = []
+        self.samples = 0
+
+    def add_rows(self, rows: Rows) -> None:
+        """Rows that each know their line."""
+        for column, values in zip(self.columns, rows.values, strict=True):
+            column.append(values)
+        self._count(len(rows.lines), rows.lines)
+
+    def add_frame(self, frame: pl.DataFrame, names: Sequence[str], first_line: int) -> None:
+        """Rows that follow line by line: views of what polars parsed, copied once when all are there."""
+        for column, name in zip(self.columns, names, strict=True):
+            column.extend(chunk.to_numpy() for chunk in frame[name].get_chunks())
+        self._count(frame.height, first_line)
+
+    def _count(self, samples: int, lines: NDArray[np.int64] | int) -> None:
+        self.starts.append(self.samples)
+        self.lines.append(lines)
+        self.samples += samples
+
+    def place(self, index: int) -> str:
+        """The row of the file, its first line being 1, where a sample stands."""
+        piece = bisect_right(self.starts, index) - 1
+        lines, within = self.lines[piece], index - self.starts[piece]
+        return f"row {lines + within if isinstance(lines, int) else lines[within]}"
+
+    def joined(self) -> list[FloatArray]:
+        """The columns whole; the pieces are given up one column at a time."""
+        whole = []
+        for column in self.columns:
+            whole.append(np.concatenate([*column, np.empty(0)]))
+            column.clear()
+        return whole
+
+
+def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
+    """Read a file in blocks; False where only a reading from the first row to the last can judge it."""
+    path, layout = reader.path, reader.layout
+    line = layout.lines_before_data + 1
+    codec = "latin-1" if layout.encoding == "latin-1" else "utf-8"
+    names = [f"column_{want.index}" for want in reader.wanted]
+    try:
+        for block in _blocks(path, layout):
+            quotes = block.count(b'"') if b'"' in block else 0
+            if quotes % 2:
+                return False
+            frame = _parsed(block, layout, names)
+            if frame is not None and (
+                not quotes or frame.height == block.count(b"\n") + (block[-1:] != b"\n")
+            ):
+                pieces.add_frame(frame, names, line)
+                line += frame.height
+                if layout.decimal_comma or b"." in block:
+                    reader.cells.hold_to("," if layout.decimal_comma else ".", line)
+            else:
+                text = io.StringIO(block.decode(codec, "surrogateescape"), newline="")
+                rows = reader.read(text, line)
+                pieces.add_rows(rows)
+                line = rows.next_line
+    except (RecordingError, UnicodeError):
+        return False
+    return True
+
+
+def _parsed(block: bytes, layout: Layout, names: Sequence[str]) -> pl.DataFrame | None:
+    """The columns of a block, or None where it holds anything but rows of numbers."""
+    # A comment may pass for a row, a point for a decimal comma; polars 1 skips empty lines at the start.
+    if b"#" in block or (layout.decimal_comma and b"." in block) or block[:1] in b"\r\n":
+        return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            frame = pl.read_csv(
+                block,
+                has_header=False,
+                schema={f"column_{i}": pl.Float64 for i in range(len(layout.headers))},
+                columns=list(names),
+                separator=layout.separator,
+                decimal_comma=layout.decimal_comma,
+                ignore_errors=True,
+            )
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, UserWarning):
+        return None
+    return None if any(frame[name].null_count() for name in names) else frame
+
+
+def _blocks(path: Path, layout: Layout) -> Iterator[bytes]:
+    """The rows of the file as UTF-8, in blocks that end with a line; the last without its line end."""
+    blocks = _byte_blocks if layout.encoding in ("utf-8", "utf-8-sig", "latin-1") else _decoded_blocks
+    previous = b""
+    for block in blocks(path, layout):
+        if previous:
+            yield previous
+        previous = block
+    if previous := previous.rstrip(b"\r\n"):
+        yield previous
+
+
+def _byte_blocks(path: Path, layout: Layout) -> Iterator[bytes]:
+    with path.open("rb") as file:
+        for _ in range(layout.lines_before_data):
+            file.readline()
+        start = file.tell()
+    with path.open("rb", buffering=0) as file:
+        file.seek(start)
+        # Going back to the last line's start is cheaper than joining its halves: 3 ms against 20 for 28 MB.
+        while piece := file.read(BLOCK):
+            whole = piece.rfind(b"\n") + 1
+            if not whole and len(piece) > LONGEST_LINE:
+                raise UnicodeError("a line without end")
+            start += whole or len(piece)
+            yield piece[:whole] if whole else piece
+            file.seek(start)
+
+
+def _decoded_blocks(path: Path, layout: Layout) -> Iterator[bytes]:
+    with path.open(encoding=layout.encoding, newline="") as file:
+        for _ in range(layout.lines_before_data):
+            file.readline()
+        while characters := file.read(BLOCK):
+            yield (characters + file.readline(LONGEST_LINE)).encode()

@@ -1,0 +1,131 @@
+"""What every file format is turned into before anything is made of it: named columns of numbers."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import TirelabError
+
+FloatArray = NDArray[np.float64]
+
+BLANK_WORDS = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none"})
+"""What a cell may hold, in lower case, to say that nothing was measured."""
+
+
+_EXCEL_ERRORS = ("#n/a", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!")
+
+
+class RecordingError(TirelabError):
+    """A recording that cannot be read: the file, the place in it, what is wrong there, and the next step."""
+
+
+@dataclass(frozen=True)
+class Header:
+    """One column as its file names it: its name, its unit if the file gives one, and the whole text."""
+
+    name: str
+    unit: str | None
+    text: str
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """One column to read, by its number in the file from 0, and the channel of ours that it becomes."""
+
+    index: int
+    channel: str
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The columns wanted, in the file's own units and of one length; NaN where the file holds no value."""
+
+    values: list[FloatArray]
+    place: Callable[[int], str]
+    notes: tuple[str, ...] = ()
+
+
+class Table(Protocol):
+    """An opened file: its headers at once, its numbers when they are asked for."""
+
+    @property
+    def headers(self) -> Sequence[Header]:
+        """The columns in the order of the file."""
+
+    @property
+    def time_axis(self) -> int | None:
+        """The column that the format itself declares to be time, where it has one."""
+
+    def bytes_needed(self, columns: int) -> int:
+        """An estimate of the memory [B] that reading so many columns takes at its peak."""
+
+    def read(self, wanted: Sequence[Wanted]) -> Columns:
+        """The numbers of the columns wanted, in that order."""
+
+
+def is_comment(cell: str) -> bool:
+    """Whether a row that starts with this cell is a comment, and not with #N/A or another Excel error."""
+    start = cell.lstrip().lower()
+    return start.startswith("#") and not start.startswith(_EXCEL_ERRORS)
+
+
+def quoted(text: object) -> str:
+    """A text of the file as it may stand in a message: on one line, between quotes, not too long."""
+    shown = str(text)
+    return repr(shown if len(shown) <= 40 else shown[:37] + "...")
+
+
+def listed(items: Sequence[str], most: int = 12) -> str:
+    """The items one after another, the rest of a long list counted."""
+    shown = ", ".join(items[:most])
+    return shown if len(items) <= most else f"{shown} and {len(items) - most} more"
+
+
+def sample_place(index: int) -> str:
+    """Where a sample stands in a file without lines, counted from 1."""
+    return f"sample {index + 1}"
+
+
+def not_a_number(path: Path, place: str, header: str, value: object) -> RecordingError:
+    """The error for text in a column of numbers."""
+    clock = re.search(r"\d:\d\d|\d{4}-\d\d-\d\d", str(value))
+    advice = "write times as numbers of seconds" if clock else "correct it, or delete the row"
+    return RecordingError(
+        f"{path.name}, {place}, column {quoted(header)}: {quoted(value)} is not a number; {advice}"
+    )
+
+
+def numbers(path: Path, header: Header, values: NDArray[Any], channel: str) -> FloatArray:
+    """A column that a library has read, as float64; date and time become seconds from the first sample.
+
+    Errors: RecordingError for text, truth values, complex numbers, and dates in any channel but time.
+    """
+    column = np.asarray(values)
+    if column.dtype.kind in "Mm" and channel == "time" and column.size:
+        seconds = (column - column[np.argmin(np.isnat(column))]) / np.timedelta64(1, "s")
+        return np.asarray(seconds, dtype=np.float64)
+    if column.dtype.kind in "fiu":
+        return column.astype(np.float64, copy=False)
+    kinds = {"b": "true and false", "c": "complex numbers", "M": "dates", "m": "durations"}
+    held = kinds.get(column.dtype.kind, "text")
+    first = f", {quoted(column.flat[0])} the first" if column.size and held == "text" else ""
+    raise RecordingError(
+        f"{path.name}, column {quoted(header.text)}: holds {held}{first}, not numbers; "
+        f"name another column with --columns {channel}=NAME"
+    )
+
+
+def of_one_length(path: Path, wanted: Sequence[Header], values: Sequence[FloatArray]) -> None:
+    """Refuse columns of unequal length: they were not recorded together."""
+    lengths = [len(column) for column in values]
+    if len(set(lengths)) > 1:
+        told = listed([f"{quoted(h.text)} {n}" for h, n in zip(wanted, lengths, strict=True)])
+        raise RecordingError(
+            f"{path.name}: the columns have unequal numbers of samples ({told}); "
+            "resample them to one time, or name columns that were recorded together with --columns"
+        )

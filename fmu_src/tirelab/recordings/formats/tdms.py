@@ -1,0 +1,107 @@
+"""TDMS files (National Instruments), read with npTDMS; units and time come from the channel properties."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..units import split_header
+from .libraries import load_library, told_by
+from .table import (
+    Columns,
+    FloatArray,
+    Header,
+    RecordingError,
+    Wanted,
+    numbers,
+    of_one_length,
+    quoted,
+    sample_place,
+)
+
+
+class TdmsTable:
+    """The channels of a TDMS file; time is a channel, or the waveform's increment where there is one."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.library = load_library(path, "nptdms", "tdms")
+        self.channels: list[tuple[str, str] | None] = []
+        self.headers: list[Header] = []
+        self.samples = 0
+        waveform = False
+        with told_by(path, "TDMS", "nptdms") as self.said, path.open("rb") as stream:
+            file = self.library.TdmsFile.open(stream)
+            found = [channel for group in file.groups() for channel in group.channels()]
+            names = [channel.name for channel in found]
+            for channel in found:
+                self.samples = max(self.samples, len(channel))
+                waveform = waveform or "wf_increment" in channel.properties
+                self.channels.append((channel.group_name, channel.name))
+                self.headers.append(_header(channel, names.count(channel.name) > 1))
+        self.time_axis: int | None = None
+        if waveform:
+            self.time_axis = len(self.headers)
+            self.channels.append(None)
+            self.headers.append(Header("time", "s", "time (waveform)"))
+
+    def bytes_needed(self, columns: int) -> int:
+        """The channels as stored, scaled, and as float64."""
+        return self.samples * columns * 8 * 3
+
+    def read(self, wanted: Sequence[Wanted]) -> Columns:
+        """The channels wanted; refused when their lengths or waveform clocks differ."""
+        headers: list[Header] = []
+        columns: dict[int, FloatArray] = {}
+        clocks: dict[str, tuple[object, ...]] = {}
+        time: FloatArray | None = None
+        with told_by(self.path, "TDMS", "nptdms"), self.path.open("rb") as stream:
+            file = self.library.TdmsFile.open(stream)
+            for want in wanted:
+                place = self.channels[want.index]
+                if place is None:
+                    continue
+                channel = file[place[0]][place[1]]
+                header = self.headers[want.index]
+                headers.append(header)
+                columns[want.index] = numbers(self.path, header, channel[:], want.channel)
+                if want.index != self.time_axis and "wf_increment" in channel.properties:
+                    clocks[header.text] = _clock(channel)
+                    time = _waveform_time(channel) if time is None else time
+        of_one_length(self.path, headers, list(columns.values()))
+        if self.time_axis in {want.index for want in wanted}:
+            if time is None:
+                raise RecordingError(
+                    f"{self.path.name}: no channel wanted has a waveform time; name one: time=NAME"
+                )
+            if len(set(clocks.values())) > 1:
+                told = " and ".join(quoted(name) for name in list(clocks)[:2])
+                raise RecordingError(
+                    f"{self.path.name}: {told} start or step differently in time; resample them to one time"
+                )
+            columns[self.time_axis or 0] = time
+        return Columns([columns[want.index] for want in wanted], sample_place, _notes(self.said))
+
+
+def _header(channel: Any, repeated: bool) -> Header:
+    name, unit = split_header(channel.name)
+    text = f"{channel.group_name}/{channel.name}" if repeated else channel.name
+    stated = str(channel.properties.get("unit_string", "") or "").strip()
+    dated = channel.dtype is not None and np.dtype(channel.dtype).kind == "M"
+    return Header(name, "s" if dated else (stated or unit), text)
+
+
+def _waveform_time(channel: Any) -> FloatArray:
+    start = float(channel.properties.get("wf_start_offset", 0.0))
+    return start + float(channel.properties["wf_increment"]) * np.arange(len(channel), dtype=np.float64)
+
+
+def _notes(said: Sequence[str]) -> tuple[str, ...]:
+    # npTDMS reads a file that was cut short as far as it goes, and only logs it.
+    return tuple(f"npTDMS warns: {message}" for message in dict.fromkeys(said))
+
+
+def _clock(channel: Any) -> tuple[object, ...]:
+    keys = ("wf_increment", "wf_start_offset", "wf_start_time")
+    return tuple(str(channel.properties.get(key, 0.0)) for key in keys)

@@ -1,0 +1,96 @@
+"""The rows of a file that can be used: those that lack a value are skipped and told, never filled."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .formats import Columns, Header, RecordingError
+from .formats.table import quoted
+
+FloatArray = NDArray[np.float64]
+
+MOST_BLANK = 0.1
+"""The share of rows that may lack a value; with more, the columns were not recorded together."""
+
+MOST_NAMED = 12
+"""How many rows a note names one by one."""
+
+OPTIONAL = ("pressure", "temperature", "speed")
+"""The channels a recording can do without."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The complete rows, by channel in the file's units: the sample each came from, and what was skipped."""
+
+    path: Path
+    headers: Mapping[str, Header]
+    values: dict[str, FloatArray]
+    kept: NDArray[np.intp] | None
+    columns: Columns
+    notes: tuple[str, ...]
+
+    def place(self, index: int) -> str:
+        """Where in the file the row of that number stands."""
+        return self.columns.place(index if self.kept is None else int(self.kept[index]))
+
+    def error(self, index: int, channel: str, what: str) -> RecordingError:
+        """The error for one value, with its place in the file."""
+        header = self.headers.get(channel)
+        column = f", column {quoted(header.text)}" if header else ""
+        return RecordingError(f"{self.path.name}, {self.place(index)}{column}: {what}")
+
+
+def complete_rows(path: Path, headers: Mapping[str, Header], columns: Columns) -> Rows:
+    """The rows with a value in every required channel; an optional channel with many blanks is left out.
+
+    Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
+    """
+    values = dict(zip(headers, columns.values, strict=True))
+    samples = len(values["time"])
+    if samples == 0:
+        raise RecordingError(
+            f"{path.name}: has a header and no rows below it; record again, or export it anew"
+        )
+    # The greatest value is NaN as soon as one is: one pass, and no array of flags for a clean column.
+    blank = {name: np.isnan(column) for name, column in values.items() if np.isnan(column.max())}
+    notes: list[str] = []
+    kept: NDArray[np.intp] | None = None
+    if blank:
+        none = np.zeros(samples, dtype=bool)
+        empty = np.logical_and.reduce([blank.get(name, none) for name in values])
+        for name in [name for name in OPTIONAL if name in blank]:
+            missing = int(np.count_nonzero(blank[name] & ~empty))
+            if missing > MOST_BLANK * samples:
+                notes.append(f"{name} left out: {missing} of {samples} rows have no value for it")
+                del blank[name], values[name]
+        lacking = np.logical_or.reduce([none, *blank.values()])
+        partial = np.flatnonzero(lacking & ~empty)
+        channels = " and ".join(name for name in blank if np.any(blank[name][partial]))
+        if len(partial) > MOST_BLANK * samples:
+            raise RecordingError(
+                f"{path.name}: {len(partial)} of {samples} rows have no value for {channels} "
+                f"({columns.place(int(partial[0]))} the first); delete them, or record the channels together"
+            )
+        if len(partial):
+            notes.append(f"skipped for want of {channels}: {_places(columns, partial)}")
+        if np.any(empty):
+            notes.append(f"skipped as empty: {_places(columns, np.flatnonzero(empty))}")
+        kept = np.flatnonzero(~(lacking | empty))
+        values = {name: column[kept] for name, column in values.items()}
+    left = len(values["time"])
+    if left < 2:
+        raise RecordingError(
+            f"{path.name}: has {'a single row' if left else 'no row'} with a value in every column; "
+            "a recording needs at least two"
+        )
+    return Rows(path, headers, values, kept, columns, tuple(notes))
+
+
+def _places(columns: Columns, rows: NDArray[np.intp]) -> str:
+    named = ", ".join(columns.place(int(row)) for row in rows[:MOST_NAMED])
+    more = len(rows) - MOST_NAMED
+    return f"{named} and {more} more" if more > 0 else named

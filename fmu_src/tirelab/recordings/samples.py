@@ -1,0 +1,95 @@
+"""What a sample of a recording may be, and what is said of one that may not."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .channels import UNIT_OF
+from .formats import RecordingError
+
+FloatArray = NDArray[np.float64]
+
+GAP = 1.75
+"""A step in time longer than this many sampling intervals is a gap: at least one sample is missing."""
+
+BEYOND_BELIEF = {
+    "time": 1e12,
+    "deflection": 1e3,
+    "force": 1e8,
+    "pressure": 1e9,
+    "temperature": 1e4,
+    "speed": 1e4,
+}
+"""Magnitudes [SI] that no rig and no ride reaches: a number beyond them is not what its unit says."""
+
+
+class SampleFault(RecordingError):
+    """One sample that cannot be: its number, its channel and what is wrong with it."""
+
+    def __init__(self, index: int, channel: str, what: str) -> None:
+        super().__init__(f"sample {index + 1}, {channel}: {what}")
+        self.index = index
+        self.channel = channel
+        self.what = what
+
+
+def find_gaps(steps: FloatArray) -> NDArray[np.intp]:
+    """The steps in time longer than `GAP` of the median step."""
+    # A regular recording, the usual one, needs no median.
+    if steps.max() <= GAP * steps.min():
+        return np.empty(0, dtype=np.intp)
+    return np.flatnonzero(steps > GAP * np.median(steps))
+
+
+def gap_notes(time: FloatArray) -> list[str]:
+    """What there is to say about gaps in time [s], which may be out of order still."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(time)
+        gaps = find_gaps(steps)
+    if not len(gaps):
+        return []
+    if len(gaps) > 0.1 * len(steps):
+        return [f"time is sampled irregularly: steps from {steps.min():.6g} to {steps.max():.6g} s"]
+    longest = gaps[np.argmax(steps[gaps])]
+    which = (
+        "1 gap in time, not filled:"
+        if len(gaps) == 1
+        else f"{len(gaps)} gaps in time, not filled, the longest"
+    )
+    return [f"{which} {steps[longest]:.6g} s after {time[longest]:.6g} s"]
+
+
+def check_time(time: FloatArray) -> None:
+    """Refuse time [s] that repeats or goes back."""
+    steps = np.diff(time)
+    if steps.min() > 0.0:
+        return
+    late = int(np.argmax(steps <= 0.0)) + 1
+    before, after = float(time[late - 1]), float(time[late])
+    how = "repeats" if before == after else f"goes back from {before:.9g} s to"
+    raise SampleFault(late, "time", f"time {how} {after:.9g} s; sort the rows by time, and keep one of each")
+
+
+def check_values(name: str, values: FloatArray) -> None:
+    """Refuse what is not finite or beyond belief, by its least and greatest value."""
+    most = BEYOND_BELIEF[name]
+    least = 0.0 if name == "temperature" else -most
+    if least <= float(values.min()) and float(values.max()) <= most:
+        return
+    index = int(np.argmin((least <= values) & (values <= most)))
+    value = float(values[index])
+    if not np.isfinite(value):
+        raise SampleFault(index, name, f"{value} is no {name}; correct the value, or delete the row")
+    raise SampleFault(index, name, f"{value:.6g} {UNIT_OF[name]} cannot be; correct the value or its unit")
+
+
+def checked_radius(radius: FloatArray) -> FloatArray:
+    """Surface radii [m], read-only, with the flat limit from either side as inf; zero and NaN are refused."""
+    low, high = float(radius.min()), float(radius.max())
+    if low == -np.inf:
+        radius = np.where(radius == -np.inf, np.inf, radius)
+    if np.isnan(high) or (low <= 0.0 <= high and np.any(radius == 0.0)):
+        index = int(np.argmax(np.isnan(radius) | (radius == 0.0)))
+        value = float(radius[index])
+        raise SampleFault(index, "radius", f"{value:.6g} is no radius; write inf for flat, or delete the row")
+    radius.flags.writeable = False
+    return radius

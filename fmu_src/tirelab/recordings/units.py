@@ -1,0 +1,197 @@
+"""Units as engineers write them, read with pint and turned into SI."""
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import TirelabError
+
+if TYPE_CHECKING:
+    import pint
+
+STANDARD_ATMOSPHERE = 101_325.0
+"""Ambient pressure [Pa] taken off an absolute pressure (ISO 2533:1975, sea level)."""
+
+QUANTITIES = {"s": "time", "m": "length", "N": "force", "Pa": "pressure", "K": "temperature", "m/s": "speed"}
+"""The SI units the tool works in, and what each one measures."""
+
+_COMMON = {
+    "s": ("s", "ms", "us", "min", "h"),
+    "m": ("m", "cm", "mm", "in", "ft"),
+    "N": ("N", "kN", "lbf", "kgf"),
+    "Pa": ("Pa", "kPa", "MPa", "bar", "mbar", "psi"),
+    "K": ("K", "degC", "degF"),
+    "m/s": ("m/s", "mm/s", "km/h", "mph"),
+}
+# Spellings that mean one thing only where the quantity is known; pint reads "C" as coulomb.
+_SPELLINGS = {
+    ("K", "C"): "degC",
+    ("K", "F"): "degF",
+    ("K", "deg C"): "degC",
+    ("K", "deg F"): "degF",
+    ("K", "° C"): "degC",
+    ("K", "° F"): "degF",
+    ("K", "℃"): "degC",
+    ("K", "℉"): "degF",
+    ("s", "Sec"): "s",
+    ("s", "Seconds"): "s",
+    ("N", "Newton"): "N",
+    ("N", "Newtons"): "N",
+}
+# Names and small exponents only: pint would also work out 9**9**9 for us.
+_WORD = r"[^\W\d_]+(?:_[^\W\d_]+)*"
+_UNIT = re.compile(rf"[°Δ%]?{_WORD}(?:(?:\^|\*\*)?-?[1-4]|[²³])?")
+_JOINT = re.compile(r"\s*[*/·⋅]\s*|\s+")
+_GAUGE = re.compile(
+    r"^(?P<unit>psi|bar|mbar|Pa|hPa|kPa|MPa|atm)[\s_]*(?:\(?(?P<kind>g|ga|gauge|a|abs|absolute)\)?)$"
+)
+_MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
+_IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
+_IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
+_LIKELY = {
+    ("N", "lb"): "lbf",
+    ("N", "lbs"): "lbf",
+    ("N", "kg"): "kgf",
+    ("N", "g"): "gf",
+    ("Pa", "kgf"): "kgf/cm^2",
+    ("s", "hz"): "s, the time of each row",
+}
+FLAT_WORDS = frozenset({"flat", "inf", "+inf", "-inf", "infinity", "+infinity", "-infinity", "infinite", "∞"})
+"""What a radius may say instead of a number."""
+
+
+class UnitError(TirelabError):
+    """A unit or a length that cannot be read."""
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """The way from a unit to SI: value * multiply / divide + offset.
+
+    A divisor is kept apart because 1.27 / 100 is the double nearest to 0.0127 and 1.27 * 0.01 need not be.
+    """
+
+    unit: str
+    si: str
+    multiply: float = 1.0
+    divide: float = 1.0
+    offset: float = 0.0
+    absolute_pressure: bool = False
+
+    def to_si(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The values in SI, NaN and infinities passed on; worked out in place if the array may be written."""
+        if (self.multiply, self.divide, self.offset) == (1.0, 1.0, 0.0):
+            return values
+        si = values if values.flags.writeable else values.copy()
+        if self.multiply != 1.0:
+            si *= self.multiply
+        if self.divide != 1.0:
+            si /= self.divide
+        if self.offset != 0.0:
+            si += self.offset
+        return si
+
+
+@cache
+def _registry() -> "pint.UnitRegistry[float]":
+    # Imported here because it takes half a second that only readers of recordings need.
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@cache
+def conversion(unit: str, si: str) -> Conversion:
+    """The conversion from a unit, as a header or an engineer writes it, to an SI unit.
+
+    si_value = value * multiply / divide + offset; degC and degF with their offset; a pressure is gauge unless
+    the unit says absolute (psia, bara, "bar abs", kPa(a)): then the standard atmosphere is taken off.
+
+    Parameters: `unit`, any that pint knows of the right dimension; `si`, a key of `QUANTITIES`.
+    Errors: UnitError with the likely spelling when pint does not know the unit or it measures something else.
+    Source: pint's default registry (definitions of NIST SP 811).
+    """
+    text = " ".join(unit.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").split())
+    quantity = QUANTITIES[si]
+    gauge = _GAUGE.match(text) if si == "Pa" else None
+    absolute = gauge is not None and gauge["kind"].startswith("a")
+    spelled = gauge["unit"] if gauge else _SPELLINGS.get((si, text), text)
+    registry = _registry()
+    try:
+        if not all(_UNIT.fullmatch(word) for word in _JOINT.split(spelled)):
+            raise ValueError(spelled)
+        parsed = registry.Unit(spelled)
+        known = parsed.dimensionality
+    except Exception:  # pint raises whatever its tokenizer meets: AttributeError, AssertionError, ...
+        raise UnitError(f"unknown unit {unit[:40]!r} of {quantity}; {_advice(text, si)}") from None
+    if known != registry.Unit(si).dimensionality or "delta_" in spelled:
+        raise UnitError(f"{unit[:40]!r} is not a unit of {quantity}; {_advice(text, si)}")
+    zero, one = registry.Quantity(0.0, parsed), registry.Quantity(1.0, parsed)
+    factor = float((one - zero).to(si).magnitude)
+    divisor = round(1.0 / factor) if factor < 1.0 else 1
+    if not math.isclose(divisor * factor, 1.0, rel_tol=1e-14):
+        divisor = 1
+    offset = -STANDARD_ATMOSPHERE if absolute else float(zero.to(si).magnitude)
+    return Conversion(unit, si, 1.0 if divisor > 1 else factor, float(divisor), offset, absolute)
+
+
+def measures(unit: str, si: str) -> bool:
+    """Whether a text is a unit of what the SI unit measures."""
+    try:
+        conversion(unit, si)
+    except UnitError:
+        return False
+    return True
+
+
+def split_header(text: str) -> tuple[str, str | None]:
+    """The name and the unit of a column header such as "force [N]" or "Load cell (kN)"; no unit is None."""
+    plain = " ".join(text.split())
+    for pattern in (_IN_BRACKETS, _IN_PARENTHESES):
+        found = pattern.fullmatch(plain)
+        if found and found["name"]:
+            unit = found["unit"].strip()
+            return found["name"].strip(), unit if unit.strip("-") else None
+    return plain, None
+
+
+def parse_radius(text: str | float) -> float:
+    """A surface radius [m] from "flat", "25.4 cm", "-50.8cm" or a number in metres; flat is inf.
+
+    Valid range: any length but zero, convex > 0, concave < 0.
+    Errors: UnitError for zero, NaN, a missing unit or a unit that is not a length.
+    """
+    if isinstance(text, (int, float)):
+        radius = float(text)
+    elif text.strip().lower() in FLAT_WORDS:
+        return math.inf
+    else:
+        found = _MAGNITUDE.match(text.strip().replace("\N{MINUS SIGN}", "-"))
+        if found is None:
+            raise UnitError(
+                f"radius {text[:40]!r} cannot be read; write flat, 25.4cm (convex) or -50.8cm (concave)"
+            )
+        if not found["unit"]:
+            raise UnitError(f"radius {text[:40]!r} has no unit; write for instance {found['value']}cm")
+        value = np.array([float(found["value"])])
+        radius = float(conversion(found["unit"], "m").to_si(value)[0])
+    if math.isnan(radius) or radius == 0.0:
+        raise UnitError(
+            f"radius {str(text)[:40]!r} is no radius; write flat, 25.4cm (convex) or -50.8cm (concave)"
+        )
+    return math.inf if math.isinf(radius) else radius
+
+
+def _advice(unit: str, si: str) -> str:
+    known = {name.lower(): name for name in _COMMON[si]}
+    hint = _LIKELY.get((si, unit.lower()))
+    near = [known[name] for name in difflib.get_close_matches(unit.lower(), known, n=1, cutoff=0.5)]
+    if hint or near:
+        return f"did you mean {hint or near[0]}?"
+    return f"write {', '.join(_COMMON[si][:-1])} or {_COMMON[si][-1]}"

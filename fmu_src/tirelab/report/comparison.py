@@ -1,0 +1,100 @@
+"""A simulated force beside a recorded one: how large the difference is, and where it is largest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ..recordings.recording import Recording
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The residual (recorded minus simulated force [N]) and its largest member.
+
+    rmse: root mean square of the residual [N]
+    peak: the residual of largest magnitude [N], at sample `at`
+    """
+
+    recording: Recording
+    simulated: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    rmse: float
+    peak: float
+    at: int
+
+    def sentences(self) -> list[str]:
+        """Return the result in words."""
+        r = self.recording
+        surface = _surface(float(r.surface_radius[self.at]))
+        scale = float(np.max(np.abs(r.force)))
+        return [
+            f"{len(r.time)} samples over {r.time[-1] - r.time[0]:g} s, forces up to {scale:.0f} N",
+            f"RMSE {self.rmse:.2f} N ({100 * self.rmse / scale:.2f} % of the largest force)",
+            f"peak error {self.peak:+.1f} N (recorded minus simulated) at t = {r.time[self.at]:g} s, "
+            f"deflection {1000 * r.deflection[self.at]:.2f} mm, {surface}",
+        ]
+
+
+def compare(recording: Recording, simulated: NDArray[np.float64]) -> Comparison:
+    """Return how `simulated` [N], one value for each sample, differs from the recorded force."""
+    residual = recording.force - simulated
+    at = int(np.argmax(np.abs(residual)))
+    rmse = float(np.sqrt(np.mean(residual**2)))
+    return Comparison(recording, simulated, residual, rmse, float(residual[at]), at)
+
+
+def plot(comparison: Comparison, path: Path) -> None:
+    """Draw force over deflection, force over time and the residual over time into the PNG at `path`."""
+    r, simulated = comparison.recording, comparison.simulated
+    figure = Figure(figsize=(11, 6.5), layout="constrained")
+    loops, forces, residuals = figure.subplot_mosaic([["loop", "force"], ["loop", "residual"]]).values()
+    mm = 1000 * r.deflection
+    measured: dict[str, Any] = {"color": "0.55", "lw": 1.0, "label": "recorded"}
+    computed: dict[str, Any] = {"color": "tab:blue", "lw": 1.0, "label": "simulated"}
+    loops.plot(mm, r.force, ".", ms=2, color="0.55", label="recorded", rasterized=True)
+    order = np.lexsort((r.deflection, r.surface_radius))
+    sorted_radii = r.surface_radius[order]
+    breaks = np.flatnonzero(sorted_radii[1:] != sorted_radii[:-1]) + 1
+    for i, part in enumerate(np.split(order, breaks)):
+        loops.plot(mm[part], simulated[part], color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
+    mark: dict[str, Any] = {
+        "marker": "o",
+        "ms": 9,
+        "mfc": "none",
+        "mec": "tab:red",
+        "mew": 1.8,
+        "ls": "none",
+        "label": "peak error",
+    }
+    loops.plot(mm[comparison.at], r.force[comparison.at], **mark)
+    loops.set(xlabel="deflection [mm]", ylabel="radial force [N]", title=r.name)
+    forces.plot(r.time, r.force, **measured)
+    forces.plot(r.time, simulated, **computed)
+    forces.set(ylabel="radial force [N]")
+    residuals.plot(r.time, comparison.residual, color="tab:blue", lw=0.7)
+    residuals.plot(r.time[comparison.at], comparison.peak, **mark)
+    residuals.axhline(0.0, color="0.3", lw=0.8)
+    residuals.set(
+        xlabel="time [s]",
+        ylabel="recorded − simulated [N]",
+        title=f"RMSE {comparison.rmse:.2f} N, peak {comparison.peak:+.1f} N",
+    )
+    for axes in (loops, forces, residuals):
+        axes.grid(alpha=0.3)
+        axes.spines[["top", "right"]].set_visible(False)
+    loops.legend(frameon=False, loc="upper left")
+    forces.legend(frameon=False, loc="upper right", ncols=2)
+    figure.savefig(path, dpi=120)
+
+
+def _surface(radius: float) -> str:
+    if abs(radius) >= 1e5:
+        return "flat ground"
+    return f"{'convex' if radius > 0 else 'concave'} {100 * abs(radius):.3g} cm"

@@ -1,0 +1,1 @@
+"""The force of a tire over whole recordings, compiled."""

@@ -1,0 +1,76 @@
+"""Compiles the physics of `radialtire` for whole recordings, and keeps what was compiled between runs.
+
+Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the cache, in a
+folder named after the content of `radialtire`: numba itself looks only at the file of a loop, not at those of the
+functions it calls.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+import radialtire
+
+from ..cache_folder import keep, private_folder
+
+KERNEL = Path(__file__).with_name("kernel.py")
+
+
+@cache
+def loop(name: str, key: str, function: Callable[..., Any] | None = None) -> Callable[..., Any]:
+    """Return the loop `name` of the kernel compiled, with `function` as its `respond`.
+
+    key: an identifier under which the loop is kept, one for each `function`.
+    """
+    import numba  # here, since it takes half a second and only fits need it
+
+    module, kept = _copy_of_kernel(key)
+    if function is not None:
+        module.__dict__["respond"] = function
+    bare: FunctionType = getattr(module, name)
+    module.__dict__.update(_compiled_globals(bare, numba.njit(error_model="numpy")))
+    compiled: Callable[..., Any] = numba.njit(cache=kept, nogil=True, error_model="numpy")(bare)
+    return compiled
+
+
+def _compiled_globals(function: FunctionType, compile_one: Callable[..., Any]) -> dict[str, Any]:
+    """Return the functions of `radialtire` that `function` calls by their names, compiled with those they call."""
+    found: dict[str, Any] = {}
+    for name in function.__code__.co_names:
+        called = function.__globals__.get(name)
+        if isinstance(called, FunctionType):
+            scope = {**called.__globals__, **_compiled_globals(called, compile_one)}
+            found[name] = compile_one(FunctionType(called.__code__, scope, called.__name__))
+    return found
+
+
+def _copy_of_kernel(key: str) -> tuple[ModuleType, bool]:
+    """Return a module of the kernel's code of its own, and whether it lies where its compilation can be kept."""
+    path, folder = KERNEL, private_folder(_fingerprint())
+    if folder is not None:
+        path = folder / f"{key}.py"
+        if not path.exists() and not keep(path, KERNEL.read_bytes()):
+            path, folder = KERNEL, None
+    spec = importlib.util.spec_from_file_location(f"tirelab_kernel_{key}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # numba looks there for what it kept
+    spec.loader.exec_module(module)
+    return module, folder is not None
+
+
+@cache
+def _fingerprint() -> str:
+    """Return a short name for the content of `radialtire` and the kernel."""
+    content = hashlib.sha256(KERNEL.read_bytes())
+    for path in sorted(Path(radialtire.__file__).parent.rglob("*.py")):
+        content.update(path.read_bytes())
+    return content.hexdigest()[:16]

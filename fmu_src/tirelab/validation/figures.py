@@ -1,0 +1,176 @@
+"""The pictures of a proof, each as an SVG element to be set into a page."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .acceptance_criteria import NEAR_FLOOR
+from .metrics import ANY_EFFECT, NO_NAME, Point, naming, reliability
+from .score import Score
+
+BLUE, LIGHT_BLUE, ORANGE, GREY = "#1f6f9f", "#93c4e0", "#d9731a", "#777777"
+
+COLUMNS = 4
+"""Curves of effects side by side."""
+
+
+def svg(figure: Figure, name: str) -> str:
+    """Return a figure as an `<svg>` element without metadata, its text kept as text; names within start with `name`."""
+    text = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
+        figure.savefig(
+            text, format="svg", metadata={"Creator": None, "Date": None, "Format": None, "Type": None}
+        )
+    return text.getvalue()[text.getvalue().index("<svg") :]
+
+
+def confusion_matrix(table: Mapping[str, Mapping[str, float]]) -> Figure:
+    """Draw which name (row) was given which name (column); rows are coloured by their own part."""
+    order = sorted({*table, *(name for row in table.values() for name in row)}, key=_last)
+    rows = [name for name in order if name in table]
+    counts = np.array([[table[row].get(column, 0.0) for column in order] for row in rows])
+    counts = counts.reshape(len(rows), len(order))
+    size = 0.36 * len(order) + 2.4
+    figure = Figure(figsize=(size + 1.0, 0.36 * len(rows) + 2.4), layout="constrained")
+    axes = figure.subplots()
+    parts = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1e-9)
+    if counts.size:
+        axes.imshow(parts, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for i, j in np.argwhere(counts > 0.0):
+        right = rows[i] == order[j]
+        colour = "white" if parts[i, j] > 0.6 else ("black" if right else ORANGE)
+        axes.text(j, i, f"{counts[i, j]:.3g}", ha="center", va="center", fontsize=8, color=colour)
+    axes.set_xticks(range(len(order)), [_words(name) for name in order], rotation=60, ha="right", fontsize=8)
+    axes.set_yticks(range(len(rows)), [_words(name) for name in rows], fontsize=8)
+    axes.set(xlabel="named", ylabel="hidden")
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    return figure
+
+
+def naming_curves(curves: Mapping[str, Sequence[Point]]) -> Figure:
+    """Draw how often each effect was named over its size, with the intervals."""
+    lines = math.ceil(max(len(curves), 1) / COLUMNS)
+    figure = Figure(figsize=(11.0, 1.9 * lines + 0.5), layout="constrained")
+    grid = figure.subplots(lines, COLUMNS, sharex=True, sharey=True, squeeze=False).ravel()
+    for axes, (effect, points) in zip(grid, curves.items(), strict=False):
+        _rates(axes, points)
+        count = sum(p.rate.trials for p in points)
+        axes.set_title(f"{_words(effect)} ({count})", fontsize=9)
+        _over_sizes(axes)
+    for axes in grid[len(curves) :]:
+        axes.set_visible(False)
+    figure.supxlabel("size of the effect over the noise", fontsize=9)
+    figure.supylabel("how often it was named", fontsize=9)
+    return figure
+
+
+def reliability_diagram(points: Sequence[Point]) -> Figure:
+    """Draw how often verdicts were exact over the confidence that they stated."""
+    figure = Figure(figsize=(4.6, 4.4), layout="constrained")
+    _reliability(figure.subplots(), points)
+    return figure
+
+
+def held_out_errors(scores: Sequence[Score]) -> Figure:
+    """Draw the held-out RMSE over the noise floor, after against before, one point a trial."""
+    figure = Figure(figsize=(5.8, 4.4), layout="constrained")
+    _held_out(figure.subplots(), scores)
+    return figure
+
+
+def overview(scores: Sequence[Score], title: str) -> Figure:
+    """Draw the proof in one picture: naming over size, held-out errors, reliability."""
+    figure = Figure(figsize=(13.0, 4.2), layout="constrained")
+    named, errors, honest = figure.subplots(1, 3)
+    _rates(named, naming(scores).get(ANY_EFFECT, []))
+    _over_sizes(named)
+    named.set(xlabel="size of a hidden effect over the noise", ylabel="how often it was named")
+    _held_out(errors, scores)
+    _reliability(honest, reliability(scores))
+    figure.suptitle(title, fontsize=10)
+    return figure
+
+
+def _over_sizes(axes: Axes) -> None:
+    axes.set(xscale="log", xlim=(0.8, 150.0), ylim=(-0.05, 1.05))
+    axes.set_xticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
+    axes.minorticks_off()
+    _plain(axes)
+
+
+def _reliability(axes: Axes, points: Sequence[Point]) -> None:
+    axes.plot([0, 1], [0, 1], color=GREY, lw=1, ls="--", label="honest")
+    _rates(axes, points)
+    for p in points:
+        axes.annotate(
+            f"{p.rate.trials}",
+            (p.at, p.rate.value),
+            (-8, -12),
+            textcoords="offset points",
+            fontsize=8,
+            ha="right",
+        )
+    axes.set(
+        xlabel="stated confidence",
+        ylabel="part of the verdicts that were exact",
+        xlim=(0, 1.03),
+        ylim=(0, 1.03),
+    )
+    axes.legend(frameon=False, loc="upper left")
+    _plain(axes)
+
+
+def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
+    for outside, alike, colour, label in (
+        (False, False, LIGHT_BLUE, "tests of another kind"),
+        (False, True, BLUE, "tests like those diagnosed"),
+        (True, True, ORANGE, "the same, outside the catalogue"),
+    ):
+        held = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
+        found = [h.alike if alike else h.other for h in held]
+        if found:
+            before, after = ([getattr(e, name) / e.read_floor for e in found] for name in ("before", "after"))
+            axes.plot(before, after, "o", ms=4, alpha=0.8, mec="none", color=colour, label=label)
+    axes.axhline(1.0 + NEAR_FLOOR, color=GREY, lw=1, ls="--", label="10 % above the floor")
+    axes.axline((1.0, 1.0), slope=1.0, color=GREY, lw=1, ls=":", label="no better than before")
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlabel("held-out RMSE of the believed tire over the noise floor")
+    axes.set_ylabel("of the corrected tire")
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, 0.95), max(high, 2.0))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
+        axis.set_minor_formatter(mpl.ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
+    axes.legend(frameon=False, fontsize=8)
+    _plain(axes)
+
+
+def _rates(axes: Axes, points: Sequence[Point]) -> None:
+    if not points:
+        return
+    values = np.array([p.rate.value for p in points])
+    low, high = np.array([p.rate.interval for p in points]).T
+    spread = np.maximum(np.stack([values - low, high - values]), 0.0)
+    axes.errorbar([p.at for p in points], values, spread, fmt="o-", ms=4, lw=1.2, capsize=2, color=BLUE)
+
+
+def _plain(axes: Axes) -> None:
+    axes.grid(alpha=0.3)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _last(name: str) -> tuple[int, str]:
+    """Names in order of the alphabet, then those that are no effects."""
+    return ({"recalibration": 1, "unknown": 2, "none": 3, NO_NAME: 4}.get(name, 0), name)

@@ -1,0 +1,232 @@
+"""The figures of a proof from the scores of its trials, each with its 95 % interval."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.stats import binomtest
+
+from ..diagnosis.diagnosis_file import NOTHING
+from .score import Score
+
+CONFIDENCE = 0.95
+"""Coverage of all intervals."""
+
+SIZE_EDGES = (0.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf)
+"""Classes of effect size over noise: octaves, as the rig draws sizes evenly over the logarithm from 1 to 30."""
+
+CONFIDENCE_EDGES = (0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0)
+"""Classes of stated confidence, closer where verdicts are."""
+
+ANY_EFFECT = "any effect"
+"""Name of the curve over all effects together."""
+
+RESAMPLES = 2000
+
+NO_NAME = "(nothing)"
+"""Column of the confusion matrix for an effect in whose place nothing was named, row for a name in place of nothing."""
+
+
+@dataclass(frozen=True)
+class Rate:
+    """`hits` of `trials`, and the interval of the rate behind them (Wilson 1927, J. Am. Stat. Assoc. 22, 209)."""
+
+    hits: int
+    trials: int
+
+    @property
+    def value(self) -> float:
+        """The rate; NaN where there is no trial."""
+        return self.hits / self.trials if self.trials else float("nan")
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval; everything where there is no trial."""
+        if not self.trials:
+            return 0.0, 1.0
+        found = binomtest(self.hits, self.trials).proportion_ci(CONFIDENCE, method="wilson")
+        return float(found.low), float(found.high)
+
+    @classmethod
+    def of(cls, answers: Iterable[bool]) -> Rate:
+        """Count answers that are true."""
+        listed = list(answers)
+        return cls(sum(listed), len(listed))
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mean over `trials`, and its interval by resampling them (percentiles of 2000 bootstrap means)."""
+
+    value: float
+    interval: tuple[float, float]
+    trials: int
+
+    @classmethod
+    def of(cls, values: Iterable[float]) -> Mean:
+        """The mean of some values; NaN where there is none."""
+        listed = np.array(list(values), dtype=np.float64)
+        if listed.size == 0:
+            return cls(float("nan"), (float("nan"), float("nan")), 0)
+        rng = np.random.default_rng(1)
+        means = listed[rng.integers(listed.size, size=(RESAMPLES, listed.size))].mean(axis=1)
+        tail = 50.0 * (1.0 - CONFIDENCE)
+        low, high = np.percentile(means, [tail, 100.0 - tail])
+        return cls(float(listed.mean()), (float(low), float(high)), int(listed.size))
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point of a curve: class from `low` to `high`, mean of what is on the abscissa, and a rate."""
+
+    low: float
+    high: float
+    at: float
+    rate: Rate
+
+
+def exact(scores: Sequence[Score]) -> Rate:
+    """How often exactly a right set was named; a failed diagnosis is a miss."""
+    return Rate.of(s.exact for s in scores)
+
+
+def among(scores: Sequence[Score]) -> Rate:
+    """How often a right set was the verdict or one of its rivals."""
+    return Rate.of(s.among for s in scores)
+
+
+def false_alarms(scores: Sequence[Score]) -> Rate:
+    """How often something was named where nothing was hidden, of the trials in which nothing was hidden."""
+    return Rate.of(s.false_alarm for s in scores if s.kind == "none")
+
+
+def recognised(scores: Sequence[Score]) -> Rate:
+    """How often "unknown" was said where something outside of the catalogue was hidden."""
+    return Rate.of(s.recognised for s in scores if s.open)
+
+
+def wrongly_unknown(scores: Sequence[Score]) -> Rate:
+    """How often "unknown" was said where all that was hidden is in the catalogue."""
+    return Rate.of(s.recognised for s in scores if not s.open)
+
+
+def near_floor(scores: Sequence[Score], within: float, *, alike: bool, cleared: bool = False) -> Rate:
+    """How often the corrected tire's held-out RMSE is at most 1 + `within` times the noise floor, inside the catalogue.
+
+    alike: on tests of the kinds that were diagnosed, or on those of other kinds
+    cleared: whether the tire is told the motion without the noise of its reading
+    A failed diagnosis, and a verdict without a corrected tire, count as misses.
+    """
+    return Rate.of(
+        s.held_out is not None
+        and (s.held_out.alike if alike else s.held_out.other).near(within, cleared=cleared)
+        for s in scores
+        if not s.open
+    )
+
+
+def brier(scores: Sequence[Score]) -> Mean:
+    """Brier score of the stated confidence: mean of (confidence - exact)^2 over all verdicts.
+
+    Failed diagnoses state no confidence and are left out.
+    Source: Brier, Monthly Weather Review 78, 1 (1950).
+    """
+    return Mean.of((s.confidence - float(s.exact)) ** 2 for s in scores if s.confidence is not None)
+
+
+def reliability(scores: Sequence[Score]) -> list[Point]:
+    """How often verdicts are exact, by classes of their stated confidence."""
+    pairs = [(s.confidence, s.exact) for s in scores if s.confidence is not None]
+    return _curve(pairs, CONFIDENCE_EDGES)
+
+
+def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:
+    """How often each hidden effect, and any of them, was named, by classes of its size over the noise.
+
+    Trials in which a set without the effect counts as right too (the recordings cannot show it) are left out.
+    """
+    pairs: dict[str, list[tuple[float, bool]]] = defaultdict(list)
+    for s in scores:
+        for effect, size in s.sizes.items():
+            if s.demands(effect):
+                pairs[effect].append((size, s.named(effect)))
+    everything = [pair for listed in pairs.values() for pair in listed]
+    curves = {ANY_EFFECT: _curve(everything, SIZE_EDGES)} if everything else {}
+    return curves | {effect: _curve(pairs[effect], SIZE_EDGES) for effect in sorted(pairs)}
+
+
+def _curve(pairs: Sequence[tuple[float, bool]], edges: Sequence[float]) -> list[Point]:
+    """Points of the classes that hold anything; a value at an edge belongs to the class below it."""
+    points = []
+    for low, high in pairwise(edges):
+        inside = [(x, hit) for x, hit in pairs if low < x <= high or (x == low == edges[0])]
+        if inside:
+            at = float(np.mean([x for x, _ in inside]))
+            points.append(Point(low, high, at, Rate.of(hit for _, hit in inside)))
+    return points
+
+
+def confusion(scores: Sequence[Score]) -> dict[str, dict[str, float]]:
+    """How often each hidden name (row) was given each name (column).
+
+    A name that is both hidden and named is a hit. Of a set in which names are missing and others are too many, each
+    missing one was taken for the others in equal parts; with none too many it was taken for nothing. Names that are
+    too many while none is missing stand in the row of nothing. Every other row sums to the trials that hold its name.
+    """
+    table: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
+    for s in scores:
+        if s.verdict is None:
+            continue
+        true, said = s.reference, s.verdict
+        missing, extra = true - said, said - true - NOTHING
+        for name in true & said:
+            table[name][name] += 1.0
+        for name in missing:
+            for other in extra or {NO_NAME}:
+                table[name][other] += 1.0 / max(len(extra), 1)
+        if not missing:
+            for other in extra:
+                table[NO_NAME][other] += 1.0
+    return {row: dict(columns) for row, columns in table.items()}
+
+
+@dataclass(frozen=True)
+class PlaceSummary:
+    """Overlaps for one effect along one coordinate: trials, median, and how often at least half."""
+
+    effect: str
+    by: str
+    median: float
+    half: Rate
+
+
+def places(scores: Sequence[Score]) -> list[PlaceSummary]:
+    """How well the places of confined effects were found, whether or not the effect was named."""
+    overlaps: dict[tuple[str, str], list[float]] = defaultdict(list)
+    for s in scores:
+        for place in s.places:
+            overlaps[place.effect, place.by].append(place.overlap)
+    return [
+        PlaceSummary(effect, by, float(np.median(values)), Rate.of(v >= 0.5 for v in values))
+        for (effect, by), values in sorted(overlaps.items())
+    ]
+
+
+def separations(scores: Sequence[Score]) -> dict[str, Rate]:
+    """What became of rivals when the suggested test was run: of those with the truth among them, and of all."""
+    found = [s.separation for s in scores if s.separation is not None]
+    true = [x for x in found if x.truth_among]
+    outcomes = ("told right", "told wrong", "still rivals", "no test", "failed")
+    return {
+        "truth among the rivals": Rate(len(true), len(found)),
+        **{f"{o}, truth among the rivals": Rate.of(x.outcome == o for x in true) for o in outcomes},
+    }
+
+
+def by_kind(scores: Sequence[Score], figure: Callable[[Sequence[Score]], Rate]) -> dict[str, Rate]:
+    """A figure for every kind of trial."""
+    return {kind: figure([s for s in scores if s.kind == kind]) for kind in sorted({s.kind for s in scores})}

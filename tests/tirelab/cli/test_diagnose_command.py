@@ -1,0 +1,290 @@
+"""tirelab diagnose: what it prints, what it writes, the contract of diagnosis.json, and its refusals."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from drives import Drive, flat_force, read, ride, triangle
+from radialtire import CATALOGUE, TireModel, read_tire
+from tirelab.cli import diagnose as diagnose_command
+from tirelab.diagnosis.verdict import Verdict
+from tirelab.fmu.replay import replay
+from tirelab.recordings.recording import Recording, read_recording, write_recording
+
+NUMBER = (int, float)
+
+
+def saved(drive: Drive, folder: Path) -> Path:
+    path = folder / f"{drive.name}.csv"
+    write_recording(
+        Recording(drive.name, drive.time, drive.deflection, drive.surface_radius, drive.force), path
+    )
+    return path
+
+
+def damped(name: str, seed: int) -> Drive:
+    """A ride with 500 N s/m of damping, under 5 N of noise."""
+    time, deflection, rate = ride(seed, samples=4000)
+    return read(name, time, deflection, flat_force(deflection) + 500.0 * rate, seed)
+
+
+def run(*arguments: str | Path) -> Result:
+    result = CliRunner().invoke(diagnose_command.command, [str(a) for a in arguments])
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+@pytest.fixture(scope="module")
+def rides(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a recording to be fitted and one to be held out."""
+    folder = tmp_path_factory.mktemp("rides")
+    saved(damped("ride", 1), folder)
+    saved(damped("kept", 2), folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def done(rides: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path, Verdict]:
+    """A diagnosis with a recording held out: what was printed, the folder, and the verdict."""
+    out = tmp_path_factory.mktemp("damped") / "deep" / "out"
+    found: list[Verdict] = []
+    with pytest.MonkeyPatch.context() as patch:
+        genuine = diagnose_command.diagnose
+        patch.setattr(
+            diagnose_command, "diagnose", lambda *a, **k: found.append(genuine(*a, **k)) or found[0]
+        )
+        result = run(rides / "ride.csv", "--held-out", rides / "kept.csv", "--out", out)
+    return result, out, found[0]
+
+
+@pytest.fixture
+def known(done: tuple[Result, Path, Verdict], monkeypatch: pytest.MonkeyPatch) -> Verdict:
+    """The verdict of `done`, which the command is given without thinking again."""
+    monkeypatch.setattr(diagnose_command, "diagnose", lambda *_, **__: done[2])
+    return done[2]
+
+
+def check_contract(content: Any) -> None:
+    """The contract of diagnosis.json, schema 1, written out by hand."""
+    top = {"schema", "verdict", "where", "fit", "tire", "corrected_fmu", "report"}
+    assert content.keys() == top | {"held_out_by"}
+    assert content["schema"] == 1
+    assert (content["tire"], content["corrected_fmu"], content["report"]) == (
+        "tire.json",
+        "BicycleTire.fmu",
+        "report.html",
+    )
+
+    verdict = content["verdict"]
+    keys = {"effects", "confidence", "alternatives", "unexplained", "summary", "separating_test"}
+    assert verdict.keys() == keys
+    for effect in verdict["effects"]:
+        assert effect.keys() == {"name", "parameters", "share"}
+        assert effect["name"] in {*CATALOGUE, "recalibration"}
+        assert 0.0 <= effect["share"] <= 1.0
+        for parameter in effect["parameters"].values():
+            assert parameter.keys() == {"value", "std", "unit"}
+            assert math.isfinite(parameter["value"])
+            assert parameter["std"] is None or parameter["std"] >= 0.0
+            assert isinstance(parameter["unit"], str)
+    assert 0.0 <= verdict["confidence"] <= 1.0
+    for names in verdict["alternatives"]:
+        assert isinstance(names, list)
+        assert all(isinstance(name, str) for name in names)
+    assert isinstance(verdict["unexplained"], bool)
+    assert isinstance(verdict["summary"], str)
+    assert verdict["summary"]
+    assert verdict["separating_test"] is None or isinstance(verdict["separating_test"], dict)
+
+    for place in content["where"]:
+        keys = {"by", "from", "to", "unit", "share", "mean_residual"}
+        assert place.keys() - {"recording"} == keys | {"label", "samples", "chance"}
+        assert isinstance(place["by"], str)
+        assert isinstance(place["unit"], str)
+        assert all(
+            isinstance(place[edge], NUMBER) or place[edge] in ("inf", "-inf") for edge in ("from", "to")
+        )
+        assert 0.0 <= place["share"] <= 1.0
+        assert math.isfinite(place["mean_residual"])
+
+    fit = content["fit"]
+    assert fit.keys() == {"noise", "before", "after", "held_out_before", "held_out_after"}
+    for name, value in fit.items():
+        assert (value is None and name.startswith("held_out")) or value >= 0.0
+
+
+def rmse(recording: Recording, force: Any) -> float:
+    return float(np.sqrt(np.mean((recording.force - force) ** 2)))
+
+
+def test_the_files_are_written_and_keep_the_contract(done: tuple[Result, Path, Verdict]) -> None:
+    result, out, _ = done
+    assert result.exit_code == 0, result.output
+    names = {"tire.json", "BicycleTire.fmu", "diagnosis.json", "report.html"}
+    assert {f.name for f in out.iterdir()} == names
+    content = json.loads((out / "diagnosis.json").read_text(), parse_constant=pytest.fail)
+    check_contract(content)
+    assert [e["name"] for e in content["verdict"]["effects"]] == ["viscous_damping"]
+
+
+def test_the_errors_are_those_of_the_corrected_fmu(done: tuple[Result, Path, Verdict], rides: Path) -> None:
+    """Before: the article's law by hand (its file is written to 12 digits). After: the FMU that was written."""
+    _, out, _ = done
+    fit = json.loads((out / "diagnosis.json").read_text())["fit"]
+    for name, prefix in (("ride", ""), ("kept", "held_out_")):
+        recording = read_recording(rides / f"{name}.csv")
+        assert fit[f"{prefix}before"] == pytest.approx(
+            rmse(recording, flat_force(recording.deflection)), rel=1e-9
+        )
+        again = replay(out / "BicycleTire.fmu", recording)
+        assert fit[f"{prefix}after"] == pytest.approx(rmse(recording, again), rel=1e-12)
+        assert fit[f"{prefix}after"] < 0.5 * fit[f"{prefix}before"]
+
+
+def test_the_corrected_tire_says_what_it_is(done: tuple[Result, Path, Verdict]) -> None:
+    _, out, _ = done
+    tire = read_tire(out / "tire.json")
+    assert tire.name == f"{TireModel().name}, corrected"
+    assert "tirelab diagnose with ride" in tire.source
+    assert [effect.name for effect, _ in tire.effects] == ["viscous_damping"]
+
+
+def test_the_terminal_report_is_short_and_plain(done: tuple[Result, Path, Verdict]) -> None:
+    result, _, _ = done
+    lines = result.stdout.splitlines()
+    assert lines[0] == "Left out: viscous damping."
+    assert len(lines) < 50
+    assert "\x1b" not in result.output
+    assert max(map(len, lines)) <= diagnose_command.COLUMNS
+    told = " ".join(" ".join(lines).split())
+    for words in ("not seen by the fit", "where they part", "N·s/m", "force for each m/s", "report.html"):
+        assert words in told
+    assert result.stderr == ""
+
+
+def test_the_page_names_the_command_and_both_recordings(done: tuple[Result, Path, Verdict]) -> None:
+    page = (done[1] / "report.html").read_text(encoding="utf-8")
+    for words in ("tirelab diagnose", "--held-out", "ride.csv", "kept.csv", "Hull, Wang &amp; Moore 1996"):
+        assert words in page
+
+
+def test_rivals_come_with_a_test_that_the_rig_can_run(tmp_path: Path) -> None:
+    """Friction on a triangle at one rate on one surface: no recording of this kind tells it from viscosity."""
+    time, deflection = triangle()
+    way = np.where(time / 4.0 % 1.0 < 0.5, 1.0, -1.0)
+    force = np.maximum(flat_force(deflection) + 28.0 * way * np.minimum(deflection / 1e-3, 1.0), 0.0)
+    file = saved(read("press", time, deflection, force, 4), tmp_path)
+    result = run(file, "--out", tmp_path / "out", "--json", "--quiet")
+    assert result.exit_code == 0, result.output
+    content = json.loads(result.stdout, parse_constant=pytest.fail)
+    assert result.stdout == (tmp_path / "out" / "diagnosis.json").read_text(encoding="utf-8")
+    check_contract(content)
+    assert content["fit"]["held_out_after"] < 0.5 * content["fit"]["held_out_before"]
+    assert content["held_out_by"].startswith("time block ")
+    assert content["verdict"]["alternatives"]
+    test = content["verdict"]["separating_test"]
+    assert test["file"] == "separating_test.csv"
+    table = np.genfromtxt(tmp_path / "out" / test["file"], delimiter=",", names=True, deletechars="")
+    assert table.dtype.names == ("time_[s]", "deflection_[cm]", "radius_[cm]")
+    assert np.all(np.diff(table["time_[s]"]) > 0.0)
+    assert table["deflection_[cm]"].max() == pytest.approx(100.0 * test["amplitude"], abs=1e-6)
+    assert "The test that would tell" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_folder_means_its_recordings(known: Verdict, rides: Path, tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "separating_test.csv").write_text("of an earlier diagnosis")
+    result = run(rides, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "ride.csv" in page
+    assert "kept.csv" in page
+    assert not (tmp_path / "out" / "separating_test.csv").exists()
+
+
+def test_an_fmu_that_does_something_else_is_told(
+    known: Verdict, rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagnose_command, "replay", lambda fmu, r: replay(fmu, r) + 3.0)
+    result = run(rides / "ride.csv", "--out", tmp_path)
+    assert result.exit_code == 0
+    assert "on ride the corrected FMU differs by up to 3 N from the simulation" in " ".join(
+        result.stdout.split()
+    )
+    assert "differs by up to 3 N" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_what_reading_did_is_told(known: Verdict, rides: Path, tmp_path: Path) -> None:
+    turned = tmp_path / "turned.csv"
+    rows = (rides / "ride.csv").read_text().splitlines()
+    pairs = [row.rsplit(",", 1) for row in rows[1:]]
+    turned.write_text("\n".join([rows[0], *(f"{left},{-float(force)!r}" for left, force in pairs)]) + "\n")
+    result = run(turned, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("note: turned: ")
+
+
+def test_bad_input_ends_with_one_sentence(rides: Path, tmp_path: Path) -> None:
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join((rides / "ride.csv").read_text().splitlines()[:40]) + "\n")
+    silent = saved(_silent(), tmp_path)
+    for arguments, words in (
+        ([rides / "none.csv"], "there is no such file"),
+        ([empty], "holds no recording"),
+        ([rides, rides / "ride.csv"], "is given twice"),
+        ([rides / "ride.csv", "--held-out", rides / "ride.csv"], "is given twice"),
+        ([short], "samples; at least 100 are needed"),
+        ([silent], "does not follow its deflection"),
+        ([rides / "ride.csv", "--tire", tmp_path / "none.json"], "name a tire file that can be read"),
+        ([], "Missing argument"),
+    ):
+        result = run(*arguments, "--out", tmp_path / "out")
+        assert result.exit_code == 2, (words, result.output)
+        assert words in " ".join(result.stderr.split())
+        assert result.stdout == ""
+    assert not (tmp_path / "out").exists()
+
+
+def _silent() -> Drive:
+    """A load cell that was not connected: noise alone."""
+    time, deflection, _ = ride(3, samples=2000)
+    return read("silent", time, deflection, np.full(time.size, 50.0), 3)
+
+
+def test_a_folder_that_cannot_be_written_is_told_at_once(
+    rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagnose_command, "diagnose", lambda *_, **__: pytest.fail("it began to work"))
+    taken = tmp_path / "taken"
+    taken.write_text("a file")
+    result = run(rides / "ride.csv", "--out", taken / "deeper")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
+
+
+def test_each_gives_a_verdict_for_every_recording(rides: Path, tmp_path: Path) -> None:
+    (tmp_path / "broken.csv").write_text("no table\n")
+    result = run("--each", rides, tmp_path / "broken.csv", "--jobs", "1", "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    summary = (tmp_path / "out" / "summary.csv").read_text(encoding="utf-8-sig")
+    assert len(summary.splitlines()) == 1 + 3
+    assert summary.count("viscous damping") == 2
+    assert "broken.csv: no comma" in summary
+    assert (tmp_path / "out" / "summary.html").is_file()
+
+
+@pytest.mark.parametrize("options", [("--each", "--json"), ("--jobs", "2"), ("--dask", "tcp://nowhere:1")])
+def test_options_that_do_not_go_together_are_told(
+    rides: Path, tmp_path: Path, options: tuple[str, ...]
+) -> None:
+    result = run(rides, *options, "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "--each" in result.output

@@ -1,0 +1,74 @@
+"""The test that would tell rivals apart."""
+
+import numpy as np
+import pytest
+from radialtire import CATALOGUE, TireModel
+from scipy.stats import norm
+from tirelab.diagnosis.discriminating_test import DECISIVE, WAVEFORMS, Limits, separate
+from tirelab.engine.refit import assemble, knobs_of
+
+FRICTION = knobs_of(("rate_independent_hysteresis",), (np.inf,), False, 0.025)
+
+
+def fitted(noise):
+    values = np.array([30.0, 0.0, 1e-3])
+    friction = assemble(TireModel(), FRICTION, values, (np.inf,))
+    viscous = TireModel(effects=((CATALOGUE["viscous_damping"], (2500.0, 1.0, 0.0, 0.0)),))
+    return separate(
+        (viscous, ("viscous_damping",)),
+        (friction, ("rate_independent_hysteresis",)),
+        TireModel(),
+        FRICTION,
+        values,
+        (np.inf,),
+        noise,
+        Limits(),
+    )
+
+
+def test_friction_and_viscosity_are_told_apart_by_more_than_one_rate():
+    found = fitted(6.0)
+    rate = np.abs(np.gradient(found.test.deflection, found.test.time))
+    assert rate.max() > 5.0 * np.median(rate[rate > 1e-6]) or np.ptp(np.unique(rate.round(3))) > 0.05
+    assert found.separation > 100.0
+
+
+def test_the_separation_is_in_units_of_the_noise():
+    assert fitted(3.0).separation == pytest.approx(2.0 * fitted(6.0).separation, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", sorted(WAVEFORMS))
+def test_every_waveform_keeps_within_the_rig(name):
+    limits = Limits(deepest=0.02, fastest=0.15, step=0.005, longest=40.0)
+    path = WAVEFORMS[name](limits)
+    assert path.min() >= -1e-12
+    assert path.max() <= 0.02 + 1e-12
+    # A difference of samples may exceed a sine's own rate by rounding only; a corner never does.
+    assert np.abs(np.diff(path)).max() / limits.step <= 0.15 * 1.02
+
+
+def test_the_contract_of_a_test():
+    entry = fitted(6.0).to_contract()
+    assert entry["surfaces"] == ["inf"]
+    assert "sentence" in entry
+
+
+def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_thousand():
+    ratio = norm(DECISIVE**2 / 2.0, DECISIVE)
+    assert ratio.sf(np.log(1000.0)) == pytest.approx(0.95, abs=0.005)
+
+
+def test_the_same_force_under_other_names_cannot_be_told_apart():
+    """Friction against itself: whatever is driven, the refit takes up all of the difference."""
+    values = np.array([30.0, 0.0, 1e-3])
+    tire = assemble(TireModel(), FRICTION, values, (np.inf,))
+    names = (("rate_independent_hysteresis",), ("viscous_damping",))
+    found = separate(
+        (tire, names[0]), (tire, names[1]), TireModel(), FRICTION, values, (np.inf,), 6.0, Limits()
+    )
+    assert not found.tells
+    assert found.sentence.startswith(
+        "No motion within the rig's limits would tell rate-independent hysteresis from"
+    )
+    assert "5.7 are needed" in found.sentence
+    assert fitted(6.0).tells

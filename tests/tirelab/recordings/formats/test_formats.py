@@ -1,0 +1,64 @@
+"""In every format a damaged file is refused in one sentence."""
+
+import builtins
+import importlib
+from pathlib import Path
+
+import pytest
+from one_recording import refusal
+from tirelab.recordings.formats import LOADERS
+
+
+class TestEveryFormat:
+    @pytest.mark.parametrize(
+        "suffix", [suffix for suffix in LOADERS if suffix not in (".csv", ".dat", ".asc")]
+    )
+    def test_an_empty_or_damaged_file_is_told_in_one_sentence(self, tmp_path: Path, suffix: str) -> None:
+        path = tmp_path / f"a{suffix}"
+        path.write_bytes(b"")
+        assert "is empty" in refusal(path)
+        for content in (
+            b"MDF     4.10    ",
+            b"PK\x03\x04" + b"\x00" * 60,
+            b"PAR1" * 9,
+            b"TDSm" + b"\xff" * 40,
+            b"\x00" * 300,
+        ):
+            path.write_bytes(content)
+            assert path.name in refusal(path)
+
+    @pytest.mark.parametrize(
+        ("start", "said"),
+        [
+            (b"PK\x03\x04", "Excel"),
+            (b"\x1f\x8b", "gzip"),
+            (b"PAR1", "Parquet"),
+            (b"\x00", "not text"),
+        ],
+    )
+    def test_what_only_calls_itself_csv_is_told(self, tmp_path: Path, start: bytes, said: str) -> None:
+        (tmp_path / "a.csv").write_bytes(start + b"\x00\x01" * 20)
+        assert said in refusal(tmp_path / "a.csv")
+
+    @pytest.mark.parametrize(("name", "said"), [("a.xls", ".xlsx"), ("a.hdf5", "'.hdf5'"), ("a", "''")])
+    def test_a_suffix_that_cannot_be_read_is_told(self, tmp_path: Path, name: str, said: str) -> None:
+        (tmp_path / name).write_bytes(b"anything")
+        assert said in refusal(tmp_path / name)
+
+    @pytest.mark.parametrize(
+        ("suffix", "module", "extra"),
+        [(".mf4", "asammdf", "mdf"), (".tdms", "nptdms", "tdms"), (".xlsx", "openpyxl", "excel")],
+    )
+    def test_a_library_that_is_not_installed_is_named_with_its_extra(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str, module: str, extra: str
+    ) -> None:
+        def absent(name: str) -> object:
+            if name == module:
+                raise ImportError(name)
+            return builtins.__import__(name)
+
+        monkeypatch.setattr(importlib, "import_module", absent)
+        (tmp_path / f"a{suffix}").write_bytes(b"anything")
+        said = refusal(tmp_path / f"a{suffix}")
+        assert module in said
+        assert f"pip install 'tirelab[{extra}]'" in said

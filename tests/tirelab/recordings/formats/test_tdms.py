@@ -1,0 +1,54 @@
+"""The recording comes the same from TDMS, and what is none is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from one_recording import DEFLECTION, FORCE, SAMPLES, TIME, assert_the_recording, refusal
+from tirelab.recordings.recording import read_recording
+
+
+class TestTdms:
+    @pytest.fixture
+    def path(self, tmp_path: Path) -> Path:
+        nptdms = pytest.importorskip("nptdms")
+        clock = {"wf_increment": 0.01, "wf_start_offset": 0.0}
+        with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
+            writer.write_segment(
+                [
+                    nptdms.ChannelObject(
+                        "rig", "Stroke", DEFLECTION, properties={**clock, "unit_string": "mm"}
+                    ),
+                    nptdms.ChannelObject("rig", "Load", FORCE, properties={**clock, "unit_string": "kN"}),
+                    nptdms.ChannelObject("rig", "Force (kN)", FORCE, properties={"wf_increment": 0.01}),
+                    nptdms.ChannelObject("slow", "Slow", FORCE[::10], properties={"unit_string": "kN"}),
+                    nptdms.ChannelObject(
+                        "slow", "Late", FORCE, properties={"wf_increment": 0.02, "unit_string": "kN"}
+                    ),
+                    nptdms.ChannelObject("slow", "Clock", TIME, properties={"unit_string": "s"}),
+                    nptdms.ChannelObject("slow", "Remark", ["a"] * SAMPLES),
+                ]
+            )
+        return tmp_path / "a.tdms"
+
+    @pytest.mark.parametrize("force", ["Load", "Force"])
+    def test_channels_with_units_and_waveform_time(self, path: Path, force: str) -> None:
+        columns = {"deflection": "Stroke", "force": force}
+        recording = read_recording(path, columns=columns, radius="flat")
+        np.testing.assert_allclose(recording.time, TIME, atol=1e-15)
+        np.testing.assert_allclose(recording.force, FORCE * 1000.0, rtol=3e-16)
+
+    def test_time_in_a_channel(self, path: Path) -> None:
+        columns = {"time": "Clock", "deflection": "Stroke", "force": "Load"}
+        assert_the_recording(read_recording(path, columns=columns, radius="flat"))
+
+    @pytest.mark.parametrize(
+        ("force", "said"),
+        [
+            ("Slow", "unequal numbers"),
+            ("Late", "start or step differently"),
+            ("Remark", "holds text, 'a' the first"),
+        ],
+    )
+    def test_other_channels_are_refused(self, path: Path, force: str, said: str) -> None:
+        assert said in refusal(path, columns={"deflection": "Stroke", "force": force}, units={"force": "N"})

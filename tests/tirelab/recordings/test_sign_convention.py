@@ -1,0 +1,61 @@
+"""Rigs that count compression negative are recognised, and doubtful ones asked about."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from house_form import loading, refusal, write_rows
+from tirelab.recordings.recording import read_recording
+from tirelab.recordings.sign_convention import compressive_signs
+
+
+class TestSigns:
+    @pytest.mark.parametrize(
+        ("deflection_sign", "force_sign", "turned"),
+        [(-1, -1, "deflection and force"), (-1, 1, "deflection"), (1, -1, "force")],
+    )
+    def test_a_rig_that_counts_the_other_way_is_recognised(
+        self, tmp_path: Path, deflection_sign: int, force_sign: int, turned: str
+    ) -> None:
+        time, deflection, force = loading()
+        header = "time [s],deflection [cm],force [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection * deflection_sign, force * force_sign)
+        recording = read_recording(path, radius="flat")
+        np.testing.assert_allclose(recording.deflection, deflection / 100.0, rtol=1e-5)
+        np.testing.assert_allclose(recording.force, force, rtol=1e-5)
+        assert f"the rig counts compression negative: {turned} turned in sign" in recording.notes
+
+    def test_noise_lag_and_lift_off_leave_a_right_rig_as_it_is(self) -> None:
+        noise = np.random.default_rng(7)
+        x = np.sin(np.linspace(0.0, 60.0, 5000)) * 0.02
+        force = np.roll(1.6e5 * np.clip(x, 0.0, None), 20) + 20.0 * noise.normal(size=5000)
+        signs = compressive_signs(x, force)
+        assert (signs.deflection, signs.force, signs.doubt) == (1, 1, "")
+
+    def test_a_tire_in_the_air_is_left_as_it_is(self) -> None:
+        noise = np.random.default_rng(7)
+        signs = compressive_signs(
+            -0.01 + 0.005 * np.sin(np.arange(5000) / 50.0), 6.0 * noise.normal(size=5000)
+        )
+        assert (signs.deflection, signs.force, signs.doubt) == (1, 1, "")
+        signs = compressive_signs(np.linspace(-0.02, -0.01, 100), np.zeros(100))
+        assert (signs.deflection, signs.force, signs.doubt) == (1, 1, "")
+
+    def test_force_that_falls_with_deflection_is_asked_about(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        # A gap between wheel and surface that closes: positive, and smallest under load.
+        path = write_rows(
+            tmp_path / "a.csv", "time [s],deflection [cm],force [N]", time, 5.0 - deflection, force
+        )
+        said = refusal(path, radius="flat")
+        assert "force falls with deflection" in said
+        assert "--columns deflection=-NAME,force=+NAME" in said
+
+    def test_a_sign_that_the_user_settles_is_taken(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "time [s],gap [cm],force [N]", time, 5.0 - deflection, force)
+        turned = read_recording(path, radius="flat", columns={"deflection": "-gap", "force": "+force"})
+        np.testing.assert_allclose(turned.deflection, (deflection - 5.0) / 100.0, atol=1e-7)
+        assert "deflection turned in sign, as asked" in turned.notes
+        kept = read_recording(path, radius="flat", columns={"deflection": "+gap", "force": "+force"})
+        np.testing.assert_allclose(kept.deflection, (5.0 - deflection) / 100.0, atol=1e-7)

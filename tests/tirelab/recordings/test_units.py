@@ -1,0 +1,159 @@
+"""Units against their definitions (SI Brochure, NIST SP 811), and against text of any kind."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tirelab.recordings.units import (
+    QUANTITIES,
+    STANDARD_ATMOSPHERE,
+    UnitError,
+    conversion,
+    measures,
+    parse_radius,
+    split_header,
+)
+
+
+def in_si(value: float, unit: str, si: str) -> float:
+    return float(conversion(unit, si).to_si(np.array([value]))[0])
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "si", "expected"),
+    [
+        (1.0, "mm", "m", 0.001),
+        (1.0, "cm", "m", 0.01),
+        (1.0, "µm", "m", 1e-6),
+        (1.0, "\N{GREEK SMALL LETTER MU}m", "m", 1e-6),
+        (1.0, "in", "m", 0.0254),
+        (1.0, "ft", "m", 0.3048),
+        (1.0, "kN", "N", 1000.0),
+        (1.0, "lbf", "N", 4.4482216152605),
+        (1.0, "kgf", "N", 9.80665),
+        (1.0, "Newton", "N", 1.0),
+        (1.0, "kPa", "Pa", 1000.0),
+        (1.0, "bar", "Pa", 1e5),
+        (1.0, "N/mm^2", "Pa", 1e6),
+        (1.0, "N/mm²", "Pa", 1e6),
+        (1.0, "ms", "s", 0.001),
+        (1.0, "min", "s", 60.0),
+        (1.0, "km/h", "m/s", 1.0 / 3.6),
+        (1.0, "mm/s", "m/s", 0.001),
+        (0.0, "degC", "K", 273.15),
+        (20.0, "°C", "K", 293.15),
+        (20.0, "C", "K", 293.15),
+        (32.0, "degF", "K", 273.15),
+        (212.0, "F", "K", 373.15),
+        (300.0, "K", "K", 300.0),
+    ],
+)
+def test_a_unit_is_worth_what_its_definition_says(value: float, unit: str, si: str, expected: float) -> None:
+    # Two roundings of a double: what degF, divided and shifted, may lose.
+    assert in_si(value, unit, si) == pytest.approx(expected, rel=5e-16)
+
+
+def test_fifty_psi_is_the_pressure_the_article_should_have_printed() -> None:
+    # The article prints "34.7 kPa (50 psi)"; 50 lbf on a square inch are 344.7 kPa.
+    assert in_si(50.0, "psi", "Pa") == pytest.approx(344.7e3, abs=0.05e3)
+
+
+@pytest.mark.parametrize("radius", [1.27, 1.905, 2.54, 5.08, 12.7, 25.4, 38.1, 50.8, 58.4])
+def test_centimetres_become_the_double_nearest_to_the_metres_a_person_would_write(radius: float) -> None:
+    assert in_si(radius, "cm", "m") == float(f"{radius * 10:.4g}e-3")
+
+
+@pytest.mark.parametrize("unit", ["psi", "psig", "psi g", "psi(g)", "psi gauge"])
+def test_a_pressure_is_gauge_unless_it_says_absolute(unit: str) -> None:
+    assert in_si(0.0, unit, "Pa") == 0.0
+    assert not conversion(unit, "Pa").absolute_pressure
+
+
+@pytest.mark.parametrize(("value", "unit"), [(1.01325, "bara"), (101.325, "kPa abs"), (1.0, "atm(a)")])
+def test_an_absolute_pressure_loses_the_standard_atmosphere(value: float, unit: str) -> None:
+    assert conversion(unit, "Pa").absolute_pressure
+    assert in_si(value, unit, "Pa") == pytest.approx(0.0, abs=1e-15 * STANDARD_ATMOSPHERE * 4)
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "advice"),
+    [
+        ("lb", "N", "lbf"),
+        ("kg", "N", "kgf"),
+        ("KN", "N", "kN"),
+        ("PSI", "Pa", "psi"),
+        ("MM", "m", "mm"),
+        ("wibble", "m", "write m, cm, mm, in or ft"),
+        ("V", "Pa", "write Pa"),
+        ("9**9**9", "m", "unknown"),
+        ("", "s", "unknown"),
+        ("%", "N", "unknown"),
+        ("delta_degC", "K", "degC"),
+    ],
+)
+def test_a_wrong_unit_is_refused_with_the_likely_one(unit: str, si: str, advice: str) -> None:
+    with pytest.raises(UnitError, match=advice.replace("*", r"\*")):
+        conversion(unit, si)
+
+
+@given(st.text(max_size=60), st.sampled_from(sorted(QUANTITIES)))
+def test_any_text_is_a_unit_or_one_sentence(text: str, si: str) -> None:
+    try:
+        found = conversion(text, si)
+    except UnitError as error:
+        message = str(error)
+    else:
+        message = ""
+        assert math.isfinite(found.multiply * found.divide * found.offset)
+    assert "\n" not in message
+
+
+def test_nothing_is_worked_out_that_a_header_says() -> None:
+    assert not measures("__import__('os').getcwd()", "m")
+    assert not measures("2 mm", "m")
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "unit"),
+    [
+        ("force [N]", "force", "N"),
+        ("Load cell (kN)", "Load cell", "kN"),
+        ("Force (cell 2) (N)", "Force (cell 2)", "N"),
+        ("pressure [bar(g)]", "pressure", "bar(g)"),
+        ("pressure (bar(g))", "pressure", "bar(g)"),
+        ("speed[ m/s ]", "speed", "m/s"),
+        ("time [s] raw", "time", "s"),
+        ("x", "x", None),
+        ("F [-]", "F", None),
+        ("  load   cell ", "load cell", None),
+        ("[N]", "[N]", None),
+    ],
+)
+def test_a_header_is_a_name_and_a_unit(text: str, name: str, unit: str | None) -> None:
+    assert split_header(text) == (name, unit)
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"),
+    [
+        ("flat", math.inf),
+        (" Flat", math.inf),
+        ("-inf", math.inf),
+        (math.inf, math.inf),
+        ("25.4cm", 0.254),
+        ("-50.8 cm", -0.508),
+        ("\N{MINUS SIGN}50.8 cm", -0.508),
+        ("10 in", 0.254),
+        (-0.381, -0.381),
+    ],
+)
+def test_a_radius_is_flat_or_a_length(text: str | float, metres: float) -> None:
+    assert parse_radius(text) == pytest.approx(metres, rel=3e-16)
+
+
+@pytest.mark.parametrize("text", ["25.4", "0 cm", 0.0, math.nan, "nan cm", "wide", "", "25.4 kg", "cm"])
+def test_what_is_no_radius_is_refused(text: str | float) -> None:
+    with pytest.raises(UnitError, match=r"radius|not a unit of length"):
+        parse_radius(text)

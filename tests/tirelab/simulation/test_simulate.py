@@ -1,0 +1,268 @@
+"""The compiled simulation is the step of the FMU, sample by sample; and its stages are what a fit needs."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from radialtire import CATALOGUE, Effect, Hull1996, PowerLaw, TireModel
+from radialtire.effect import PLACES
+from tirelab.simulation import simulate as simulation
+from tirelab.simulation.simulate import (
+    coefficients,
+    downstream,
+    elastic_force,
+    elastic_stage,
+    respond_series,
+    simulate,
+    track,
+)
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What `simulate` takes, and nothing else."""
+
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+
+
+def stepped(tire: TireModel, motion: Motion) -> FloatArray:
+    """The force by the steps of the FMU."""
+    state = tire.rest
+    force = np.empty(motion.time.size)
+    for i in range(force.size):
+        x, R, t = motion.deflection[i], motion.surface_radius[i], motion.time[i]
+        force[i], state = tire.step(float(x), float(R), float(t), state)
+    return force
+
+
+def random_motion(seed: int, count: int = 400) -> Motion:
+    """A motion of three sines with noise, lift-off, uneven times and surfaces that change."""
+    random = np.random.default_rng(seed)
+    time = random.uniform(0.0, 1e3) + np.cumsum(random.uniform(1e-4, 0.02, count))
+    x = np.full(count, random.uniform(0.0, 0.015))
+    for _ in range(3):
+        x += random.uniform(0.0, 0.006) * np.sin(random.uniform(0.5, 30.0) * time + random.uniform(0.0, 6.0))
+    x += random.uniform(0.0, 2e-5) * random.standard_normal(count)
+    radii = random.choice([math.inf, 0.0127, 0.08, 0.3, -0.4, -0.6], 5)
+    return Motion(time, x, np.repeat(radii, math.ceil(count / 5))[:count])
+
+
+def random_values(effect: Effect, random: np.random.Generator) -> tuple[float, ...]:
+    """Values around everyday ones, the extras drawn from their starts to a third of their range."""
+    values = []
+    for p in effect.parameters:
+        if p.extra and p.off is None and random.random() < 0.7:
+            drawn = p.start + random.uniform(0.0, 0.3) * (p.maximum - p.start)
+        else:
+            drawn = p.everyday * random.uniform(0.3, 3.0)
+        values.append(min(max(p.minimum, drawn), p.maximum))
+    return tuple(values)
+
+
+def random_tire(names: list[str], seed: int) -> TireModel:
+    random = np.random.default_rng(seed)
+    effects = [(CATALOGUE[name], random_values(CATALOGUE[name], random)) for name in names]
+    effects.sort(key=lambda pair: PLACES.index(pair[0].place))
+    law = (
+        Hull1996()
+        if random.random() < 0.5
+        else PowerLaw(random.uniform(100.0, 900.0), random.uniform(0.8, 1.8))
+    )
+    return TireModel(law, tuple(effects), reading_noise=float(random.choice([0.0, 8e-6])))
+
+
+def same(tire: TireModel, motion: Motion) -> None:
+    """Hold the two to 1e-12 of the largest force: the roundings of one power or exponential, not of the method."""
+    expected = stepped(tire, motion)
+    assert np.max(np.abs(simulate(tire, motion) - expected)) <= 1e-12 * np.max(np.abs(expected))
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_one_effect_is_simulated_as_it_is_stepped(name: str, seed: int) -> None:
+    same(random_tire([name], seed), random_motion(seed))
+
+
+@given(st.lists(st.sampled_from(list(CATALOGUE)), unique=True, max_size=6), st.integers(0, 10_000))
+@settings(max_examples=40, deadline=None)
+def test_any_set_of_effects_is_simulated_as_it_is_stepped(names: list[str], seed: int) -> None:
+    same(random_tire(names, seed), random_motion(seed, 150))
+
+
+def test_a_bare_tire_has_its_law_on_every_surface() -> None:
+    motion = random_motion(7)
+    A, B = coefficients(Hull1996(), motion.surface_radius)
+    loaded = np.maximum(motion.deflection, 0.0)
+    # a second formulation: numpy's own power, within a few roundings
+    assert elastic_force(motion.deflection, A, B) == pytest.approx(A * (100.0 * loaded) ** B, rel=1e-14)
+    same(TireModel(), motion)
+
+
+def test_a_surface_that_changes_at_every_sample_is_asked_for_at_every_sample() -> None:
+    radius = np.linspace(0.05, 5.0, 50)
+    A, B = coefficients(Hull1996(), radius)
+    assert list(zip(A, B, strict=True)) == [Hull1996().coefficients(float(R)) for R in radius]
+
+
+def test_one_sample_is_a_recording() -> None:
+    motion = Motion(np.array([5.0]), np.array([0.01]), np.array([math.inf]))
+    for name in CATALOGUE:
+        same(random_tire([name], 4), motion)
+
+
+def test_zero_intervals_are_looked_at_again() -> None:
+    motion = random_motion(3)
+    repeated = Motion(*(np.repeat(a, 2) for a in (motion.time, motion.deflection, motion.surface_radius)))
+    same(random_tire(list(CATALOGUE), 5), repeated)
+
+
+@dataclass(frozen=True)
+class Moved:
+    """What is known of a motion beside its deflection."""
+
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+def test_a_motion_that_is_known_has_no_delay() -> None:
+    time = np.arange(0.0, 2.0, 0.01)
+    angle = 2.0 * np.pi * 5.0
+    motion = Motion(time, 0.012 + 0.004 * np.sin(angle * time), np.full(time.size, math.inf))
+    moved = Moved(0.004 * angle * np.cos(angle * time), -0.004 * angle**2 * np.sin(angle * time))
+    tire = TireModel(
+        effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)), (CATALOGUE["inertia"], (2.0,)))
+    )
+    elastic = simulate(TireModel(), motion)
+    expected = elastic + 300.0 * moved.rate + 2.0 * moved.acceleration
+    assert simulate(tire, motion, moved) == pytest.approx(expected, rel=1e-12)
+    # Without look-ahead a step of 0.3 of the angle leaves some of its third power.
+    assert np.max(np.abs(simulate(tire, motion) - expected)[10:]) > 0.01 * np.max(np.abs(expected - elastic))
+
+
+def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
+    time = np.arange(0.0, 2.0, 1e-3)
+    motion = Motion(time, 0.01 + 0.002 * np.sin(2.0 * np.pi * time), np.full(time.size, math.inf))
+    moved = Moved(0.004 * np.pi * np.cos(2.0 * np.pi * time), np.zeros(time.size))
+    stiffness, compliance, damping = 4e4, 1e-5, 100.0
+    law = PowerLaw(stiffness / 100.0, 1.0)
+    series = CATALOGUE["series_compliance"]
+    spring = (series, (compliance, *(p.everyday if not p.extra else p.start for p in series.parameters[1:])))
+    tire = TireModel(law, (spring, (CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0))))
+    # Of a deflection u a linear tire behind a linear spring has u / (1 + k c), and of its rate the same part.
+    part = 1.0 / (1.0 + stiffness * compliance)
+    expected = part * (stiffness * motion.deflection + damping * moved.rate)
+    # The spring's own way is differentiated over two samples: (2 pi 1 ms)^2 / 6 of the damping at the ends.
+    assert simulate(tire, motion, moved) == pytest.approx(expected, abs=0.02 * part * damping * 0.004 * np.pi)
+
+
+def test_stages_can_be_kept_and_continued() -> None:
+    tire = random_tire(["series_compliance", "pressure_leak", "viscous_damping", "inertia", "force_lag"], 8)
+    motion = random_motion(8)
+    history, force = elastic_stage(tire, motion)
+    force = np.maximum(downstream(tire, history, force, ("parallel",)), 0.0)
+    assert np.array_equal(downstream(tire, history, force, ("inertia", "reading")), simulate(tire, motion))
+
+
+@pytest.mark.parametrize(
+    ("name", "linear"),
+    [
+        ("rate_independent_hysteresis", ("slip_force", "load_share")),
+        ("viscous_damping", ("damping",)),
+        ("viscoelastic_relaxation", ("share_1", "share_2", "share_3", "share_4", "share_5")),
+        ("bottoming", ("stiffness",)),
+        ("inertia", ("mass",)),
+    ],
+)
+def test_what_enters_linearly_is_a_sum_of_columns(name: str, linear: tuple[str, ...]) -> None:
+    # the answer to a signal of zero is the sum of value times column, within roundings
+    effect = CATALOGUE[name]
+    motion = random_motion(9)
+    history, _ = elastic_stage(TireModel(effects=((effect, effect.typical),)), motion)
+    nothing = np.zeros_like(motion.time)
+    drawn = random_values(effect, np.random.default_rng(3))
+    values = {parameter.name: value for parameter, value in zip(effect.parameters, drawn, strict=True)}
+    if name == "bottoming":
+        values["onset"] = float(np.median(motion.deflection))
+    columns = []
+    for chosen in linear:
+        unit = {n: (float(n == chosen) if n in linear else v) for n, v in values.items()}
+        columns.append(values[chosen] * respond_series(effect, tuple(unit.values()), nothing, history))
+    whole = respond_series(effect, tuple(values.values()), nothing, history)
+    assert np.max(np.abs(whole)) > 0.0
+    assert np.sum(columns, axis=0) == pytest.approx(whole, abs=1e-11 * np.max(np.abs(whole)))
+
+
+def test_a_history_may_be_given_a_better_rate() -> None:
+    # a fit that may look ahead puts in the rate it knows
+    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)),))
+    motion = random_motion(10)
+    history, force = elastic_stage(tire, motion)
+    known = replace(history, rate=np.ones_like(force))
+    loaded = motion.deflection > 0.0
+    added = downstream(tire, known, force, ("parallel",)) - force
+    assert added == pytest.approx(np.where(loaded, 300.0, 0.0), abs=1e-10)
+
+
+def test_the_track_of_a_straight_line_is_its_slope() -> None:
+    time = np.linspace(0.0, 1.0, 400)
+    rate, acceleration = track(time, 0.01 + 0.02 * time, 2e-3)
+    assert rate[1:] == pytest.approx(0.02, rel=1e-6)
+    assert acceleration == pytest.approx(0.0, abs=1e-6)
+
+
+PROGRAM = """
+import json
+import numpy as np
+from radialtire import CATALOGUE, TireModel
+from tirelab.simulation.simulate import simulate
+
+class Motion:
+    time = np.linspace(0.0, 1.0, 50)
+    deflection = 0.01 + 0.005 * np.sin(9.0 * time)
+    surface_radius = np.full(50, np.inf)
+
+tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)),))
+print(json.dumps(simulate(tire, Motion).tolist()))
+"""
+
+
+def run(folder: Path) -> list[float]:
+    """The forces of PROGRAM in a fresh process that keeps what it compiles in `folder`."""
+    source = Path(simulation.__file__).parents[2]
+    environment = {**os.environ, "TIRELAB_CACHE": str(folder), "PYTHONPATH": str(source)}
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stderr == ""
+    found: list[float] = json.loads(done.stdout)
+    return found
+
+
+def test_what_was_compiled_is_kept_and_gives_the_same(tmp_path: Path) -> None:
+    first = run(tmp_path)
+    kept = sorted(tmp_path.rglob("*.nbc"))
+    assert kept
+    stamps = [path.stat().st_mtime_ns for path in kept]
+    assert run(tmp_path) == first
+    assert [path.stat().st_mtime_ns for path in sorted(tmp_path.rglob("*.nbc"))] == stamps
+
+
+def test_without_a_folder_to_keep_it_in_it_is_compiled_anew(tmp_path: Path) -> None:
+    occupied = tmp_path / "file"
+    occupied.write_text("not a folder")
+    assert run(occupied) == run(tmp_path / "cache")
