@@ -54,7 +54,7 @@ class Refusal:
 
     def told(self, verdict: Verdict) -> str:
         """Whether the tool claims one of them in every explanation that it offers."""
-        sets = [set(verdict.names), *(set(rival.names) for rival in verdict.rivals)]
+        sets = [set(verdict.names), *(set(rival.names) for rival in verdict.alternatives)]
         claimed = [name for name in self.names if all(name in names for names in sets)]
         if claimed:
             return f"CLAIMS {' and '.join(claimed)}, though {self.why}".replace("_", " ")
@@ -80,7 +80,7 @@ class Finding:
         """The finding in words."""
         v = self.verdict
         found = ", ".join(v.names) or "nothing is missing"
-        rivals = "; or ".join(" + ".join(rival.names) or "nothing" for rival in v.rivals)
+        rivals = "; or ".join(" + ".join(rival.names) or "nothing" for rival in v.alternatives)
         lines = [
             f"believed   {self.believed}",
             f"found      {found} (confidence {100 * v.confidence:.0f} %)".replace("_", " "),

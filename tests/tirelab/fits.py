@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from drives import Drive, read, ride
 from radialtire import CATALOGUE, TireModel
-from tirelab.engine.refit import Case, Refit, refit, smooth_of
-from tirelab.preprocessing.dataset import Scene, scene_of
+from tirelab.engine.refit import Case, Refit, refit
+from tirelab.engine.scene import Scene, scene_of
+from tirelab.preprocessing.dataset import dataset_of
 from tirelab.preprocessing.noise_model import Noise
-from tirelab.simulation.simulate import simulate
+from tirelab.simulation.simulate import simulate, smoothed_motion
 
 BARE = TireModel()
 NOISE = 5.0
@@ -30,13 +31,11 @@ def ridden(seed: int, tire: TireModel) -> Drive:
 
 def fitted(recording: Drive, tire: TireModel, names: list[str]) -> tuple[Refit, list[Case], Scene]:
     """Return the fit of the effects `names`, those of `tire` and others that are not there, its cases and scene."""
-    scene = scene_of(
-        [(recording.time, recording.deflection, recording.surface_radius, recording.force)], BARE
-    )
+    scene = scene_of(dataset_of([recording], BARE))
     (record,) = scene.records
     ones = np.ones(record.rows.size)
     noise = Noise(NOISE, NOISE, np.ones(1), ones, ones)
-    smooth = smooth_of(recording, record.motion)
+    smooth = smoothed_motion(recording, record.motion)
     cases = [Case(recording, smooth, recording.force, noise, record.rows, 0.0 * ones)]
     elastic = simulate(BARE, recording)[record.rows]
     part = simulate(tire, recording)[record.rows] - elastic

@@ -116,7 +116,7 @@ class Outcome:
     @property
     def row(self) -> str:
         """A line of the table."""
-        rivals = "; ".join("+".join(r.names) for r in self.without.rivals)
+        rivals = "; ".join("+".join(r.names) for r in self.without.alternatives)
         return (
             f"{self.name:28s} {self.without.fit.before / NOISE:6.1f}  {'+'.join(self.whole.names) or 'nothing':44s} | "
             f"{'+'.join(self.without.names) or 'nothing':60s} misfit {self.misfit:5.2f}  by "

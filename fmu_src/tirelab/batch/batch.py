@@ -17,10 +17,11 @@ from pathlib import Path
 from typing import Any
 
 from ..diagnosis.diagnosis_file import DiagnosisFileError, read_stated
+from ..diagnosis.diagnosis_run import Diagnoser, run_diagnosis
 from ..errors import TirelabError
 from ..recordings.formats import LOADERS
 from ..recordings.metadata import FOLDER_SIDECAR
-from ..report.as_user import Diagnoser, diagnose_as_user
+from ..recordings.reading import Reading
 from .summary import EachResult, Item, Row, in_words, summary_csv, summary_html
 from .workers import Cores, work
 
@@ -33,7 +34,7 @@ def diagnose_each(
     *,
     tire: Path | None = None,
     cores: Cores | None = None,
-    options: Sequence[str] = (),
+    reading: Reading = Reading(),  # noqa: B008
     diagnoser: Diagnoser | None = None,
     tell: Callable[[str], None] = print,
 ) -> EachResult:
@@ -41,20 +42,20 @@ def diagnose_each(
 
     places: a file gets a verdict of its own; so does every recording that lies directly in a folder given; the
     recordings of each folder below are diagnosed together
-    tire: file of the believed tire, None for the article's; options: further ones of `tirelab diagnose`
+    tire: file of the baseline tire, None for the article's; reading: how the recordings are read
     diagnoser: what stands for that command; tell: is handed one line for each item that is done
 
     A recording that cannot be read or diagnosed is a line of the summary and stops nothing.
     Raises TirelabError where there is nothing to diagnose or `out` cannot be written.
     """
     items, passed_over = find_items(places, out)
-    mark = _mark(tire, options)
+    mark = _mark(tire, reading)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise TirelabError(f"{out}: cannot be written ({error.strerror}); name another with --out") from None
     tasks = {
-        item.name: (diagnoser, item.recordings, tire, _verdict(out, item), tuple(options))
+        item.name: (diagnoser, item.recordings, tire, _verdict(out, item), reading)
         for item in items
         if not _is_done(out, item, mark)
     }
@@ -116,14 +117,14 @@ def diagnose_one(
     recordings: Sequence[Path],
     tire: Path | None,
     out: Path,
-    options: Sequence[str],
+    reading: Reading,
 ) -> dict[str, Any]:
     """Diagnose one item, and return the sentence of its error or None, and whether trying again would change it."""
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     try:
         if diagnoser is None:
-            diagnose_as_user(recordings, tire, out, options)
+            run_diagnosis(recordings, out, tire=tire, reading=reading)
         else:
             diagnoser(recordings, tire, out)
         read_stated(out)
@@ -140,13 +141,13 @@ def _is_hidden(folder: Path, place: Path) -> bool:
     return any(part.startswith(".") for part in folder.relative_to(place).parts)
 
 
-def _mark(tire: Path | None, options: Sequence[str]) -> str:
+def _mark(tire: Path | None, reading: Reading) -> str:
     """What beside the recordings decides a verdict."""
     try:
         content = b"" if tire is None else tire.read_bytes()
     except OSError as error:
         raise TirelabError(f"{tire}: {error.strerror}; name a tire file that can be read") from None
-    return hashlib.sha256(content + "\0".join(options).encode()).hexdigest()
+    return hashlib.sha256(content + "\0".join(reading.words()).encode()).hexdigest()
 
 
 def _fingerprint(recordings: Sequence[Path], mark: str) -> list[Any]:

@@ -11,8 +11,9 @@ from radialtire import TireModel, read_tire
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..fmu.replay import replay
+from ..recordings.reading import Reading
 from ..report.comparison import compare, plot
-from .options import FILE, Reading, SentenceCommand, out, reading
+from .options import FILE, SentenceCommand, out, reading
 
 
 @click.command("compare", cls=SentenceCommand)

@@ -12,8 +12,9 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from ..errors import TirelabError
 from ..identify import LAWS, Identification, identify
 from ..identify.table import constant_table, surface_table
+from ..recordings.reading import Reading
 from ..recordings.recording import Recording
-from .options import FILE, Reading, SentenceCommand, reading
+from .options import FILE, SentenceCommand, reading
 
 WIDTH_LEAST = 100
 """Columns that the tables need; a narrower terminal wraps them, a file has room."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,8 +11,7 @@ import click
 from radialtire import InputError, ParameterError, TireFileError
 
 from ..errors import TirelabError
-from ..recordings.channels import parse_columns, parse_units
-from ..recordings.recording import Recording, read_recording
+from ..recordings.reading import Reading
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -35,29 +33,6 @@ class SentenceCommand(click.Command):
             return super().invoke(ctx)
         except (TirelabError, TireFileError, ParameterError, InputError) as error:
             raise Told(str(error)) from None
-
-
-@dataclass(frozen=True)
-class Reading:
-    """How the user wants recordings read: the texts of --columns, --units and --radius."""
-
-    columns: str | None
-    units: str | None
-    radius: str | None
-
-    def __call__(self, file: Path) -> Recording:
-        """Read one recording."""
-        return read_recording(
-            file,
-            columns=parse_columns(self.columns) if self.columns else None,
-            units=parse_units(self.units) if self.units else None,
-            radius=self.radius,
-        )
-
-    def words(self) -> list[str]:
-        """Return the options again as words of the command line."""
-        told = (("--columns", self.columns), ("--units", self.units), ("--radius", self.radius))
-        return [word for option, text in told if text is not None for word in (option, text)]
 
 
 def reading(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from radialtire import FLAT_RADIUS
 
-from ..preprocessing.dataset import MOST_FREE_SURFACES, Record, Scene
+from ..preprocessing.dataset import MOST_FREE_SURFACES, Dataset, Experiment, Recorded
 from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray
-from .held_out import Recorded
 
 BINS = 800
 """Bins of a continuous coordinate at most, of about equal numbers of samples: a span of 1 % has eight of them."""
@@ -39,11 +38,11 @@ class Axis:
     recordings: tuple[str, ...] | None = None
 
 
-def axes_of(recordings: Sequence[Recorded], scene: Scene, kept: Sequence[IndexArray]) -> list[Axis]:
+def axes_of(recordings: Sequence[Recorded], dataset: Dataset, kept: Sequence[IndexArray]) -> list[Axis]:
     """Return every coordinate of the recordings, at the samples `kept` of each one's rows."""
-    records = [(record.thin, own) for record, own in zip(scene.records, kept, strict=True)]
+    records = [(record.sampled, own) for record, own in zip(dataset.experiments, kept, strict=True)]
 
-    def joined(value: Callable[[Record], FloatArray]) -> FloatArray:
+    def joined(value: Callable[[Experiment], FloatArray]) -> FloatArray:
         return np.concatenate([value(record)[own] for record, own in records])
 
     axes = [
@@ -61,7 +60,7 @@ def axes_of(recordings: Sequence[Recorded], scene: Scene, kept: Sequence[IndexAr
     radius = np.concatenate(
         [
             r.surface_radius[record.rows][own]
-            for r, record, own in zip(recordings, scene.records, kept, strict=True)
+            for r, record, own in zip(recordings, dataset.experiments, kept, strict=True)
         ]
     )
     axes.append(_surfaces(radius))
@@ -81,7 +80,7 @@ def _even(by: str, unit: str, values: FloatArray, slow: bool = False) -> Axis:
 
 
 def _force(elastic: FloatArray, recorded: FloatArray) -> Axis:
-    """Return the force: bins of the believed one, which noise does not sort, bounded by the recorded one in them."""
+    """Return the force: bins of the baseline's, which noise does not sort, bounded by the recorded one in them."""
     bin_of, start, stop = _bounded(_bins(elastic)[0], recorded)
     return Axis("force", "N", bin_of, start, stop, (0, start.size), _nothing)
 
@@ -122,7 +121,7 @@ def _cycles(cycle: FloatArray) -> Axis:
     return Axis("cycle", "1", bin_of, known, known, (0, known.size), label, slow=True)
 
 
-def _time(recordings: Sequence[Recorded], records: Sequence[tuple[Record, IndexArray]]) -> Axis:
+def _time(recordings: Sequence[Recorded], records: Sequence[tuple[Experiment, IndexArray]]) -> Axis:
     """Return the time of every recording, each a part of its own."""
     bins, starts, stops, parts = [], [], [], [0]
     for recording, (record, own) in zip(recordings, records, strict=True):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import TirelabError
+from ..names import UNKNOWN
 
 SCHEMA = 1
 
@@ -17,9 +18,6 @@ Names = frozenset[str]
 
 NOTHING: Names = frozenset({"none"})
 """The set that stands for: nothing is missing."""
-
-UNKNOWN = "unknown"
-"""The name for what no effect explains."""
 
 
 class DiagnosisFileError(TirelabError):

@@ -1,22 +1,22 @@
-"""The test that would tell: the waveform on which two fitted tires differ most, whatever their parameters then do.
+"""The discriminating test: the waveform on which two fitted models differ most, whatever their parameters then do.
 
-For every waveform that the rig can drive, both tires are simulated; what a refit of the rival's own parameters could
-take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). What is left, over the noise
-and the root of the number of samples, is the separation: the square root of twice the expected gain in log likelihood.
+For every waveform that the rig can drive, both tires are simulated; what a refit of the alternative's own parameters
+could take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). What is left, over the
+noise and times the root of the number of samples, is the separation: the square root of twice the expected gain in log
+likelihood.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from radialtire import TireModel
 
-from ..engine.refit import Knob, assemble
+from ..engine.findings import FittedModel
 from ..preprocessing.kinematics import FloatArray
+from ..report.titles import set_title
 from ..simulation.simulate import simulate
-from .titles import set_title
 
 DECISIVE = 5.7
 """Least separation S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
@@ -46,8 +46,8 @@ class Test:
 
 
 @dataclass(frozen=True)
-class SeparatingTest:
-    """The test that separates two sets of effects most.
+class DiscriminatingTest:
+    """The test on which two sets of effects differ most.
 
     between: the two sets; separation: expected distance in units of the noise, over all samples together; typical: root
     mean square distance of one sample in units of the noise; sentence: what to do, or that nothing would tell
@@ -60,7 +60,7 @@ class SeparatingTest:
     sentence: str
 
     @property
-    def tells(self) -> bool:
+    def sufficient(self) -> bool:
         """Whether the test would tell the two sets apart."""
         return self.separation >= DECISIVE
 
@@ -163,36 +163,32 @@ def _no_faster(path: FloatArray, step: float) -> FloatArray:
     return limited
 
 
-def separate(
-    first: tuple[TireModel, tuple[str, ...]],
-    second: tuple[TireModel, tuple[str, ...]],
-    believed: TireModel,
-    knobs: tuple[Knob, ...],
-    values: FloatArray,
-    radii: Sequence[float],
-    noise: float,
-    limits: Limits,
-) -> SeparatingTest:
-    """Return the test that separates two fitted tires most within `limits`.
+def discriminate(
+    accepted: FittedModel, alternative: FittedModel, noise: float, limits: Limits
+) -> DiscriminatingTest:
+    """Return the test within `limits` on which the two fitted models differ most.
 
-    first, second: tire and names of the effects in it; knobs, values: the second one's fit on `radii` [m], by which it
-    may follow the first one; noise [N] of one sample
+    noise [N]: of one sample. The alternative may follow the accepted model with its free parameters.
     """
-    best: SeparatingTest | None = None
+    best: DiscriminatingTest | None = None
+    radii = alternative.radii
+    between = (accepted.names, alternative.names)
     surfaces = [radii[len(radii) // 2]] if len(radii) == 1 else [radii[0], radii[-1]]
     for name, waveform in WAVEFORMS.items():
         for radius in surfaces:
             path = waveform(limits)
             test = Test(name, _time(limits), path, np.full(path.size, radius))
-            gap = simulate(first[0], test) - simulate(second[0], test)
-            jacobian = _jacobian(believed, knobs, values, radii, test)
-            if jacobian.shape[1]:
-                gap = gap - jacobian @ np.linalg.lstsq(jacobian, gap, rcond=1e-8)[0]
-            typical = float(np.sqrt(np.mean(gap**2))) / noise
-            separation = typical * float(np.sqrt(gap.size))
+            difference = simulate(accepted.tire, test) - simulate(alternative.tire, test)
+            sensitivities = alternative.sensitivities(test)
+            if sensitivities.shape[1]:
+                difference = (
+                    difference - sensitivities @ np.linalg.lstsq(sensitivities, difference, rcond=1e-8)[0]
+                )
+            typical = float(np.sqrt(np.mean(difference**2))) / noise
+            separation = typical * float(np.sqrt(difference.size))
             if best is None or separation > best.separation:
-                sentence = _sentence(test, (first[1], second[1]), separation, typical)
-                best = SeparatingTest(test, (first[1], second[1]), separation, typical, sentence)
+                sentence = _sentence(test, between, separation, typical)
+                best = DiscriminatingTest(test, between, separation, typical, sentence)
     assert best is not None
     return best
 
@@ -215,16 +211,3 @@ def _sentence(
         f"{test.time[-1] - test.time[0]:.0f} s: {first} then differs from {second} by {typical:.2g} times the noise "
         f"in a typical sample, {separation:.0f} times over all of them."
     )
-
-
-def _jacobian(
-    believed: TireModel, knobs: tuple[Knob, ...], values: FloatArray, radii: Sequence[float], test: Test
-) -> FloatArray:
-    base = simulate(assemble(believed, knobs, values, radii), test)
-    columns = []
-    for i, knob in enumerate(knobs):
-        step = 1e-3 * knob.scale
-        moved = values.copy()
-        moved[i] += step if values[i] + step <= knob.high else -step
-        columns.append((simulate(assemble(believed, knobs, moved, radii), test) - base) / step)
-    return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))

@@ -1,78 +1,63 @@
-"""What a correction does on recordings that it was not fitted to.
+"""What a correction does on data that it was not fitted to.
 
-Recordings kept from the fit are taken where they were given. Where none were, the chosen effects are fitted once more
+Recordings kept from the fit are taken where they were given. Where none were, the accepted effects are fitted once more
 without one part: the last recording whose surfaces the others drive too, or the end of each recording, a block of time
-simulated from its true history. Which effects are chosen was seen on the whole; their parameters were not.
+simulated from its true history. Which effects were accepted was seen on the whole; their parameters were not.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 from radialtire import TireModel
 
-from ..engine.refit import Case, Refit, again, smooth_of
-from ..preprocessing.dataset import Record, Scene, scene_of
+from ..engine.explanation import Explanation
+from ..preprocessing.dataset import Dataset, Experiment, Recorded, dataset_of
 from ..preprocessing.kinematics import BoolArray, FloatArray, Motion
-from ..simulation.simulate import Sampled, simulate
+from ..simulation.simulate import simulate, smoothed_motion
 
 FITTED = 0.7
 """Part of each recording's time that is fitted where its end is held out."""
 
 
-class Recorded(Sampled, Protocol):
-    """What can be held out: a motion, its force and a name."""
-
-    @property
-    def name(self) -> str:
-        """What the recording is called."""
-        ...
-
-    @property
-    def force(self) -> FloatArray:
-        """[N], compressive > 0."""
-        ...
-
-
 @dataclass(frozen=True)
 class Part:
-    """The samples `chosen` of one recording, and what the believed and the corrected tire leave of all of it [N].
+    """The samples `chosen` of one recording, and what the baseline and the corrected tire leave of all of it [N].
 
-    cleared [N]: what the corrected tire leaves where it is told the motion without the noise of its reading
+    noise_free [N]: what the corrected tire leaves where it is given the noise-free deflection
     """
 
-    record: Record
+    experiment: Experiment
     before: FloatArray
     after: FloatArray
-    cleared: FloatArray
+    noise_free: FloatArray
     chosen: BoolArray
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """What was fitted and what was not; by: "recordings given", "recording NAME" or "time block A-B s"."""
+    """What was fitted and what was held out; by: "recordings given", "recording NAME" or "time block A-B s"."""
 
     by: str
     fitted: tuple[Part, ...]
-    unseen: tuple[Part, ...]
+    held_out: tuple[Part, ...]
 
     @property
     def before(self) -> float:
-        """RMSE [N] of the believed tire on what was not fitted."""
-        return rmse([p.before[p.chosen] for p in self.unseen])
+        """RMSE [N] of the baseline on what was held out."""
+        return rmse([p.before[p.chosen] for p in self.held_out])
 
     @property
     def after(self) -> float:
-        """RMSE [N] of the corrected tire on what was not fitted."""
-        return rmse([p.after[p.chosen] for p in self.unseen])
+        """RMSE [N] of the corrected tire on what was held out."""
+        return rmse([p.after[p.chosen] for p in self.held_out])
 
     @property
-    def cleared(self) -> float:
-        """The same where the tire is told the motion without the noise of its reading, as a simulation tells it."""
-        return rmse([p.cleared[p.chosen] for p in self.unseen])
+    def noise_free(self) -> float:
+        """The same where the tire is given the noise-free deflection, as a simulation gives it."""
+        return rmse([p.noise_free[p.chosen] for p in self.held_out])
 
 
 def rmse(parts: Sequence[FloatArray]) -> float:
@@ -80,74 +65,61 @@ def rmse(parts: Sequence[FloatArray]) -> float:
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 
-def without_reading_noise(tire: TireModel, recording: Recorded, motion: Motion) -> FloatArray:
-    """Return what `tire` leaves of a recording [N] where it is told the smoothed motion in place of the readings."""
-    smooth = smooth_of(recording, motion)
+def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) -> FloatArray:
+    """Return what `tire` leaves of a recording [N] where it is given the smoothed motion in place of the readings."""
+    smooth = smoothed_motion(recording, motion)
     return recording.force - simulate(tire, smooth, smooth)
 
 
 def given(
     held_out: Sequence[Recorded],
     recordings: Sequence[Recorded],
-    scene: Scene,
+    dataset: Dataset,
     before: Sequence[FloatArray],
-    fitted: Refit,
-    tire: TireModel,
+    baseline: TireModel,
+    explanation: Explanation,
 ) -> HeldOut:
     """Return the errors on recordings that were kept from the fit; before [N]: residuals of the fitted ones."""
-    others = scene_of([(r.time, r.deflection, r.surface_radius, r.force) for r in held_out], tire)
+    corrected = explanation.model.tire
+    fitted = zip(dataset.experiments, recordings, before, explanation.residuals, strict=True)
+    others = zip(dataset_of(held_out, baseline).experiments, held_out, strict=True)
     return HeldOut(
         "recordings given",
         tuple(
-            Part(
-                record,
-                b,
-                a,
-                without_reading_noise(fitted.tire, r, record.motion),
-                np.ones(b.size, dtype=bool),
-            )
-            for record, r, b, a in zip(scene.records, recordings, before, fitted.residuals, strict=True)
+            Part(e, b, a, noise_free_residual(corrected, r, e.motion), np.ones(b.size, dtype=bool))
+            for e, r, b, a in fitted
         ),
         tuple(
             Part(
-                record,
-                r.force - simulate(tire, r),
-                r.force - simulate(fitted.tire, r),
-                without_reading_noise(fitted.tire, r, record.motion),
-                np.ones(r.time.size, bool),
+                e,
+                r.force - simulate(baseline, r),
+                r.force - simulate(corrected, r),
+                noise_free_residual(corrected, r, e.motion),
+                np.ones(r.time.size, dtype=bool),
             )
-            for record, r in zip(others.records, held_out, strict=True)
+            for e, r in others
         ),
     )
 
 
 def split(
     recordings: Sequence[Recorded],
-    scene: Scene,
+    dataset: Dataset,
     before: Sequence[FloatArray],
-    cases: Sequence[Case],
-    fitted: Refit,
-    believed: TireModel,
+    explanation: Explanation,
 ) -> HeldOut:
-    """Return the errors on a part of the recordings after a fit to the rest.
-
-    before [N]: residuals of the believed tire; cases, fitted: the fit to everything, with `believed` under it
-    """
+    """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
     kept, by = _parts(recordings)
-    without = [
-        replace(c, noise=replace(c.noise, weight=c.noise.weight * k[c.rows]))
-        for c, k in zip(cases, kept, strict=True)
+    refitted = explanation.refitted(kept)
+    noise_free = [
+        noise_free_residual(refitted.tire, r, e.motion)
+        for e, r in zip(dataset.experiments, recordings, strict=True)
     ]
-    refitted = again(believed, fitted, without, scene.radii)
-    cleared = [
-        without_reading_noise(refitted.tire, r, record.motion)
-        for record, r in zip(scene.records, recordings, strict=True)
-    ]
-    parts = list(zip(scene.records, before, refitted.residuals, cleared, kept, strict=True))
+    parts = list(zip(dataset.experiments, before, refitted.residuals, noise_free, kept, strict=True))
     return HeldOut(
         by,
-        tuple(Part(r, b, a, c, k) for r, b, a, c, k in parts if k.any()),
-        tuple(Part(r, b, a, c, ~k) for r, b, a, c, k in parts if not k.all()),
+        tuple(Part(e, b, a, n, k) for e, b, a, n, k in parts if k.any()),
+        tuple(Part(e, b, a, n, ~k) for e, b, a, n, k in parts if not k.all()),
     )
 
 

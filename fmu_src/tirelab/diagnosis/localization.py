@@ -1,4 +1,4 @@
-"""Where simulation and recording part: the residual against everything that a recording knows.
+"""Where simulation and recording differ: the residual against everything that a recording knows.
 
 Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording two
 kinds of span are looked for: where the squared error beyond the noise is denser than elsewhere, and where the mean
@@ -24,12 +24,11 @@ import numpy as np
 from radialtire import TireModel
 from scipy.stats import chi2
 
-from ..preprocessing.dataset import Record, Scene
+from ..preprocessing.dataset import Dataset, Experiment, Recorded
 from ..preprocessing.kinematics import FloatArray, IndexArray
 from ..preprocessing.noise_model import Noise
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
-from .held_out import Recorded
 
 DEPTHS = 12
 """Spans of deflection which, loading and unloading apart, tell what error a sample has on average."""
@@ -98,9 +97,9 @@ def _finite(value: float) -> float | str:
     return "inf" if value > 0.0 else "-inf"
 
 
-def locate(
+def localize(
     recordings: Sequence[Recorded],
-    scene: Scene,
+    dataset: Dataset,
     residuals: Sequence[FloatArray],
     noises: Sequence[Noise],
     left: Sequence[FloatArray] | None = None,
@@ -109,8 +108,8 @@ def locate(
 
     left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
     """
-    samples = _samples(scene, residuals, noises, left)
-    axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, scene, samples.kept)]
+    samples = _samples(dataset, residuals, noises, left)
+    axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, dataset, samples.kept)]
     looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
     # Where the noise was taken for too large, the densest span has more than all samples together.
     whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-12)
@@ -118,16 +117,16 @@ def locate(
     return tuple(sorted(found, key=lambda s: -s.concentration))
 
 
-def beyond_law(
-    recordings: Sequence[Recorded], before: Sequence[FloatArray], believed: TireModel, corrected: TireModel
+def law_corrected(
+    recordings: Sequence[Recorded], before: Sequence[FloatArray], baseline: TireModel, corrected: TireModel
 ) -> list[FloatArray]:
     """Return the residuals [N] in which physics has its place: what the corrected elastic law alone leaves.
 
-    before [N]: of the believed tire, returned where its law was not corrected, or nothing but its law
+    before [N]: of the baseline, returned where its law was not corrected, or nothing but its law
     """
-    if corrected.law == believed.law or corrected.effects == believed.effects:
+    if corrected.law == baseline.law or corrected.effects == baseline.effects:
         return list(before)
-    law = replace(believed, law=corrected.law)
+    law = replace(baseline, law=corrected.law)
     return [r.force - simulate(law, r) for r in recordings]
 
 
@@ -163,13 +162,13 @@ class _Samples:
 
 
 def _samples(
-    scene: Scene,
+    dataset: Dataset,
     residuals: Sequence[FloatArray],
     noises: Sequence[Noise],
     left: Sequence[FloatArray] | None,
 ) -> _Samples:
     parts, kept = [], []
-    for record, residual, noise in zip(scene.records, residuals, noises, strict=True):
+    for record, residual, noise in zip(dataset.experiments, residuals, noises, strict=True):
         chosen = np.flatnonzero(noise.weight > 0.0)
         spread = noise.spread[chosen]
         variance = noise.level**2 * spread**2 / float(np.mean(spread**2))
@@ -180,7 +179,7 @@ def _samples(
     own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
     together = [(np.ones(1), np.array([n.correlation_samples])) for n in noises]
     if left is not None:
-        rows = zip(scene.records, left, kept, strict=True)
+        rows = zip(dataset.experiments, left, kept, strict=True)
         together = [_wander(values[record.rows][chosen]) for record, values, chosen in rows]
     return _Samples(own, variance, excess, alike, level, tuple(together), tuple(kept))
 
@@ -200,11 +199,11 @@ def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.array(lengths), np.array(counts)
 
 
-def _alike(record: Record, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
+def _alike(record: Experiment, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
     """Return the means of `values` at the deflection and direction of each sample."""
-    depth = record.thin.motion.deflection[chosen]
+    depth = record.sampled.motion.deflection[chosen]
     edges = np.quantile(depth, np.linspace(0.0, 1.0, DEPTHS + 1)[1:-1])
-    cell = 2 * np.searchsorted(edges, depth) + (record.thin.motion.direction[chosen] > 0.0)
+    cell = 2 * np.searchsorted(edges, depth) + (record.sampled.motion.direction[chosen] > 0.0)
     count = np.maximum(np.bincount(cell, minlength=2 * DEPTHS), 1)
     return [(np.bincount(cell, v, minlength=2 * DEPTHS) / count)[cell] for v in values]
 

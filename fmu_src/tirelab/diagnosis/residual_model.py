@@ -1,4 +1,4 @@
-"""What can be learned of something beyond the catalogue: the force over one coordinate, and whether it repeats."""
+"""Regression of a residual that no effect explains: the force over one coordinate, and whether it repeats."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..preprocessing.dataset import Record, Scene
+from ..preprocessing.dataset import Dataset, Experiment
 from ..preprocessing.kinematics import FloatArray
 from .held_out import HeldOut, rmse
-from .verdict import Correction
+from .verdict import ResidualModel
 
 KNOTS = 120
 SAMPLES_PER_KNOT = 30
-"""Points of a learned curve: between eight points of a wave straight lines miss it by 4 % of its height root mean
-square, so that a ripple of a fifteenth of the range is followed; short recordings have fewer."""
+"""Knots of a curve: straight lines between eight knots of a wave miss it by 4 % of its height root mean square, so that
+a ripple of a fifteenth of the range is followed; short recordings have fewer."""
 
 FOLDS = 5
-"""Parts into which time is cut; each is foretold from the others."""
+"""Blocks of time; each is predicted from the others."""
 
-Coordinate = Callable[[Record], FloatArray]
+Coordinate = Callable[[Experiment], FloatArray]
 
 COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "deflection": ("m", lambda r: r.motion.deflection),
@@ -32,40 +32,48 @@ COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "history": ("m", lambda r: r.motion.turned * r.motion.direction),
     "way": ("m", lambda r: np.cumsum(np.abs(np.diff(r.motion.deflection, prepend=r.motion.deflection[0])))),
 }
-"""The coordinate over which each kind of misfit is learned; what is not here is learned over time."""
+"""The coordinate over which each kind of residual is regressed; what is not here is regressed over time."""
 
 
-def learned(
-    beyond: Sequence[str], scene: Scene, residuals: Sequence[FloatArray], kept: HeldOut
-) -> tuple[Correction, ...]:
-    """Return a correction for each coordinate in `beyond`, from what is left of each recording [N]."""
-    return tuple(_learned(by, scene, residuals, kept) for by in beyond)
+def residual_models(
+    coordinates: Sequence[str], dataset: Dataset, residuals: Sequence[FloatArray], validation: HeldOut
+) -> tuple[ResidualModel, ...]:
+    """Return a regression over each of `coordinates`, from what is left of each recording [N]."""
+    return tuple(_regressed(by, dataset, residuals, validation) for by in coordinates)
 
 
-def _learned(by: str, scene: Scene, residuals: Sequence[FloatArray], kept: HeldOut) -> Correction:
+def _regressed(
+    by: str, dataset: Dataset, residuals: Sequence[FloatArray], validation: HeldOut
+) -> ResidualModel:
     unit, coordinate = COORDINATES.get(by, ("s", lambda r: r.time))
-    at = np.concatenate([coordinate(r) for r in scene.records])
+    at = np.concatenate([coordinate(r) for r in dataset.experiments])
     force = np.concatenate(residuals)
     part = np.concatenate(
-        [np.minimum((FOLDS * r.time / (r.time[-1] + 1e-9)).astype(int), FOLDS - 1) for r in scene.records]
+        [
+            np.minimum((FOLDS * r.time / (r.time[-1] + 1e-9)).astype(int), FOLDS - 1)
+            for r in dataset.experiments
+        ]
     )
     knots = _knots(at)
-    foretold = np.zeros_like(force)
+    predicted = np.zeros_like(force)
     for fold in range(FOLDS):
-        foretold[part == fold] = _curve(at[part != fold], force[part != fold], knots, at[part == fold])
-    gain = 1.0 - float(np.sum((force - foretold) ** 2) / np.sum(force**2))
+        predicted[part == fold] = _curve(at[part != fold], force[part != fold], knots, at[part == fold])
+    r2 = 1.0 - float(np.sum((force - predicted) ** 2) / np.sum(force**2))
     curve = _curve(at, force, knots, knots)
     left = force - np.interp(at, knots, curve)
-    return Correction(by, unit, knots, curve, gain, rmse([left]), _unseen(coordinate, kept))
+    return ResidualModel(by, unit, knots, curve, r2, rmse([left]), _held_out_error(coordinate, validation))
 
 
-def _unseen(coordinate: Coordinate, kept: HeldOut) -> float:
-    """Return the RMSE [N] on what is held out, with the correction learned on what was fitted there."""
-    at = np.concatenate([coordinate(p.record)[p.chosen] for p in kept.fitted])
-    force = np.concatenate([p.after[p.chosen] for p in kept.fitted])
+def _held_out_error(coordinate: Coordinate, validation: HeldOut) -> float:
+    """Return the RMSE [N] on what is held out, with the regression of what was fitted there."""
+    at = np.concatenate([coordinate(p.experiment)[p.chosen] for p in validation.fitted])
+    force = np.concatenate([p.after[p.chosen] for p in validation.fitted])
     knots = _knots(at)
     return rmse(
-        [p.after[p.chosen] - _curve(at, force, knots, coordinate(p.record)[p.chosen]) for p in kept.unseen]
+        [
+            p.after[p.chosen] - _curve(at, force, knots, coordinate(p.experiment)[p.chosen])
+            for p in validation.held_out
+        ]
     )
 
 

@@ -1,75 +1,33 @@
-"""What we can and cannot say: the effects found, how sure, what else it could be and why, what stays unexplained."""
+"""The verdict: the effects that are missing, how sure, the alternatives and why, and what stays unexplained."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 from radialtire import TireModel
 
+from ..engine.findings import Alternative, Evidence, NamedEffect
+from ..names import UNKNOWN
 from ..preprocessing.kinematics import FloatArray
-from .discriminating_test import SeparatingTest
+from .discriminating_test import DiscriminatingTest
 from .localization import Span
-from .titles import UNKNOWN
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A parameter's value with its standard deviation and unit."""
+class ResidualModel:
+    """A regression of a residual that no effect explains: force [N] over one coordinate, and whether it repeats.
 
-    value: float
-    std: float
-    unit: str
-
-
-@dataclass(frozen=True)
-class NamedEffect:
-    """An effect that was left out: its parameters, and the share of the squared misfit that it accounts for."""
-
-    name: str
-    parameters: Mapping[str, Estimate]
-    share: float
-
-
-@dataclass(frozen=True)
-class Rival:
-    """Another set of effects that the recordings cannot rule out: log evidence below the verdict's, and why."""
-
-    names: tuple[str, ...]
-    log_odds: float
-    reason: str
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """One set that was compared: log evidence over that of the verdict, chi square per sample, effects' sizes.
-
-    size, unique: root mean square of each effect's part, and of what no other one in the set can stand for, over the
-    noise
-    """
-
-    names: tuple[str, ...]
-    log_evidence: float
-    chi_square: float
-    size: tuple[float, ...]
-    unique: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Correction:
-    """What was learned of something beyond the catalogue: force [N] over one coordinate, and that it repeats.
-
-    by: coordinate; at: its values in `unit`; force [N]; repeats: part of the misfit on blocks of time held out that the
-    correction learned on the others explains, negative where it does not repeat
-    after, held_out_after: RMSE [N] of the corrected tire with the force added, on what was fitted and what was not
+    by: coordinate; at: its values in `unit`; force [N]; r2: cross-validated R^2 over blocks of time, negative where the
+    curve does not repeat
+    after, held_out_after: RMSE [N] of the corrected tire with the force added, on fitted and on held-out data
     """
 
     by: str
     unit: str
     at: FloatArray = field(repr=False)
     force: FloatArray = field(repr=False)
-    repeats: float = 0.0
+    r2: float = 0.0
     after: float = float("nan")
     held_out_after: float = float("nan")
 
@@ -78,7 +36,7 @@ class Correction:
         return {
             "by": self.by,
             "unit": self.unit,
-            "repeats": self.repeats,
+            "repeats": self.r2,
             "after": _number(self.after),
             "held_out_after": _number(self.held_out_after),
         }
@@ -88,7 +46,7 @@ class Correction:
 class Fit:
     """Noise and root mean square errors [N]; held_out_by: what was held out (see `held_out.HeldOut`).
 
-    held_out_cleared: held_out_after where the tire is told the motion without the noise of its reading
+    held_out_noise_free: held_out_after where the tire is given the noise-free deflection
     """
 
     noise: float
@@ -97,36 +55,40 @@ class Fit:
     held_out_before: float
     held_out_after: float
     held_out_by: str
-    held_out_cleared: float = float("nan")
+    held_out_noise_free: float = float("nan")
 
 
 @dataclass(frozen=True)
 class Verdict:
     """The answer of a diagnosis.
 
-    effects: what is missing, empty where nothing is; confidence: 0 to 1; rivals: other sets, likeliest first
-    unexplained: whether something acts that no effect explains, by `unexplained_by` (coordinates)
+    effects: what is missing, empty where nothing is; confidence: 0 to 1; alternatives: other sets, likeliest first
+    unexplained_by: coordinates on which something depends that no effect explains; residual_models: regressions of it
     summary: sentences for a reader; where: places of the misfit before the correction, of what the corrected law leaves
     of it where other effects are missing too; tire: the corrected one
-    evidence: all sets that were compared to the end; separating_test: what would tell a rival apart, None where no
-    motion within the rig's limits does (the summary then says so)
+    evidence: all sets that were compared to the end; test: what would tell an alternative from the verdict, None where
+    no motion within the rig's limits does (the summary then says so)
     compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
     """
 
     effects: tuple[NamedEffect, ...]
     confidence: float
-    rivals: tuple[Rival, ...]
-    unexplained: bool
+    alternatives: tuple[Alternative, ...]
     unexplained_by: tuple[str, ...]
-    corrections: tuple[Correction, ...]
+    residual_models: tuple[ResidualModel, ...]
     summary: str
     where: tuple[Span, ...]
     fit: Fit
     tire: TireModel
     evidence: tuple[Evidence, ...]
-    separating_test: SeparatingTest | None
+    test: DiscriminatingTest | None
     compared: int
     evaluations: int
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether something acts that no effect explains."""
+        return bool(self.unexplained_by)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -136,9 +98,11 @@ class Verdict:
     def to_contract(self) -> dict[str, object]:
         """Return the content of diagnosis.json but for the names of the files beside it.
 
-        What was learned of something unknown is told under "corrections", which is absent where nothing is unknown.
+        The regressions of something unknown stand under "corrections", which is absent where nothing is unknown.
         """
-        learned = {"corrections": [c.to_contract() for c in self.corrections]} if self.corrections else {}
+        regressed = (
+            {"corrections": [c.to_contract() for c in self.residual_models]} if self.residual_models else {}
+        )
         return {
             "schema": 1,
             "verdict": {
@@ -154,13 +118,11 @@ class Verdict:
                     for e in self.effects
                 ],
                 "confidence": self.confidence,
-                "alternatives": [list(r.names) for r in self.rivals],
+                "alternatives": [list(r.names) for r in self.alternatives],
                 "unexplained": self.unexplained,
                 "summary": self.summary,
-                "separating_test": None
-                if self.separating_test is None
-                else self.separating_test.to_contract(),
-                **learned,
+                "separating_test": None if self.test is None else self.test.to_contract(),
+                **regressed,
             },
             "where": [s.to_contract() for s in self.where],
             "fit": {

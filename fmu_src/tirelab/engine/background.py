@@ -9,7 +9,6 @@ import numpy as np
 from scipy.fft import dct
 
 from ..preprocessing.coloured_noise import WHITE
-from ..preprocessing.dataset import Record, Scene
 from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray, Motion
 from ..preprocessing.lines_and_segments import Outstanding, outstanding
 from ..preprocessing.noise_model import Noise, first_guess, noise_of
@@ -18,6 +17,7 @@ from .columns import Built, Layout, build, layout_of
 from .evidence import Products, explain, products_of
 from .families import Family
 from .place import Point
+from .scene import Record, Scene
 
 SPARSE = 6
 """Of families with many alternative columns, every so many are enough to take up what they could."""

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import lfilter
 
-from ..preprocessing.dataset import Scene
 from ..preprocessing.kinematics import FloatArray
 from ..preprocessing.lines_and_segments import LOUD, SWELLINGS, waves
 from .families import Family, law_columns, one_each, pairs, scale_of
 from .place import Place
+from .scene import Scene
 
 
 def _cosines(values: FloatArray, first: int, last: int) -> list[FloatArray]:

@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 from radialtire import CATALOGUE, TireModel
 
-from ..preprocessing.dataset import Scene
 from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
 from .columns import build
@@ -22,6 +21,7 @@ from .judge import power_of, prior_of
 from .naming import BEYOND, named
 from .refit import Case, Refit, refit
 from .rivals import one_constant_rate
+from .scene import Scene
 from .screen import CLOSE
 from .search import Settled
 from .starts import strengths

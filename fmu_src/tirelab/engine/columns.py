@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import median_filter
 
-from ..preprocessing.dataset import Record, Scene
 from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray
 from ..preprocessing.noise_model import Noise, first_guess
 from .evidence import Products, discounted, products_of
 from .families import LAGS, Family
 from .lag import lagged
 from .place import Place, Point, nearest, place_at
+from .scene import Record, Scene
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from numba import njit
 from radialtire.effects.gas_compression import LEAST_CURVATURE, WHEEL_RADIUS
 from scipy.signal import lfilter
 
-from ..preprocessing.dataset import Scene
 from ..preprocessing.kinematics import FloatArray
 from .lag import lagged
 from .place import Place
+from .scene import Scene
 
 Builder = Callable[[Place], FloatArray]
 

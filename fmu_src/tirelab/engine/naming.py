@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..diagnosis.titles import UNKNOWN
+from ..names import UNKNOWN
 from .beyond import AGNOSTIC_FAMILIES, SURFACE
 from .search import Settled
 

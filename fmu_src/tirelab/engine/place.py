@@ -8,8 +8,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..preprocessing.dataset import DEEP_IN_CM, Record, Scene
+from ..preprocessing.dataset import LEAST_CM
 from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray
+from .scene import Record, Scene
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -58,8 +59,8 @@ POWERS = 4
 
 
 def logarithm_of(deflection: FloatArray, deepest: float) -> FloatArray:
-    """Return log(x / x_half) with x_half half the largest deflection, held below DEEP_IN_CM."""
-    return np.log(np.maximum(100.0 * deflection, DEEP_IN_CM) / (50.0 * deepest))
+    """Return log(x / x_half) with x_half half the largest deflection, held below LEAST_CM."""
+    return np.log(np.maximum(100.0 * deflection, LEAST_CM) / (50.0 * deepest))
 
 
 def place_at(record: Record, scene: Scene, point: Point) -> Place:
@@ -77,7 +78,7 @@ def place_at(record: Record, scene: Scene, point: Point) -> Place:
                 slope += power * coefficients[:, power] * logarithm ** (power - 1)
         factor = np.exp(np.clip(exponent, -3.0, 3.0))
         force = record.elastic(deflection) * factor
-        loaded = np.maximum(deflection, 1e-2 * DEEP_IN_CM)
+        loaded = np.maximum(deflection, 1e-2 * LEAST_CM)
         stiffness = np.where(
             deflection > 0.0, record.stiffness(deflection) * factor + force * slope / loaded, 0.0
         )

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..preprocessing.dataset import Scene
 from ..preprocessing.kinematics import FloatArray
 from ..preprocessing.noise_model import Noise, noise_of
 from .columns import build, pointed
 from .families import Family
 from .judge import MATERIAL_SLOW, law_whole
+from .scene import Scene
 from .search import Settled, settle
 
 UNASKED = ("inertia", "force_lag", "saturation", "force_offset")

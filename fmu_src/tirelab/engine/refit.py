@@ -15,9 +15,9 @@ from radialtire import CATALOGUE, Effect, Parameter, Recalibrated, State, TireMo
 from radialtire.effect import PLACES
 from scipy.optimize import least_squares
 
-from ..preprocessing.kinematics import FloatArray, IndexArray, Motion
+from ..preprocessing.kinematics import FloatArray, IndexArray
 from ..preprocessing.noise_model import Noise
-from ..simulation.simulate import Sampled, simulate
+from ..simulation.simulate import Sampled, SmoothedMotion, simulate
 from .starts import matched, spread, with_effect
 
 LOOSE = 100.0
@@ -51,27 +51,6 @@ OF_READING = {"play": 4.0}
 
 
 @dataclass(frozen=True)
-class Smooth:
-    """A recording's motion without the noise of its reading: time [s], deflection [m], surface radius [m].
-
-    rate [m/s], acceleration [m/s^2]: seen from both sides of each moment
-    """
-
-    time: FloatArray
-    deflection: FloatArray
-    surface_radius: FloatArray
-    rate: FloatArray
-    acceleration: FloatArray
-
-
-def smooth_of(recording: Sampled, motion: Motion) -> Smooth:
-    """Return a recording with its smoothed motion in the place of what was read."""
-    return Smooth(
-        recording.time, motion.deflection, recording.surface_radius, motion.rate, motion.acceleration
-    )
-
-
-@dataclass(frozen=True)
 class Case:
     """One recording with its noise, the samples that are compared, and what of their force is not to be followed.
 
@@ -79,7 +58,7 @@ class Case:
     """
 
     recording: Sampled
-    smooth: Smooth
+    smooth: SmoothedMotion
     force: FloatArray
     noise: Noise
     rows: IndexArray

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..diagnosis.titles import UNKNOWN
-from ..diagnosis.verdict import Rival
-from ..preprocessing.dataset import Scene
+from ..names import UNKNOWN
 from ..preprocessing.kinematics import FloatArray
+from .findings import Alternative
 from .judge import FORM_ERROR
 from .naming import named
+from .scene import Scene
 from .search import Settled
 
 DECIDABLE = 10.0
@@ -42,7 +42,7 @@ STATIC = frozenset(
 )
 
 
-def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
+def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Alternative, ...]:
     """Return the sets of other names within DECIDABLE of the first one, and those that one rate cannot rule out."""
     best = settled[0]
     found: dict[tuple[str, ...], float] = {}
@@ -66,7 +66,7 @@ def rivals_of(settled: Sequence[Settled], scene: Scene) -> tuple[Rival, ...]:
     same = [(names, min(gaps.get(names, 0.0), DOUBTED)) for names in one_rate_rivals(named(best), scene)]
     others = [item for item in sorted(found.items(), key=lambda item: item[1]) if item[0] not in dict(same)]
     order = [*same, *others[:MOST_RIVALS]]
-    return tuple(Rival(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
+    return tuple(Alternative(names, gap, reason_of(named(best), names, scene)) for names, gap in order)
 
 
 def _speaks(one: Settled, settled: Sequence[Settled]) -> bool:
@@ -118,7 +118,7 @@ def _is_error_of_form(other: Settled, best: Settled) -> bool:
     return more < (FORM_ERROR * max(other.candidate.explained.size, default=0.0)) ** 2
 
 
-def confidence_of(rivals: Sequence[Rival]) -> float:
+def confidence_of(rivals: Sequence[Alternative]) -> float:
     """Return the probability of a verdict beside its `rivals`, by their log odds."""
     return SUREST / (1.0 + sum(float(np.exp(-FORM_DOUBT * r.log_odds)) for r in rivals))
 

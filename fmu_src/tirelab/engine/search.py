@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..preprocessing.dataset import Scene
 from ..preprocessing.kinematics import IndexArray
 from ..preprocessing.noise_model import Noise
 from .columns import Layout, beside_at, build, layout_of, lifted_at, lifted_from_force, measure, moved
@@ -20,6 +19,7 @@ from .evidence import Products
 from .families import STATIC, Family
 from .judge import CONFINED, Candidate, SetName, beside_all, judge, law_whole, material
 from .place import Point
+from .scene import Scene
 from .screen import UNDOING, Screen
 
 POOR = 1.15

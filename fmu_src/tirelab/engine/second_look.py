@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..preprocessing.dataset import Scene
 from ..preprocessing.kinematics import FloatArray
 from ..preprocessing.lines_and_segments import Outstanding
 from ..preprocessing.noise_model import Noise
@@ -16,6 +15,7 @@ from .background import noises_beside, standing_out
 from .families import Family
 from .place import Point
 from .plainer import left_by
+from .scene import Scene
 from .search import Settled
 
 SAME_LINE = 1.0

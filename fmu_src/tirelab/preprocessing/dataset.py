@@ -1,37 +1,66 @@
-"""The recordings of one diagnosis, brought to the form that every candidate needs: motion, law, and what to fit."""
+"""The recordings of one diagnosis prepared for fitting: motion, baseline law, surface weights and fitted rows."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from radialtire import FLAT_RADIUS, TireModel
 
 from .kinematics import FloatArray, IndexArray, Motion, motion_of
-from .lines_and_segments import Outstanding
 
-DEEP_IN_CM = 1e-2
+LEAST_CM = 1e-2
 """Below this deflection [cm] the logarithm of the deflection is held: the force there is below every noise."""
 
 ROWS = 8000
-"""Samples compared in the search, evenly taken after whitening; the coarsened evidence is worth fewer."""
+"""Samples that are compared in the search, evenly spaced, all experiments together."""
 
-HIGHEST = 0.999
-"""Part of the readings below the largest one but for noise and spikes."""
+PEAK_QUANTILE = 0.999
+"""Part of the readings that lie below the largest force but for noise and spikes."""
 
 MOST_FREE_SURFACES = 12
 """Recordings with more radii than this (terrain) share these many support points of the law's shape."""
 
 
-@dataclass(frozen=True)
-class Record:
-    """One recording as the candidates see it.
+class Recorded(Protocol):
+    """What is diagnosed: the samples of one recording, arrays of one length, time rising."""
 
-    time [s], force [N] as read; motion; surface: weights (n, surfaces) of the law's support points, rows sum to 1;
-    coefficient A [N/cm^B], exponent B [1] of the believed law; rows: indices of the samples that are compared;
-    number: of the recording; whole: the recording of which this one is a part
+    @property
+    def name(self) -> str:
+        """What the recording is called."""
+        ...
+
+    @property
+    def time(self) -> FloatArray:
+        """[s]."""
+        ...
+
+    @property
+    def deflection(self) -> FloatArray:
+        """[m], compressed > 0."""
+        ...
+
+    @property
+    def surface_radius(self) -> FloatArray:
+        """[m], convex > 0, concave < 0, flat infinite."""
+        ...
+
+    @property
+    def force(self) -> FloatArray:
+        """[N], compressive > 0."""
+        ...
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One recording prepared for fitting; arrays of one length n.
+
+    time [s] from its start; force [N] as read; motion: its kinematics; surface (n, surfaces): weights of the law's
+    support points, rows sum to 1; coefficient A [N/cm^B], exponent B [1] of the baseline law; rows: indices of the
+    samples that are compared; number: of the recording, from 0
     """
 
     time: FloatArray
@@ -42,18 +71,13 @@ class Record:
     exponent: FloatArray
     rows: IndexArray
     number: int
-    whole: Record | None = field(default=None, repr=False)
-    memory: dict[str, FloatArray] = field(default_factory=dict, repr=False, compare=False)
-    standing: list[Outstanding] = field(default_factory=list, repr=False, compare=False)
 
     @cached_property
-    def thin(self) -> Record:
-        """The recording at its `rows` alone; what remembers is still computed on the whole of it."""
+    def sampled(self) -> Experiment:
+        """The experiment at its `rows` alone."""
         rows = self.rows
-        if rows.size == self.time.size:
-            return self
         motion = Motion(**{k: v if k == "noise" else v[rows] for k, v in self.motion.__dict__.items()})
-        return Record(
+        return Experiment(
             self.time[rows],
             self.force[rows],
             motion,
@@ -62,49 +86,7 @@ class Record:
             self.exponent[rows],
             np.arange(rows.size),
             self.number,
-            self,
-            standing=self.standing,
         )
-
-    @property
-    def outstanding(self) -> Outstanding:
-        """What stands out of the recording, once that has been looked for."""
-        return self.standing[0] if self.standing else Outstanding()
-
-    def kept(self, name: str, compute: Callable[[Motion], Iterable[FloatArray]]) -> FloatArray:
-        """Return what `compute` makes of the whole motion, one row each at this record's samples, computed once."""
-        if name not in self.memory:
-            if self.whole is None:
-                self.memory[name] = np.stack(list(compute(self.motion)))
-            else:
-                self.memory[name] = np.stack([row[self.whole.rows] for row in compute(self.whole.motion)])
-        return self.memory[name]
-
-    def kept_lines(self, course: FloatArray, weight: FloatArray, count: int) -> FloatArray:
-        """Return `strongest_lines` of the leftover over a course, found once.
-
-        The lowest ones belong to its slow change and are left out.
-        """
-        name = f"lines {course[-1]:.9g} {float(np.mean(np.abs(weight))):.3g}"
-        if name not in self.memory:
-            self.memory[name] = strongest_lines(course, weight, self.leftover, count)
-        return self.memory[name]
-
-    @property
-    def leftover(self) -> FloatArray:
-        """What a smooth function of deflection and direction leaves of the bare law's residual [N]."""
-        if "leftover" not in self.memory:
-            elastic = self.elastic(self.motion.deflection)
-            depth = np.clip(self.motion.deflection / self.motion.deflection.max(), 0.0, 1.0)
-            basis = [
-                np.cos(np.pi * j * depth) * side for j in range(6) for side in (1.0, self.motion.direction)
-            ]
-            columns = np.stack([*basis, elastic, self.motion.rate, self.motion.acceleration], axis=1)
-            columns /= np.sqrt(np.mean(columns**2, axis=0)) + 1e-12
-            residual = self.force - elastic
-            gram = columns.T @ columns + 1e-6 * residual.size * np.eye(columns.shape[1])
-            self.memory["leftover"] = residual - columns @ np.linalg.solve(gram, columns.T @ residual)
-        return self.memory["leftover"]
 
     @property
     def step(self) -> float:
@@ -112,78 +94,49 @@ class Record:
         return float(np.median(np.diff(self.time)))
 
     def elastic(self, deflection: FloatArray) -> FloatArray:
-        """Return the believed law's force [N] at `deflection` [m], sample by sample."""
+        """Return the baseline law's force [N] at `deflection` [m], sample by sample."""
         return self.coefficient * np.maximum(100.0 * deflection, 0.0) ** self.exponent
 
     def stiffness(self, deflection: FloatArray) -> FloatArray:
-        """Return the believed law's tangent dF/dx [N/m] at `deflection` [m]."""
-        loaded = np.maximum(100.0 * deflection, DEEP_IN_CM)
+        """Return the baseline law's tangent dF/dx [N/m] at `deflection` [m]."""
+        loaded = np.maximum(100.0 * deflection, LEAST_CM)
         slope = 100.0 * self.coefficient * self.exponent * loaded ** (self.exponent - 1.0)
         return np.where(deflection > 0.0, slope, 0.0)
 
 
-def strongest_lines(course: FloatArray, weight: FloatArray, values: FloatArray, count: int) -> FloatArray:
-    """Return the `count` strongest lines of `values` over a `course` that does not fall, strongest first.
-
-    Shape (count, 2): the line [1/unit of course], and the root mean square of its part over the noise that the
-    differences of neighbours show; its time course is that of `weight`.
-    """
-    rising, first = np.unique(course, return_index=True)
-    if rising.size < 64:
-        return np.zeros((count, 2))
-    even = np.linspace(rising[0], rising[-1], rising.size)
-    resampled = np.interp(even, rising, (weight * values)[first])
-    spectrum = np.abs(np.fft.rfft((resampled - resampled.mean()) * np.hanning(even.size), 4 * even.size))
-    frequencies = np.fft.rfftfreq(4 * even.size, float(even[1] - even[0]))
-    spectrum[frequencies < 3.0 / (rising[-1] - rising[0])] = 0.0
-    sigma = 1.4826 * float(np.median(np.abs(np.diff(values, 2)))) / np.sqrt(6.0) + 1e-12
-    lines = []
-    for _ in range(count):
-        at = int(np.argmax(spectrum))
-        waves = np.stack(
-            [weight * f(2.0 * np.pi * frequencies[at] * course) for f in (np.sin, np.cos)], axis=1
-        )
-        fitted = waves @ np.linalg.lstsq(waves, values, rcond=None)[0]
-        # A fast line stands in the differences too: what it leaves then measures the noise better.
-        rest = min(sigma, float(np.std(values - fitted)) + 1e-12)
-        lines.append((float(frequencies[at]), float(np.sqrt(np.mean(fitted**2))) / rest))
-        spectrum[max(at - 12, 0) : at + 13] = 0.0
-    return np.array(lines)
-
-
 @dataclass(frozen=True)
-class Scene:
-    """All recordings of one diagnosis with the scales that make their columns comparable.
+class Dataset:
+    """All experiments of one diagnosis and the scales that make their regressors comparable.
 
-    radii [m]: support points of the law's shape; deepest [m] and strongest [N]: largest deflection and elastic force
-    longest [s]: duration of the longest recording; finest [s]: shortest sampling step
+    radii [m]: support points of the law's shape; max_deflection [m], max_elastic_force [N], max_force [N]: largest
+    deflection, largest force of the baseline law, largest reading but for noise; duration [s] of the longest
+    experiment; min_step [s]: shortest sampling step
     """
 
-    records: tuple[Record, ...]
+    experiments: tuple[Experiment, ...]
     radii: tuple[float, ...]
-    deepest: float
-    strongest: float
-    highest: float
-    longest: float
-    finest: float
+    max_deflection: float
+    max_elastic_force: float
+    max_force: float
+    duration: float
+    min_step: float
 
 
-def scene_of(
-    recordings: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]], tire: TireModel
-) -> Scene:
-    """Return the scene of recordings given as time [s], deflection [m], surface radius [m] and force [N]."""
-    radii = _support(np.concatenate([np.unique(r) for _, _, r, _ in recordings]))
-    records = []
+def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
+    """Return the dataset of `recordings`, with the law of the `baseline` tire."""
+    radii = _support_radii(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
     share = ROWS // len(recordings)
-    for number, (time, deflection, radius, force) in enumerate(recordings):
-        distinct, inverse = np.unique(radius, return_inverse=True)
-        pairs = np.array([tire.law.coefficients(float(r)) for r in distinct])
+    experiments = []
+    for number, recording in enumerate(recordings):
+        time = recording.time
+        distinct, inverse = np.unique(recording.surface_radius, return_inverse=True)
+        pairs = np.array([baseline.law.coefficients(float(r)) for r in distinct])
         weights = np.stack([_hats(float(r), radii) for r in distinct])
-        records.append(
-            Record(
+        experiments.append(
+            Experiment(
                 time - time[0],
-                force,
-                motion_of(time, deflection),
+                recording.force,
+                motion_of(time, recording.deflection),
                 weights[inverse],
                 pairs[inverse, 0],
                 pairs[inverse, 1],
@@ -191,14 +144,14 @@ def scene_of(
                 number,
             )
         )
-    return Scene(
-        tuple(records),
+    return Dataset(
+        tuple(experiments),
         radii,
-        max(float(r.motion.deflection.max()) for r in records),
-        max(float(r.elastic(r.motion.deflection).max()) for r in records),
-        max(float(np.quantile(r.force, HIGHEST)) for r in records),
-        max(float(r.time[-1]) for r in records),
-        min(r.step for r in records),
+        max(float(e.motion.deflection.max()) for e in experiments),
+        max(float(e.elastic(e.motion.deflection).max()) for e in experiments),
+        max(float(np.quantile(e.force, PEAK_QUANTILE)) for e in experiments),
+        max(float(e.time[-1]) for e in experiments),
+        min(e.step for e in experiments),
     )
 
 
@@ -206,7 +159,7 @@ def _curvature(radius: float) -> float:
     return 0.0 if abs(radius) >= FLAT_RADIUS else 1.0 / radius
 
 
-def _support(radii: FloatArray) -> tuple[float, ...]:
+def _support_radii(radii: FloatArray) -> tuple[float, ...]:
     distinct = sorted({_curvature(float(r)) for r in radii})
     if len(distinct) > MOST_FREE_SURFACES:
         distinct = list(np.quantile(distinct, np.linspace(0.0, 1.0, MOST_FREE_SURFACES)))

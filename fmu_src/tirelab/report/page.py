@@ -16,10 +16,10 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
-from ..diagnosis import titles
 from ..errors import TirelabError
+from ..names import REFITTED_LAW
 from ..recordings.recording import Recording
-from . import words
+from . import titles, words
 from .loops import Case, draw_difference, draw_loops
 from .residuals import (
     draw_maps,
@@ -145,7 +145,7 @@ def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:
     known = CATALOGUE.get(name)
     return {
         "title": titles.effect_title(name),
-        "statement": words.RECALIBRATED if name == titles.RECALIBRATION else "",
+        "statement": words.LAW_STATEMENT if name == REFITTED_LAW else "",
         "tell_tale": known.tell_tale if known else "",
         "imitators": titles.listed([titles.effect_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",

@@ -10,8 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ..diagnosis import titles
-from . import words
+from . import titles, words
 
 MOST_PLACES = 6
 """Places that are told."""

@@ -9,10 +9,10 @@ from typing import Any
 
 from radialtire import CATALOGUE, FLAT_RADIUS
 
-from ..diagnosis import titles
-from ..diagnosis.titles import RECALIBRATION
+from ..names import REFITTED_LAW
+from . import titles
 
-RECALIBRATED = "the coefficients of the elastic law are another tire's; no physics is missing"
+LAW_STATEMENT = "the coefficients of the elastic law are another tire's; no physics is missing"
 
 _SCALES = {
     "m": (1e3, "mm"),
@@ -34,7 +34,7 @@ _COORDINATES = {
 
 def meaning(effect: str, parameter: str) -> str:
     """Return what a parameter means, from the catalogue, or nothing where it has none."""
-    owner = CATALOGUE.get("elastic_shape" if effect == RECALIBRATION else effect)
+    owner = CATALOGUE.get("elastic_shape" if effect == REFITTED_LAW else effect)
     found = [p.meaning for p in owner.parameters if p.name == parameter] if owner else []
     return found[0] if found else ""
 
@@ -101,7 +101,7 @@ def coordinate(by: str) -> str:
 def law_apart(verdict: Mapping[str, Any]) -> bool:
     """Return whether the places of a verdict are those that the corrected law leaves (`locate.beyond_law`)."""
     names = [effect["name"] for effect in verdict["effects"]]
-    return RECALIBRATION in names and len(names) > 1
+    return REFITTED_LAW in names and len(names) > 1
 
 
 def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:

@@ -58,6 +58,36 @@ class Moved(Protocol):
         ...
 
 
+class Smoothed(Moved, Protocol):
+    """A motion without the noise of its reading."""
+
+    @property
+    def deflection(self) -> FloatArray:
+        """[m], compressed > 0."""
+        ...
+
+
+@dataclass(frozen=True)
+class SmoothedMotion:
+    """The motion of a recording without the noise of its reading; arrays of one length.
+
+    time [s], deflection [m], surface_radius [m]; rate [m/s], acceleration [m/s^2]: seen from both sides of each moment
+    """
+
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+def smoothed_motion(recording: Sampled, motion: Smoothed) -> SmoothedMotion:
+    """Return the smoothed `motion` of a recording at its times and on its surfaces."""
+    return SmoothedMotion(
+        recording.time, motion.deflection, recording.surface_radius, motion.rate, motion.acceleration
+    )
+
+
 @dataclass(frozen=True)
 class History:
     """What the effects may know of every moment (see `radialtire.effect.Instant`); arrays of one length.

@@ -14,9 +14,9 @@ from radialtire import read_tire
 
 from ..batch.workers import Cores, work
 from ..diagnosis.diagnosis_file import Stated, read_stated
+from ..diagnosis.diagnosis_run import Diagnoser, diagnose_files
 from ..errors import TirelabError
 from ..recordings.recording import read_recording
-from ..report.as_user import Diagnoser, diagnose_as_user
 from .figures import overview
 from .folders import Folders, read_json, write_json
 from .follow_up_test import run_suggested_test
@@ -42,7 +42,7 @@ class Series:
     seed: int
     trials: int
     kind: str | None = None
-    diagnoser: Diagnoser = diagnose_as_user
+    diagnoser: Diagnoser = diagnose_files
 
     @property
     def keys(self) -> dict[str, int]:

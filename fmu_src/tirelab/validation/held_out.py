@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from radialtire import TireModel
 
-from ..diagnosis.held_out import without_reading_noise
+from ..diagnosis.held_out import noise_free_residual
 from ..fmu.replay import replay
 from ..preprocessing.kinematics import motion_of
 from ..recordings.recording import Recording
@@ -94,7 +94,7 @@ def _errors(
             (
                 np.mean((r.force - simulate(believed, r)) ** 2),
                 np.mean((r.force - simulate(corrected, r)) ** 2),
-                np.mean(without_reading_noise(corrected, r, motion_of(r.time, r.deflection)) ** 2),
+                np.mean(noise_free_residual(corrected, r, motion_of(r.time, r.deflection)) ** 2),
                 float(truths[f"{r.name}.csv"]["floor_rmse"]) ** 2,
                 float(truths[f"{r.name}.csv"]["read_floor_rmse"]) ** 2,
             )

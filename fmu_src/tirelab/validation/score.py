@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from ..diagnosis.diagnosis_file import NOTHING, UNKNOWN, Names, Stated
+from ..diagnosis.diagnosis_file import NOTHING, Names, Stated
+from ..names import UNKNOWN
 from .held_out import Errors, HeldOut
 from .overlap import PlaceScore
 

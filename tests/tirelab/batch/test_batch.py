@@ -6,19 +6,16 @@ import csv
 import json
 import os
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
-import click
 import pytest
 from tirelab.batch.batch import diagnose_each, find_items
 from tirelab.batch.workers import Cores
-from tirelab.diagnosis.diagnosis_file import read_stated
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import read_recording
-from tirelab.report.as_user import diagnose_as_user
 
 HERE = Cores(jobs=1)
 ROWS = "time [s],deflection [mm],radius [cm],force [N]\n" + "".join(
@@ -157,7 +154,7 @@ def test_another_tire_or_other_options_diagnose_again(shelf: Path, tmp_path: Pat
     (tmp_path / "tire.json").write_text("{}")
     run(shelf, tmp_path / "out", counted)
     run(shelf, tmp_path / "out", counted, tire=tmp_path / "tire.json")
-    run(shelf, tmp_path / "out", counted, tire=tmp_path / "tire.json", options=["--radius", "flat"])
+    run(shelf, tmp_path / "out", counted, tire=tmp_path / "tire.json", reading=Reading(radius="flat"))
     assert counted.calls == 18
 
 
@@ -243,55 +240,3 @@ def test_a_dask_cluster_writes_the_same_summary(shelf: Path, tmp_path: Path, clu
         (tmp_path / name / "summary.csv").read_text(encoding="utf-8-sig") for name in ("here", "there")
     )
     assert here == there
-
-
-@pytest.fixture
-def command(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None]:
-    """Puts another command in the place of `tirelab diagnose`."""
-    from tirelab.cli import main
-
-    def put(function: Callable[..., Any]) -> None:
-        options = [
-            click.Argument(["recordings"], nargs=-1),
-            click.Option(["--out"]),
-            click.Option(["--tire"]),
-            click.Option(["--radius"]),
-        ]
-        monkeypatch.setitem(
-            main.commands, "diagnose", click.Command("diagnose", callback=function, params=options)
-        )
-
-    return put
-
-
-def test_the_users_command_is_called_with_what_a_user_types(
-    command: Callable[..., None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def fake(recordings: tuple[str, ...], out: str, tire: str | None, radius: str | None) -> None:
-        click.echo("much talk")
-        Path(out, "diagnosis.json").write_text(
-            json.dumps({**content(["lag"]), "report": f"{recordings} {tire} {radius}"})
-        )
-
-    command(fake)
-    diagnose_as_user([Path("a.csv"), Path("b.csv")], Path("t.json"), tmp_path, ["--radius", "flat"])
-    assert str(read_stated(tmp_path).report) == str(tmp_path / "('a.csv', 'b.csv') t.json flat")
-    assert capsys.readouterr().out == ""
-
-
-def test_a_failing_command_is_its_sentence(command: Callable[..., None], tmp_path: Path) -> None:
-    def fails(**_: Any) -> None:
-        raise click.ClickException("the recording is too short")
-
-    command(fails)
-    with pytest.raises(TirelabError, match="too short"):
-        diagnose_as_user([Path("a.csv")], None, tmp_path)
-
-
-def test_a_bad_exit_without_a_sentence_is_told(command: Callable[..., None], tmp_path: Path) -> None:
-    def leaves(**_: Any) -> None:
-        raise SystemExit(3)
-
-    command(leaves)
-    with pytest.raises(TirelabError, match="exit status 3"):
-        diagnose_as_user([Path("a.csv")], None, tmp_path)

@@ -54,7 +54,7 @@ def test_an_effect_that_the_catalogue_lacks_is_unknown_or_has_rivals():
     catalogue = [n for n in CATALOGUE_NAMES if n != "viscous_damping"]
     verdict = diagnose([with_damping(3)], catalogue=catalogue)
     assert "viscous_damping" not in verdict.names
-    assert verdict.unexplained or verdict.rivals
+    assert verdict.unexplained or verdict.alternatives
 
 
 def test_a_ripple_over_the_deflection_is_unknown_and_repeats():
@@ -63,7 +63,7 @@ def test_a_ripple_over_the_deflection_is_unknown_and_repeats():
     verdict = diagnose([read("ride", time, deflection, force, 6)])
     assert verdict.names == ("unknown",)
     assert "deflection" in verdict.unexplained_by
-    correction = next(c for c in verdict.corrections if c.by == "deflection")
+    correction = next(c for c in verdict.residual_models if c.by == "deflection")
     # 25 / sqrt(2) = 17.7 N of ripple under 5 N of noise: 93 % of the squared misfit can be foretold.
     assert correction.repeats > 0.75
     told = json.loads(json.dumps(verdict.to_contract(), allow_nan=False))["verdict"]["corrections"]
@@ -97,7 +97,7 @@ def test_at_one_rate_the_loops_are_rivals_with_the_test_that_tells():
     loop = 20.0 * np.sign(np.sin(2.0 * np.pi * time / 4.0))
     force = np.maximum(flat_force(deflection) + loop, 0.0)
     verdict = diagnose([read("triangle", time, deflection, force, 9)])
-    named = {frozenset(verdict.names), *(frozenset(r.names) for r in verdict.rivals)}
+    named = {frozenset(verdict.names), *(frozenset(r.names) for r in verdict.alternatives)}
     assert frozenset({"viscous_damping"}) in named
     assert frozenset({"rate_independent_hysteresis"}) in named
     assert verdict.confidence < 0.5

@@ -1,29 +1,30 @@
-"""The test that would tell rivals apart."""
+"""The test that tells alternatives apart."""
 
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
 from scipy.stats import norm
-from tirelab.diagnosis.discriminating_test import DECISIVE, WAVEFORMS, Limits, separate
+from tirelab.diagnosis.discriminating_test import DECISIVE, WAVEFORMS, Limits, discriminate
+from tirelab.engine.findings import FittedModel
 from tirelab.engine.refit import assemble, knobs_of
 
 FRICTION = knobs_of(("rate_independent_hysteresis",), (np.inf,), False, 0.025)
+SLIPPING = np.array([30.0, 0.0, 1e-3])
+
+
+def friction(name="rate_independent_hysteresis"):
+    """Fitted friction, under any name."""
+    tire = assemble(TireModel(), FRICTION, SLIPPING, (np.inf,))
+    return FittedModel((name,), tire, TireModel(), FRICTION, SLIPPING, (np.inf,))
+
+
+def viscous():
+    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (2500.0, 1.0, 0.0, 0.0)),))
+    return FittedModel(("viscous_damping",), tire, TireModel(), (), np.zeros(0), (np.inf,))
 
 
 def fitted(noise):
-    values = np.array([30.0, 0.0, 1e-3])
-    friction = assemble(TireModel(), FRICTION, values, (np.inf,))
-    viscous = TireModel(effects=((CATALOGUE["viscous_damping"], (2500.0, 1.0, 0.0, 0.0)),))
-    return separate(
-        (viscous, ("viscous_damping",)),
-        (friction, ("rate_independent_hysteresis",)),
-        TireModel(),
-        FRICTION,
-        values,
-        (np.inf,),
-        noise,
-        Limits(),
-    )
+    return discriminate(viscous(), friction(), noise, Limits())
 
 
 def test_friction_and_viscosity_are_told_apart_by_more_than_one_rate():
@@ -60,15 +61,10 @@ def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_
 
 def test_the_same_force_under_other_names_cannot_be_told_apart():
     """Friction against itself: whatever is driven, the refit takes up all of the difference."""
-    values = np.array([30.0, 0.0, 1e-3])
-    tire = assemble(TireModel(), FRICTION, values, (np.inf,))
-    names = (("rate_independent_hysteresis",), ("viscous_damping",))
-    found = separate(
-        (tire, names[0]), (tire, names[1]), TireModel(), FRICTION, values, (np.inf,), 6.0, Limits()
-    )
-    assert not found.tells
+    found = discriminate(friction(), friction("viscous_damping"), 6.0, Limits())
+    assert not found.sufficient
     assert found.sentence.startswith(
         "No motion within the rig's limits would tell rate-independent hysteresis from"
     )
     assert "5.7 are needed" in found.sentence
-    assert fitted(6.0).tells
+    assert fitted(6.0).sufficient

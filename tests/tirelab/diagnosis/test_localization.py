@@ -7,8 +7,8 @@ import pytest
 from drives import Drive, flat_force, read, ride
 from radialtire import CATALOGUE, Recalibrated, TireModel
 from scipy.signal import lfilter
-from tirelab.diagnosis.localization import beyond_law, locate
-from tirelab.preprocessing.dataset import scene_of
+from tirelab.diagnosis.localization import law_corrected, localize
+from tirelab.preprocessing.dataset import dataset_of
 from tirelab.preprocessing.noise_model import noise_of
 from tirelab.simulation.simulate import simulate
 
@@ -17,10 +17,10 @@ LEVEL = 5.0
 
 
 def places(drives, residuals, noises):
-    scene = scene_of([(d.time, d.deflection, d.surface_radius, d.force) for d in drives], TireModel())
-    compared = [n[r.rows] for n, r in zip(noises, scene.records, strict=True)]
+    dataset = dataset_of(drives, TireModel())
+    compared = [n[r.rows] for n, r in zip(noises, dataset.experiments, strict=True)]
     own = [noise_of(n, np.zeros(n.size), 0.0, np.ones(n.size, dtype=bool)) for n in compared]
-    return locate(drives, scene, residuals, own)
+    return localize(drives, dataset, residuals, own)
 
 
 def noise(seed, samples, colour=0.0):
@@ -237,22 +237,22 @@ def test_places_are_those_of_the_physics_where_the_law_is_wrong_too():
     drive = read("ride", time, deflection, recorded, 4, noise=0.0)
     before = [recorded - flat_force(deflection)]
     # exp(0.1) on A is not 500 N.s/m: what the law leaves is the dashpot's force alone.
-    (left,) = beyond_law([drive], before, believed, corrected)
+    (left,) = law_corrected([drive], before, believed, corrected)
     assert np.max(np.abs(left - 500.0 * rate)) < 10.0
-    assert beyond_law([drive], before, believed, TireModel(law=law))[0] is before[0]
-    assert beyond_law([drive], before, believed, TireModel(effects=damped))[0] is before[0]
+    assert law_corrected([drive], before, believed, TireModel(law=law))[0] is before[0]
+    assert law_corrected([drive], before, believed, TireModel(effects=damped))[0] is before[0]
 
 
 def test_noise_that_wanders_is_no_place_where_the_correction_leaves_it():
     time, deflection, _ = ride(3)
     drive = read("ride", time, deflection, flat_force(deflection), 4, noise=0.0)
-    scene = scene_of([(drive.time, drive.deflection, drive.surface_radius, drive.force)], TireModel())
+    dataset = dataset_of([drive], TireModel())
     found = {True: 0, False: 0}
     for seed in range(10):
         own = noise(seed, time.size) + 0.4 * noise(100 + seed, time.size, colour=0.999)
         told = noise_of(noise(seed, time.size), np.zeros(time.size), 0.0, np.ones(time.size, dtype=bool))
         for known in found:
-            found[known] += bool(locate([drive], scene, [own], [told], [own] if known else None))
+            found[known] += bool(localize([drive], dataset, [own], [told], [own] if known else None))
     # 0.4 noises that last a thousand samples: eight correlation times to a recording, invisible to the whitening.
     assert found[False] >= 8
     assert found[True] <= 1

@@ -1,9 +1,10 @@
 """What is said in the verdict's sentences, and what is not."""
 
 import numpy as np
-from tirelab.diagnosis.discriminating_test import SeparatingTest, Test
+from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.summary import summarise
-from tirelab.diagnosis.verdict import Correction, Fit, NamedEffect, Rival
+from tirelab.diagnosis.verdict import Fit, ResidualModel
+from tirelab.engine.findings import Alternative, NamedEffect
 
 NAN = float("nan")
 FELL = Fit(6.0, 26.4, 6.1, 26.5, 6.2, "recordings given")
@@ -12,7 +13,7 @@ FRICTION = NamedEffect("rate_independent_hysteresis", {}, 1.0)
 
 
 def learned(by, repeats, after=6.4, held_out_after=6.5):
-    return Correction(by, "m", np.arange(3.0), np.arange(3.0), repeats, after, held_out_after)
+    return ResidualModel(by, "m", np.arange(3.0), np.arange(3.0), repeats, after, held_out_after)
 
 
 def test_nothing_missing_does_not_fall():
@@ -64,23 +65,23 @@ def test_of_several_curves_the_one_that_repeats_best_is_told():
 
 
 def test_one_reason_is_said_once_and_several_each():
-    same = [Rival((n,), 1.0, "one surface") for n in ("viscous_damping", "rate_independent_hysteresis")]
+    same = [Alternative((n,), 1.0, "one surface") for n in ("viscous_damping", "rate_independent_hysteresis")]
     told = summarise((), same, (), 0.4, STAYED)
     assert "It could also be viscous damping or rate-independent hysteresis: one surface." in told
-    told = summarise((), [same[0], Rival(("force_lag",), 1.0, "one rate")], (), 0.4, STAYED)
+    told = summarise((), [same[0], Alternative(("force_lag",), 1.0, "one rate")], (), 0.4, STAYED)
     assert "It could also be viscous damping (one surface) or force lag (one rate)." in told
 
 
 def test_what_may_be_there_beside_the_verdict_is_told_apart_from_what_may_be_in_its_place():
     reason = "one pressure"
-    beside = [Rival((n, "inertia"), 6.0, reason) for n in ("gas_compression", "series_compliance")]
+    beside = [Alternative((n, "inertia"), 6.0, reason) for n in ("gas_compression", "series_compliance")]
     told = summarise((NamedEffect("inertia", {}, 1.0),), (), (), 0.9, FELL)
     assert "may" not in told
     told = summarise((NamedEffect("inertia", {}, 1.0),), beside, (), 0.9, FELL)
     assert told.endswith(
         "Beside what was found there may be, unseen, gas compression or series compliance: one pressure."
     )
-    instead = Rival(("force_lag",), 2.0, "one rate")
+    instead = Alternative(("force_lag",), 2.0, "one rate")
     told = summarise((NamedEffect("inertia", {}, 1.0),), [instead, *beside], (), 0.9, FELL)
     assert "It could also be force lag: one rate. Beside what was found there may be, unseen, gas" in told
 
@@ -88,8 +89,8 @@ def test_what_may_be_there_beside_the_verdict_is_told_apart_from_what_may_be_in_
 def test_that_no_test_would_tell_is_said():
     motion = Test("sweep", np.arange(3.0), np.zeros(3), np.full(3, np.inf))
     between = (("recalibration",), ("series_compliance",))
-    rivals = [Rival(between[1], 1.0, "one surface")]
-    worthless = SeparatingTest(motion, between, 0.3, 0.01, "No motion would tell.")
+    rivals = [Alternative(between[1], 1.0, "one surface")]
+    worthless = DiscriminatingTest(motion, between, 0.3, 0.01, "No motion would tell.")
     assert summarise((), rivals, (), 0.4, STAYED, worthless).endswith("No motion would tell.")
-    telling = SeparatingTest(motion, between, 30.0, 1.0, "Drive it.")
+    telling = DiscriminatingTest(motion, between, 30.0, 1.0, "Drive it.")
     assert "Drive it" not in summarise((), rivals, (), 0.4, STAYED, telling)

@@ -9,7 +9,8 @@ from tirelab.engine.evidence import Products, explain, products_of
 from tirelab.engine.families import CATALOGUE_FAMILIES, high_pass, jenkins
 from tirelab.engine.lag import lagged
 from tirelab.engine.place import Point, place_at
-from tirelab.preprocessing.dataset import scene_of
+from tirelab.engine.scene import scene_of
+from tirelab.preprocessing.dataset import dataset_of
 from tirelab.preprocessing.kinematics import motion_of
 
 
@@ -85,7 +86,7 @@ def test_the_motion_of_a_noisy_sine():
 def test_every_family_of_the_catalogue_has_finite_columns_and_variants_within_them():
     time, deflection, _ = ride(9, samples=800)
     drive = read("ride", time, deflection, flat_force(deflection), 1)
-    scene = scene_of([(drive.time, drive.deflection, drive.surface_radius, drive.force)], TireModel())
+    scene = scene_of(dataset_of([drive], TireModel()))
     place = place_at(scene.records[0], scene, Point(np.zeros((1, 4)), offset=1e-4, compliance=5e-7))
     for family in CATALOGUE_FAMILIES:
         columns = family.build(place)
@@ -96,7 +97,7 @@ def test_every_family_of_the_catalogue_has_finite_columns_and_variants_within_th
 def test_a_spring_in_series_is_solved():
     time, deflection, _ = ride(9, samples=400)
     drive = read("ride", time, deflection, flat_force(deflection), 1)
-    scene = scene_of([(drive.time, drive.deflection, drive.surface_radius, drive.force)], TireModel())
+    scene = scene_of(dataset_of([drive], TireModel()))
     place = place_at(scene.records[0], scene, Point(np.zeros((1, 4)), compliance=1e-6))
     assert place.deflection + 1e-6 * place.elastic == pytest.approx(
         scene.records[0].motion.deflection, abs=1e-9

@@ -8,7 +8,7 @@ from drives import flat_force, read, ride, triangle
 from radialtire import TireModel
 from settled_sets import settled
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.diagnosis.verdict import Rival
+from tirelab.engine.findings import Alternative
 from tirelab.engine.rivals import (
     DECIDABLE,
     HIDING,
@@ -22,12 +22,13 @@ from tirelab.engine.rivals import (
     rivals_of,
     static_rivals,
 )
-from tirelab.preprocessing.dataset import scene_of
+from tirelab.engine.scene import scene_of
+from tirelab.preprocessing.dataset import dataset_of
 
 
 def scene(time, deflection):
     drive = read("drive", time, deflection, flat_force(deflection), 1)
-    return scene_of([(drive.time, drive.deflection, drive.surface_radius, drive.force)], TireModel())
+    return scene_of(dataset_of([drive], TireModel()))
 
 
 def test_a_triangle_has_one_rate_and_a_ride_has_many():
@@ -55,8 +56,8 @@ def test_the_reason_for_rivals_of_the_deflection_alone():
 
 def test_two_sets_that_are_as_likely_share_the_confidence():
     assert confidence_of(()) == SUREST
-    assert confidence_of((Rival(("inertia",), 0.0, ""),)) == pytest.approx(SUREST / 2.0)
-    assert confidence_of((Rival(("inertia",), DECIDABLE, ""),)) > 0.98 * SUREST
+    assert confidence_of((Alternative(("inertia",), 0.0, ""),)) == pytest.approx(SUREST / 2.0)
+    assert confidence_of((Alternative(("inertia",), DECIDABLE, ""),)) > 0.98 * SUREST
 
 
 def test_what_is_too_small_to_be_believed_is_a_rival():
@@ -66,7 +67,7 @@ def test_what_is_too_small_to_be_believed_is_a_rival():
     force = flat_force(deflection) + 0.1 * 5.0 / np.sqrt(np.mean(rate**2)) * rate
     verdict = diagnose([read("ride", time, deflection, force, 4)])
     assert verdict.names == ()
-    assert verdict.rivals[0].names == ("viscous_damping",)
+    assert verdict.alternatives[0].names == ("viscous_damping",)
     assert verdict.confidence < 0.75
 
 

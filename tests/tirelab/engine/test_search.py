@@ -27,7 +27,7 @@ def test_two_zeros_that_are_off_are_not_taken_for_another_tire():
     time, deflection, _ = ride(22)
     force = flat_force(deflection + 1e-3) + 40.0
     verdict = diagnose([read("ride", time, deflection, force, 22)])
-    either = [set(verdict.names), *(set(r.names) for r in verdict.rivals)]
+    either = [set(verdict.names), *(set(r.names) for r in verdict.alternatives)]
     assert {"deflection_offset", "force_offset"} in either
 
 

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 from drives import flat_force, read
 from radialtire import TireModel
-from tirelab.diagnosis.diagnose import CATALOGUE_NAMES, _families, diagnose
+from tirelab.diagnosis.diagnose import CATALOGUE_NAMES, diagnose
 from tirelab.engine.background import background
 from tirelab.engine.beyond import worth_trying
 from tirelab.engine.columns import lifted_from_force
+from tirelab.engine.explanation import _families
 from tirelab.engine.place import Point
+from tirelab.engine.scene import scene_of
 from tirelab.engine.search import settle
 from tirelab.engine.second_look import second_look
-from tirelab.preprocessing.dataset import scene_of
+from tirelab.preprocessing.dataset import dataset_of
 
 STEP = 0.005
 COUNT = 6000
@@ -31,9 +33,7 @@ def eccentric(runout):
 
 def look(recording):
     """The second look beside the empty set, with nothing known of the first one."""
-    scene = scene_of(
-        [(recording.time, recording.deflection, recording.surface_radius, recording.force)], TireModel()
-    )
+    scene = scene_of(dataset_of([recording], TireModel()))
     everything = _families(CATALOGUE_NAMES)
     zero = Point(np.zeros((1, 4)), lifted=lifted_from_force(scene))
     noises = background(scene, everything, zero)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tirelab.diagnosis import titles
-from tirelab.report import words
+from tirelab.report import titles, words
 
 
 @pytest.mark.parametrize(

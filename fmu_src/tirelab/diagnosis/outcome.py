@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..diagnosis.titles import newtons
-from ..diagnosis.verdict import Correction, Verdict
 from ..recordings.recording import Recording
+from ..report.titles import newtons
+from .verdict import ResidualModel, Verdict
 
 FloatArray = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def contract_of(verdict: Verdict, fitted: Replayed, held_out: Replayed) -> dict[
 
 def beside(verdict: Verdict) -> dict[str, Any]:
     """Return what `write_report` can take besides the contract (see there)."""
-    test = verdict.separating_test
+    test = verdict.test
     return {
         "evidence": [
             {
@@ -81,8 +81,8 @@ def beside(verdict: Verdict) -> dict[str, Any]:
             }
             for number, e in enumerate(verdict.evidence)
         ],
-        "reasons": [r.reason for r in verdict.rivals],
-        "correction": [_correction(c) for c in verdict.corrections],
+        "reasons": [r.reason for r in verdict.alternatives],
+        "correction": [_correction(c) for c in verdict.residual_models],
         "waveform": None
         if test is None
         else {"time": test.test.time.tolist(), "deflection": test.test.deflection.tolist()},
@@ -95,9 +95,11 @@ def _remark(number: int, log_evidence: float) -> str:
     return "" if math.isfinite(log_evidence) else "a part too small, or of a sign it cannot have"
 
 
-def _correction(found: Correction) -> dict[str, Any]:
-    if found.repeats > 0.0:
-        repeats = f"It repeats: it explains {100.0 * found.repeats:.0f} % of what is left on blocks of time not seen."
+def _correction(found: ResidualModel) -> dict[str, Any]:
+    if found.r2 > 0.0:
+        repeats = (
+            f"It repeats: it explains {100.0 * found.r2:.0f} % of what is left on blocks of time not seen."
+        )
     else:
         repeats = "It does not repeat on blocks of time not seen: do not use it."
     if math.isfinite(found.after):

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from radialtire import CATALOGUE
 
-RECALIBRATION = "recalibration"
-UNKNOWN = "unknown"
+from ..names import REFITTED_LAW, UNKNOWN
 
 DEPENDENCE = {
     "deflection": "the deflection",
@@ -39,7 +38,7 @@ def effect_title(name: str) -> str:
 
 def set_title(names: Sequence[str]) -> str:
     """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
-    known = {*CATALOGUE, RECALIBRATION, UNKNOWN}
+    known = {*CATALOGUE, REFITTED_LAW, UNKNOWN}
     titles = [effect_title(n) if n in known else f"something unknown over {dependence(n)}" for n in names]
     return listed(titles) or "nothing missing"
 
@@ -58,7 +57,7 @@ def listed(words: Sequence[str], last: str = "and") -> str:
 
 def headline(names: Sequence[str], unexplained: bool, rivalled: bool) -> str:
     """Return the verdict in one line, from the names of its effects."""
-    physics = [name for name in names if name != RECALIBRATION]
+    physics = [name for name in names if name != REFITTED_LAW]
     if not physics and not unexplained:
         told = "No physics is missing: the elastic law is another tire's" if names else "Nothing is missing"
     elif not names:
@@ -68,7 +67,7 @@ def headline(names: Sequence[str], unexplained: bool, rivalled: bool) -> str:
         if unexplained:
             parts.append("something that no known effect explains")
         told = f"Left out: {listed(parts)}"
-        if RECALIBRATION in names:
+        if REFITTED_LAW in names:
             told += ", and the elastic law is another tire's"
     if rivalled:
         told += " – or something that these recordings cannot tell from it"

@@ -1,0 +1,221 @@
+"""A whole diagnosis of files: read, judge, write the tire, build its FMU, replay it, write diagnosis.json and the page.
+
+The command, the batch and the blind trials all call `run_diagnosis`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
+
+from ..errors import TirelabError
+from ..fmu.build import build_fmu
+from ..fmu.replay import replay
+from ..recordings.formats import LOADERS
+from ..recordings.reading import Reading
+from ..recordings.recording import Recording
+from ..report import write_report
+from ..simulation.simulate import simulate
+from .diagnose import diagnose
+from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, beside, contract_of
+from .verdict import Verdict
+
+AGREEMENT = 1e-9
+"""The FMU and the simulation differ by less than this part of the largest force: they sum the same in another order."""
+
+FloatArray = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+Diagnoser = Callable[[Sequence[Path], "Path | None", Path], None]
+"""Diagnoses recordings with a baseline tire's file (None: the article's) and writes a folder."""
+
+
+@dataclass(frozen=True)
+class DiagnosisRun:
+    """A diagnosis that was written: the verdict, the content of diagnosis.json, and what the readers and the FMU noted.
+
+    notes: of the recordings, as they were read; warnings: that belong to the top of the report
+    """
+
+    verdict: Verdict
+    content: Mapping[str, Any]
+    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def run_diagnosis(
+    recordings: Sequence[Path],
+    out: Path,
+    *,
+    tire: Path | None = None,
+    held_out: Sequence[Path] = (),
+    reading: Reading = Reading(),  # noqa: B008
+    progress: Progress | None = None,
+) -> DiagnosisRun:
+    """Diagnose files or folders of recordings and write everything into `out`.
+
+    tire: file of the baseline tire, None for the article's; held_out: recordings kept from the fit; reading: how all of
+    them are read; progress: called with a sentence for each stage
+
+    Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
+    """
+    report = progress or (lambda sentence: None)
+    baseline = _baseline(tire)
+    files, kept_files = _files(recordings), _files(held_out)
+    _check_once([*files, *kept_files])
+    _check_folder(out)
+    fitted = [_read(file, reading, report) for file in files]
+    kept = [_read(file, reading, report) for file in kept_files]
+    verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+    report("building the corrected FMU")
+    corrected = _named(verdict, baseline, fitted)
+    fmu = build_fmu(corrected, out).path
+    on_fitted, more = _replayed(fmu, fitted, baseline, corrected, report)
+    on_kept, warnings = _replayed(fmu, kept, baseline, corrected, report)
+    report("writing the report")
+    content = contract_of(verdict, on_fitted, on_kept)
+    _write(out, content, corrected, verdict)
+    page = {
+        **content,
+        **beside(verdict),
+        "tire_before": baseline.name,
+        "tire_after": corrected.name,
+        "warnings": [*more, *warnings],
+        "command": command_line(recordings, out, tire, held_out, reading),
+    }
+    write_report(
+        out / REPORT,
+        page,
+        fitted,
+        on_fitted.before,
+        on_fitted.after,
+        held_out=(kept, on_kept.before, on_kept.after) if kept else None,
+    )
+    notes = tuple(f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes)
+    return DiagnosisRun(verdict, content, notes, (*more, *warnings))
+
+
+def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
+    """Diagnose files with the baseline of a tire file, None for the article's, into the folder `out`."""
+    run_diagnosis(recordings, out, tire=tire)
+
+
+def command_line(
+    recordings: Sequence[Path], out: Path, tire: Path | None, held_out: Sequence[Path], reading: Reading
+) -> str:
+    """Return the command that repeats a diagnosis."""
+    words = ["tirelab", "diagnose", *map(str, recordings)]
+    words += [] if tire is None else ["--tire", str(tire)]
+    words += ["--out", str(out), *reading.words()]
+    words += [word for file in held_out for word in ("--held-out", str(file))]
+    return shlex.join(words)
+
+
+def _baseline(tire: Path | None) -> TireModel:
+    try:
+        return TireModel() if tire is None else read_tire(tire)
+    except (TireFileError, ParameterError, InputError) as error:
+        raise TirelabError(str(error)) from None
+
+
+def _read(file: Path, reading: Reading, progress: Progress) -> Recording:
+    progress(f"reading {file.name}")
+    return reading(file)
+
+
+def _files(given: Sequence[Path]) -> list[Path]:
+    """Return the recordings' files, those of a folder in the order of their names."""
+    found = []
+    for path in given:
+        if not path.is_dir():
+            found.append(path)
+            continue
+        inside = sorted(f for f in path.iterdir() if f.suffix.lower() in LOADERS and f.is_file())
+        if not inside:
+            raise TirelabError(f"{path} holds no recording; a recording ends in one of {', '.join(LOADERS)}")
+        found += inside
+    return found
+
+
+def _check_once(files: Sequence[Path]) -> None:
+    seen = set()
+    for file in files:
+        if file.resolve() in seen:
+            raise TirelabError(f"{file} is given twice; a recording is either fitted or held out, once")
+        seen.add(file.resolve())
+
+
+def _check_folder(out: Path) -> None:
+    """Raise TirelabError where `out` cannot become a folder to write into: before the work, not after it."""
+    there = next(path for path in (out.absolute(), *out.absolute().parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        why = "is not writable" if there.is_dir() else "is a file"
+        raise TirelabError(f"{out} cannot be written, {there} {why}; name another folder with --out")
+
+
+def _named(verdict: Verdict, baseline: TireModel, fitted: Sequence[Recording]) -> TireModel:
+    """Return the corrected tire under a name of its own, unless it is the baseline."""
+    if verdict.tire.law == baseline.law and verdict.tire.effects == baseline.effects:
+        return verdict.tire
+    names = ", ".join(r.name for r in fitted)
+    return replace(
+        verdict.tire,
+        name=f"{baseline.name}, corrected",
+        source=f"{baseline.source}; corrected by tirelab diagnose with {names}",
+    )
+
+
+def _replayed(
+    fmu: Path,
+    recordings: Sequence[Recording],
+    baseline: TireModel,
+    corrected: TireModel,
+    progress: Progress,
+) -> tuple[Replayed, list[str]]:
+    """Return the forces of the baseline and of the corrected FMU, and warnings where FMU and simulation disagree."""
+    forces, warnings = [], []
+    for recording in recordings:
+        progress(f"replaying the corrected FMU on {recording.name}")
+        forces.append(replay(fmu, recording))
+        warnings += _disagreement(recording, forces[-1], simulate(corrected, recording))
+    return Replayed(recordings, [simulate(baseline, r) for r in recordings], forces), warnings
+
+
+def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatArray) -> list[str]:
+    """Return the sentence to be said where the FMU does not do what the simulation did."""
+    difference = float(np.max(np.abs(replayed - simulated)))
+    if difference <= AGREEMENT * float(np.max(np.abs(simulated))) + 1e-12:
+        return []
+    return [
+        f"on {recording.name} the corrected FMU differs by up to {difference:.3g} N from the simulation that was "
+        "fitted; the stated errors are those of the FMU"
+    ]
+
+
+def _write(out: Path, content: Mapping[str, Any], corrected: TireModel, verdict: Verdict) -> None:
+    """Write all but the FMU and the report; a test of an earlier diagnosis is removed."""
+    try:
+        write_tire(corrected, out / TIRE)
+        (out / DIAGNOSIS).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        (out / TEST).unlink(missing_ok=True)
+        if verdict.test is not None:
+            motion = verdict.test.test
+            pl.DataFrame(
+                {
+                    "time [s]": np.round(motion.time, 9),
+                    "deflection [cm]": np.round(100.0 * motion.deflection, 9),
+                    "radius [cm]": np.round(100.0 * motion.surface_radius, 9),
+                }
+            ).write_csv(out / TEST)
+    except OSError as error:
+        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None

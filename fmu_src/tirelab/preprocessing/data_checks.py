@@ -1,0 +1,65 @@
+"""Which recordings are too short or too poor to be diagnosed, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..errors import TirelabError
+from .dataset import Dataset, Recorded
+from .noise_model import Noise
+
+FEWEST_SAMPLES = 100
+"""Fewer samples cannot tell fifteen effects and the noise apart."""
+
+FEWEST_STEPS = 8
+"""Fewest distinct deflections: a cycle seen in fewer has no shape."""
+
+
+class PoorRecording(TirelabError):
+    """The recordings are too short or too poor to say anything."""
+
+
+def check_recordings(recordings: Sequence[Recorded]) -> None:
+    """Raise PoorRecording where there is no recording, or one of them shows no cycle."""
+    if not recordings:
+        raise PoorRecording("no recording was given; name at least one to diagnose")
+    for r in recordings:
+        where = f"recording {r.name}"
+        if r.time.size < FEWEST_SAMPLES:
+            raise PoorRecording(
+                f"{where} has {r.time.size} samples; at least {FEWEST_SAMPLES} are needed to tell anything"
+            )
+        if np.ptp(r.deflection) <= 0.0:
+            raise PoorRecording(f"{where} holds one constant deflection; record at least one full cycle")
+        if np.ptp(r.force) <= 0.0:
+            raise PoorRecording(f"{where} holds one constant force; check that the load cell was connected")
+        if float(r.deflection.max()) <= 0.0:
+            raise PoorRecording(f"{where} never loads the tire: its deflection stays at or below 0 m")
+        distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
+        if distinct < FEWEST_STEPS:
+            raise PoorRecording(
+                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points"
+            )
+
+
+def check_signal(dataset: Dataset, noises: Sequence[Noise]) -> None:
+    """Raise PoorRecording where the deflection is noise, or the force does not follow it."""
+    for number, (record, noise) in enumerate(zip(dataset.experiments, noises, strict=True), start=1):
+        motion = record.motion
+        travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
+        if motion.noise > 0.3 * float(np.std(motion.deflection)):
+            raise PoorRecording(
+                f"the deflection of recording {number} is noise: no motion of the tire can be seen in it"
+            )
+        if travel > 0.7 * float(np.std(motion.deflection)):
+            raise PoorRecording(
+                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points"
+            )
+        related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
+        if not np.isfinite(related) or abs(related) < 0.2 or noise.level > 0.9 * float(np.std(record.force)):
+            raise PoorRecording(
+                f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "
+                "check channels and units"
+            )
