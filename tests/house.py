@@ -1,8 +1,8 @@
 """The figures of the house, measured from the imports: `python tests/house.py` prints them.
 
-A room is a package or module directly under `fmu_src` or `fmu_src/tirelab`. A room's level is one more than the highest
-room it imports; every import counts, those inside of functions and those for the type checker too. The face of `tirelab`
-(`__init__.py`) only names what the rooms offer and is no room.
+A room is a package or module directly under `fmu_src` or `fmu_src/tirelab`. Its level is one more than that of the
+highest room it imports; every import counts, those inside of functions and those for the type checker too. The face of
+`tirelab` (`__init__.py`) only names what the rooms offer and is no room.
 """
 
 from __future__ import annotations

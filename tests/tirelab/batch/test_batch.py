@@ -15,6 +15,7 @@ import pytest
 from tirelab.batch.batch import diagnose_each, find_items
 from tirelab.batch.workers import Cores
 from tirelab.errors import TirelabError
+from tirelab.recordings.reading import Reading
 from tirelab.recordings.recording import read_recording
 
 HERE = Cores(jobs=1)
