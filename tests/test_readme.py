@@ -25,6 +25,7 @@ def test_sections_stand_in_their_order(repository: Path) -> None:
         "The FMU's interface",
         "The Python API",
         "What it cannot do",
+        "Where is what",
         "Contributing",
     ]
 
