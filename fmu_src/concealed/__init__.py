@@ -1,14 +1,14 @@
-"""An independent test rig: recordings of a tire in which something is hidden, and the sealed answer.
+"""An independent test rig: recordings of a tire in which something is hidden, and the answer.
 
 It shares no equation and no code with the tire model or the diagnosis; every effect is written in another
 formulation than theirs. `draw` a Trial from a seed, `write` its recordings, `write_answer` elsewhere; `rerun`
 makes another test on the same rig.
 """
 
-from concealed.drawing import draw
-from concealed.files import answer_json, believed, write, write_answer, write_believed
-from concealed.scenario import KINDS
-from concealed.trial import Answer, FileTruth, Record, Trial, rerun
+from .drawing import draw
+from .files import answer_json, baseline_table, write, write_answer, write_baseline
+from .scenario import KINDS
+from .trial import Answer, FileTruth, Record, Trial, rerun
 
 __all__ = [
     "KINDS",
@@ -17,10 +17,10 @@ __all__ = [
     "Record",
     "Trial",
     "answer_json",
-    "believed",
+    "baseline_table",
     "draw",
     "rerun",
     "write",
     "write_answer",
-    "write_believed",
+    "write_baseline",
 ]

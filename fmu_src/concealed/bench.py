@@ -1,12 +1,12 @@
-"""The test bench: a tire, what is hidden in it, and the force that the motion brings about."""
+"""The test bench: a tire, the effects hidden in it, and the force that a motion causes."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from concealed.effects.effect import Contact, Effect
-from concealed.motion import BoolArray, FloatArray, Motion
-from concealed.tires import Tire
+from .effects.effect import Contact, Effect
+from .motion import BoolArray, FloatArray, Motion
+from .tires import Tire
 
 #: Wheel and tire in series are balanced to within this length [m]: a millinewton at 1e5 N/m.
 BALANCE = 1e-8
@@ -29,12 +29,12 @@ class Bench:
 
     def contact(self, motion: Motion) -> Contact:
         """Deflection of the tire [m] and its elastic force [N], before anything acts in parallel."""
-        shown = motion.deflection
-        pressure = np.ones_like(shown)
+        gauge = motion.deflection
+        pressure = np.ones_like(gauge)
         for effect in self.effects:
-            shown = shown + effect.gauge_error(motion)
+            gauge = gauge + effect.gauge_error(motion)
             pressure = pressure * effect.pressure_ratio(motion)
-        deflection = self._balanced(shown, motion.radius, pressure)
+        deflection = self._balanced(gauge, motion.radius, pressure)
         return Contact(motion, deflection, self._elastic(deflection, motion.radius, pressure))
 
     def force(self, motion: Motion) -> FloatArray:
@@ -48,8 +48,8 @@ class Bench:
             force = effect.channel(motion, force)
         return force
 
-    def lifted(self, motion: Motion) -> BoolArray:
-        """Where the tire lets go although it is deflected: a force in parallel would have to pull."""
+    def contact_lost(self, motion: Motion) -> BoolArray:
+        """The samples at which contact is lost although the tire is deflected: it would have to pull."""
         contact = self.contact(motion)
         return (contact.deflection > 0.0) & (self._pressing(contact) < 0.0)
 
@@ -67,22 +67,22 @@ class Bench:
             pressure = pressure * effect.gas_ratio(deflection, radius)
         return self.tire.force(deflection, radius, pressure)
 
-    def _balanced(self, shown: FloatArray, radius: FloatArray, pressure: FloatArray) -> FloatArray:
-        """The share of the deflection that the tire takes, bracketed (Illinois) at all samples at once."""
+    def _balanced(self, total: FloatArray, radius: FloatArray, pressure: FloatArray) -> FloatArray:
+        """The tire's own deflection [m] of the total [m], found by the Illinois method at all samples at once."""
         if all(np.all(np.asarray(e.shortening(np.array([1.0]))) == 0.0) for e in self.effects):
-            return shown
+            return total
 
-        def gap(tire: FloatArray) -> FloatArray:
+        def imbalance(tire: FloatArray) -> FloatArray:
             force = self._elastic(tire, radius, pressure)
-            return tire + sum((e.shortening(force) for e in self.effects), start=np.zeros_like(tire)) - shown
+            return tire + sum((e.shortening(force) for e in self.effects), start=np.zeros_like(tire)) - total
 
-        low, high = np.minimum(shown, 0.0), np.array(shown)
-        below, above = gap(low), gap(high)
+        low, high = np.minimum(total, 0.0), np.array(total)
+        below, above = imbalance(low), imbalance(high)
         tire = high
         for _ in range(60):
             span = above - below
             tire = np.where(span > 0.0, high - above * (high - low) / np.where(span > 0.0, span, 1.0), high)
-            miss = gap(tire)
+            miss = imbalance(tire)
             if float(np.max(np.abs(miss))) < BALANCE:
                 break
             upper = miss > 0.0

@@ -1,14 +1,10 @@
-"""Draw a blind trial: hide effects in the size asked for, record, and say honestly what counts as right."""
+"""Draw a blind trial: hide effects of the requested size, record, and state which sets of effects count as right."""
 
 from dataclasses import asdict
 
 import numpy as np
 
-from concealed.bench import Bench
-from concealed.effects import BY_NAME, Effect, Scene
-from concealed.measurement import Instrument, drawn_instrument
-from concealed.motion import FloatArray, Motion
-from concealed.rivals import (
+from .alternatives import (
     LOOPS,
     Explanations,
     explanations,
@@ -16,22 +12,25 @@ from concealed.rivals import (
     loss_of,
     one_constant_rate,
 )
-from concealed.scenario import KINDS, Belief, Plan, alike, believed_in, planned, tests
-from concealed.sizing import Size, measured, misfit_size, resized
-from concealed.tires import ContactPatchTire, PowerTire, best_power_law
-from concealed.trial import Answer, FileTruth, Parameters, Record, Trial, recorded
+from .bench import Bench
+from .effects import BY_NAME, Conditions, Effect
+from .measurement import Instrument, drawn_instrument
+from .motion import FloatArray, Motion
+from .scenario import KINDS, Plan, Setup, drawn_alike, drawn_setup, drawn_tests, planned
+from .sizing import Size, measured, misfit_size, resized
+from .tires import ContactPatchTire, PowerTire, best_power_law
+from .trial import Answer, FileTruth, Parameters, Record, Trial, recorded
 
 #: Smallest and largest requested size over the noise.
 SIZES = (1.0, 30.0)
-#: A true effect must be missed by this loss of log-likelihood when it is left out, or the trial is drawn
-#: anew.
+#: Leaving a true effect out must lose this much log-likelihood, or the trial is drawn anew.
 VISIBLE = 30.0
-#: A tire counts as another above this loss and this RMS over the noise, as large as any effect has to be; as
-#: the same below the smaller loss; between them either name is fair.
+#: A tire counts as another above this loss and this RMS over the noise (the least size of any effect), as the
+#: same below the smaller loss; between them both answers count as right.
 OTHER_TIRE_LOSS, SAME_TIRE_LOSS = 40.0, 4.0
 OTHER_TIRE_SIZE = 1.0
-#: What no pair of named effects may explain of an effect of the open world: loss, and share of the whole
-#: loss.
+#: Least loss, absolute and as a share of the whole loss, that every pair of named effects must leave of an
+#: effect outside the catalogue.
 BEYOND_CATALOGUE, BEYOND_SHARE = 150.0, 0.2
 #: Attempts at one choice of effects, and choices of effects of the same kind.
 ATTEMPTS, MOST_ROUNDS = 25, 20
@@ -68,21 +67,21 @@ def _stream(seed: int, *key: int) -> np.random.Generator:
 
 def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
     """One trial to the plan, or None where an effect stayed invisible or a name would not be fair."""
-    belief = believed_in(rng, plan)
-    train, others = tests(rng, plan, belief.reach)
+    setup = drawn_setup(rng, plan)
+    train, others = drawn_tests(rng, plan, setup.limits)
     instrument = drawn_instrument(rng)
-    bare = Bench(belief.tire)
-    scene = Scene(train, tuple(bare.force(m) for m in train), belief.tire, instrument.noise)
-    believed = [m.recorded(Bench(belief.believed).force(m)) for m in train]
-    misfit = [m.recorded(f) - b for m, f, b in zip(train, scene.elastic, believed, strict=True)]
+    bare = Bench(setup.tire)
+    conditions = Conditions(train, tuple(bare.force(m) for m in train), setup.tire, instrument.noise)
+    simulated = [m.recorded(Bench(setup.baseline).force(m)) for m in train]
+    misfit = [m.recorded(f) - s for m, f, s in zip(train, conditions.elastic, simulated, strict=True)]
     another = _is_another_tire(plan, bare, train, misfit, instrument)
     if another is not plan.another_tire and (another is not None or plan.another_tire):
         return None
 
-    bench, sizes = _hidden(rng, plan, bare, scene)
+    bench, sizes = _hidden(rng, plan, bare, conditions)
     if any(size.raw < 0.95 * SIZES[0] for size in sizes.values()):
         return None
-    explained = _explained(plan, belief, bench, scene, misfit, instrument)
+    explained = _explained(plan, setup, bench, conditions, misfit, instrument)
     if not _is_fair(plan, bench, explained):
         return None
     right, margins, rule = _right(plan, train, explained)
@@ -92,50 +91,55 @@ def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
     if another is not False:
         sizes["recalibration"] = misfit_size(bare, train, misfit, instrument.noise)
 
-    records: list[Record] = []
-    files: dict[str, FileTruth] = {}
-
-    def record(name: str, motion: Motion) -> None:
-        made, floors = recorded(bench, instrument, motion, name, rng)
-        records.append(made)
-        files[name] = _file_truth(made, belief.believed, floors)
-
-    for i, motion in enumerate(train):
-        record(f"train_{i}.csv", motion)
-    for i, motion in enumerate(others):
-        record(f"heldout_{i}.csv", motion)
-    record(f"heldout_{len(others)}.csv", alike(rng, train, belief.reach))
+    made = _recordings(rng, bench, instrument, train, others, setup)
     answer = Answer(
         kind=plan.kind,
-        effects=_effects(bench, plan, belief),
+        effects=_effects(bench, plan, setup),
         hidden={e.name: e.parameters() for e in bench.effects if e.name not in BY_NAME},
         right=right,
         margins=margins,
         rule=rule,
         sizes=sizes,
-        where=_places(bench, train),
+        where=_regions(bench, train),
         noise=instrument.noise,
-        files=files,
-        tire={"form": type(belief.tire).__name__, **asdict(belief.tire)},
+        files={record.name: _file_truth(record, setup.baseline, floors) for record, floors in made},
+        tire={"form": type(setup.tire).__name__, **asdict(setup.tire)},
         instrument=asdict(instrument),
     )
+    records = tuple(record for record, _ in made)
     return Trial(
         seed,
-        tuple(records[: len(train)]),
-        tuple(records[len(train) :]),
+        records[: len(train)],
+        records[len(train) :],
         answer,
-        belief.believed,
-        belief.source,
+        setup.baseline,
+        setup.source,
         instrument.noise,
         bench,
         instrument,
     )
 
 
+def _recordings(
+    rng: np.random.Generator,
+    bench: Bench,
+    instrument: Instrument,
+    train: tuple[Motion, ...],
+    others: tuple[Motion, ...],
+    setup: Setup,
+) -> list[tuple[Record, tuple[float, float]]]:
+    """The training recordings, the held-out ones of another kind and last the one alike, each with its noise floors."""
+    motions = {f"train_{i}.csv": motion for i, motion in enumerate(train)}
+    motions |= {f"heldout_{i}.csv": motion for i, motion in enumerate(others)}
+    made = [recorded(bench, instrument, motion, name, rng) for name, motion in motions.items()]
+    last = drawn_alike(rng, train, setup.limits)
+    return [*made, recorded(bench, instrument, last, f"heldout_{len(others)}.csv", rng)]
+
+
 def _is_another_tire(
     plan: Plan, bare: Bench, train: tuple[Motion, ...], misfit: list[FloatArray], instrument: Instrument
 ) -> bool | None:
-    """Whether the recordings can show that the believed law is not this tire's; None where it is doubtful."""
+    """Whether the recordings show that the baseline law is not this tire's; None where that is doubtful."""
     loss = loss_of(bare, train, misfit, instrument)
     size = float(np.sqrt(np.mean(np.concatenate(misfit) ** 2))) / instrument.noise
     if loss < SAME_TIRE_LOSS:
@@ -146,25 +150,27 @@ def _is_another_tire(
 
 
 def _with_recalibration(names: tuple[str, ...]) -> tuple[str, ...]:
-    """The same set under another tire's coefficients."""
+    """The same set with recalibration added."""
     return tuple(sorted({*names, "recalibration"} - {"none"}))
 
 
-def _hidden(rng: np.random.Generator, plan: Plan, bare: Bench, scene: Scene) -> tuple[Bench, dict[str, Size]]:
+def _hidden(
+    rng: np.random.Generator, plan: Plan, bare: Bench, conditions: Conditions
+) -> tuple[Bench, dict[str, Size]]:
     """Hide the planned effects, each in a size drawn evenly over the logarithm."""
     forms = [BY_NAME[n][int(rng.integers(len(BY_NAME[n])))] for n in plan.wanted if n in BY_NAME]
     if plan.open_form is not None:
         forms.append(plan.open_form)
-    effects: list[Effect] = [form.drawn(rng, scene) for form in forms]
+    effects: list[Effect] = [form.drawn(rng, conditions) for form in forms]
     wanted = np.exp(rng.uniform(np.log(SIZES[0]), np.log(SIZES[1]), len(effects))).tolist()
     bench = Bench(bare.tire, tuple(effects))
-    # a second round, because each effect is sized in the company of the others
+    # a second round, because the size of each effect depends on the others
     for _ in range(min(len(effects), 2)):
         for i in range(len(effects)):
-            effects[i] = resized(bench, effects[i], scene.motions, scene.noise, wanted[i])
+            effects[i] = resized(bench, effects[i], conditions.motions, conditions.noise, wanted[i])
             bench = bench.replacing(effects[i])
     sizes = {
-        effect.name: measured(bench, effect, scene.motions, scene.noise, size)
+        effect.name: measured(bench, effect, conditions.motions, conditions.noise, size)
         for effect, size in zip(effects, wanted, strict=True)
     }
     return bench, sizes
@@ -172,16 +178,16 @@ def _hidden(rng: np.random.Generator, plan: Plan, bare: Bench, scene: Scene) -> 
 
 def _explained(
     plan: Plan,
-    belief: Belief,
+    setup: Setup,
     bench: Bench,
-    scene: Scene,
+    conditions: Conditions,
     misfit: list[FloatArray],
     instrument: Instrument,
 ) -> Explanations:
-    """How well every set of names can explain what the believed tire leaves over, free of noise."""
+    """How well every set of names explains the noise-free residuals of the baseline tire."""
     residuals: list[FloatArray] = []
     known: dict[str, list[FloatArray]] = {e.name: [] for e in bench.effects if e.name in BY_NAME}
-    for motion, bare, miss in zip(scene.motions, scene.elastic, misfit, strict=True):
+    for motion, bare, miss in zip(conditions.motions, conditions.elastic, misfit, strict=True):
         force = bench.force(motion)
         added = motion.recorded(force - bare)
         residuals.append(added + miss if plan.another_tire else added)
@@ -189,22 +195,22 @@ def _explained(
             known[name].append(motion.recorded(force - bench.without(name).force(motion)))
     if plan.another_tire:
         known["recalibration"] = misfit
-    shape = plan.another_tire and isinstance(belief.tire, ContactPatchTire)
-    return explanations(bench, scene.motions, residuals, known, instrument, shape)
+    law_shape = plan.another_tire and isinstance(setup.tire, ContactPatchTire)
+    return explanations(bench, conditions.motions, residuals, known, instrument, law_shape)
 
 
 def _is_fair(plan: Plan, bench: Bench, explained: Explanations) -> bool:
-    """Whether no true effect can be left out, and the open world is out of the catalogue's reach."""
+    """Whether no true effect can be left out, and no pair of named effects explains one outside the catalogue."""
     if plan.open_form is not None:
         base = set(plan.names)
         whole, best = explained.loss(base), explained.best(base, 2)
         return best > BEYOND_CATALOGUE and best > BEYOND_SHARE * whole
     truth = frozenset(plan.names)
-    own = explained.loss(truth)
+    truth_loss = explained.loss(truth)
     elastic = {e.name for e in bench.effects if e.elastic_only}
     for name in truth:
         excused = plan.may_hide and plan.another_tire and name in elastic | {"recalibration"}
-        if not excused and explained.loss(truth - {name}) - own < VISIBLE:
+        if not excused and explained.loss(truth - {name}) - truth_loss < VISIBLE:
             return False
     return True
 
@@ -212,7 +218,7 @@ def _is_fair(plan: Plan, bench: Bench, explained: Explanations) -> bool:
 def _right(
     plan: Plan, train: tuple[Motion, ...], explained: Explanations
 ) -> tuple[tuple[tuple[str, ...], ...], dict[str, float], str]:
-    """The sets that count as right: the exact one, then those that the recordings cannot tell from it."""
+    """The sets that count as right: the exact one, then those that fit the recordings as well."""
     if plan.kind == "none":
         return (("none",),), {}, ""
     if plan.kind == "open":
@@ -237,35 +243,41 @@ def _right(
     return right, {" + ".join(sorted(s)) or "none": round(loss, 3) for s, loss in margins.items()}, rule
 
 
-def _effects(bench: Bench, plan: Plan, belief: Belief) -> dict[str, Parameters]:
-    """Parameters of the named effects; for another tire its best power law beside the believed one."""
+def _effects(bench: Bench, plan: Plan, setup: Setup) -> dict[str, Parameters]:
+    """Parameters of the named effects; for another tire its best power law and that of the baseline."""
     effects: dict[str, Parameters] = {e.name: e.parameters() for e in bench.effects if e.name in BY_NAME}
     if plan.another_tire:
         surfaces = []
-        for radius, deep in zip(belief.reach.surfaces, belief.reach.deepest, strict=True):
-            own, thought = best_power_law(belief.tire, radius, deep), belief.believed.at(radius)
+        for radius, deep in zip(setup.limits.surfaces, setup.limits.deepest, strict=True):
+            true, baseline = best_power_law(setup.tire, radius, deep), setup.baseline.at(radius)
             surfaces.append(
-                {"radius": radius, "a": own.a, "b": own.b, "believed_a": thought.a, "believed_b": thought.b}
+                {
+                    "radius": radius,
+                    "a": true.a,
+                    "b": true.b,
+                    "believed_a": baseline.a,
+                    "believed_b": baseline.b,
+                }
             )
         effects["recalibration"] = {"surfaces": surfaces}
     return effects
 
 
-def _file_truth(record: Record, believed: PowerTire, floors: tuple[float, float]) -> FileTruth:
-    force = believed.force(record.deflection, record.radius, np.ones_like(record.force))
-    baseline = float(np.sqrt(np.mean((record.force - force) ** 2)))
-    return FileTruth(record.time.size, record.excitation, baseline, *floors)
+def _file_truth(record: Record, baseline: PowerTire, floors: tuple[float, float]) -> FileTruth:
+    force = baseline.force(record.deflection, record.radius, np.ones_like(record.force))
+    rmse = float(np.sqrt(np.mean((record.force - force) ** 2)))
+    return FileTruth(record.time.size, record.excitation, rmse, *floors)
 
 
-def _places(bench: Bench, train: tuple[Motion, ...]) -> tuple[Parameters, ...]:
-    """Places of the confined effects in the training recordings, with the share of samples that they take."""
-    places: list[Parameters] = []
+def _regions(bench: Bench, train: tuple[Motion, ...]) -> tuple[Parameters, ...]:
+    """Regions of the localized effects in the training recordings, with the share of samples in them."""
+    regions: list[Parameters] = []
     for effect in bench.effects:
         for i, motion in enumerate(train):
             contact = bench.contact(motion)
-            active = effect.active(contact, contact.elastic)
+            active = effect.active(contact)
             share = 1.0 if active is None else float(np.mean(motion.recorded(active)))
-            for place in effect.places(motion):
-                span = {"by": place.by, "from": place.begin, "to": place.end, "unit": place.unit}
-                places.append({"effect": effect.name, "recording": f"train_{i}.csv", **span, "share": share})
-    return tuple(places)
+            for region in effect.regions(motion):
+                span = {"by": region.by, "from": region.begin, "to": region.end, "unit": region.unit}
+                regions.append({"effect": effect.name, "recording": f"train_{i}.csv", **span, "share": share})
+    return tuple(regions)

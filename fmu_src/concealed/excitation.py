@@ -1,4 +1,4 @@
-"""What the actuator is told to do: triangles, holds, multisines, sweeps, rides."""
+"""The motions that the actuator is given: triangles, holds, multisines, sweeps, rides."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.special import ndtr
 
-from concealed.motion import FloatArray, Motion, even_grid, rounded, stride_for
+from .motion import FloatArray, Motion, even_grid, rounded, stride_for
 
 #: Data acquisition rates that a rig offers [Hz].
 SAMPLE_RATES = (5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 400.0)
@@ -17,7 +17,7 @@ FASTEST = 0.5
 
 
 @dataclass(frozen=True)
-class Reach:
+class DepthLimits:
     """The surfaces [m] that are mounted in turn, and how deep the tire may be pressed on each [m]."""
 
     surfaces: tuple[float, ...]
@@ -28,39 +28,39 @@ class Reach:
         """The deflection that every surface allows [m]."""
         return min(self.deepest)
 
-    def scaled(self, fraction: float) -> "Reach":
+    def scaled(self, fraction: float) -> "DepthLimits":
         """The same surfaces, pressed less deep."""
-        return Reach(self.surfaces, tuple(fraction * deep for deep in self.deepest))
+        return DepthLimits(self.surfaces, tuple(fraction * deep for deep in self.deepest))
 
 
-Excitation = Callable[[np.random.Generator, Reach], Motion]
+Excitation = Callable[[np.random.Generator, DepthLimits], Motion]
 
 
-def article_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
+def article_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """The article's test: a triangle wave of 30 s, recorded at 5 Hz, some cycles on every surface."""
-    cycles = int(rng.integers(2, 5)) if len(reach.surfaces) < 3 else 2
-    knots = [_cycles(deep, 30.0, cycles) for deep in reach.deepest]
-    return _polyline("article_triangle", knots, reach.surfaces, 0.2, 0.1)
+    cycles = int(rng.integers(2, 5)) if len(limits.surfaces) < 3 else 2
+    knots = [_cycles(deep, 30.0, cycles) for deep in limits.deepest]
+    return _polyline("article_triangle", knots, limits.surfaces, 0.2, 0.1)
 
 
-def single_rate_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
+def single_rate_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A triangle wave at one constant rate, 3 to 60 mm/s (the range in which none was found to matter)."""
     rate = float(np.exp(rng.uniform(np.log(0.003), np.log(0.06))))
     cycles = int(rng.integers(3, 9))
-    knots = [_cycles(deep, 2.0 * deep / rate, cycles) for deep in reach.deepest]
-    period = 2.0 * reach.shallowest / rate
+    knots = [_cycles(deep, 2.0 * deep / rate, cycles) for deep in limits.deepest]
+    period = 2.0 * limits.shallowest / rate
     step = _sample_step(rng, knots, period / 6.0)
-    return _polyline("single_rate_triangle", knots, reach.surfaces, step, 0.03 * period)
+    return _polyline("single_rate_triangle", knots, limits.surfaces, step, 0.03 * period)
 
 
-def many_rates_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
+def many_rates_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """Triangles at three or four rates over one and a half to two decades."""
     fastest = rng.uniform(0.10, 0.25)
     rates = fastest / np.logspace(0.0, rng.uniform(1.5, 2.0), int(rng.integers(3, 5)))
     if rng.random() < 0.5:
         rates = rates[::-1]
     knots = []
-    for deep in reach.deepest:
+    for deep in limits.deepest:
         times, values = [0.0], [0.0]
         for rate in rates:
             cycles = int(np.clip(round(20.0 * rate / (2.0 * deep)), 1, 20))
@@ -68,56 +68,56 @@ def many_rates_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
             values.extend(x[1:])
             times.extend(times[-1] + t[1:])
         knots.append((np.array(times), np.array(values)))
-    period = 2.0 * reach.shallowest / fastest
+    period = 2.0 * limits.shallowest / fastest
     return _polyline(
-        "many_rates_triangle", knots, reach.surfaces, _sample_step(rng, knots, 0.5 * period), 0.1 * period
+        "many_rates_triangle", knots, limits.surfaces, _sample_step(rng, knots, 0.5 * period), 0.1 * period
     )
 
 
-def growing_triangle(rng: np.random.Generator, reach: Reach) -> Motion:
+def growing_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A triangle of growing amplitude, two or three cycles on each step."""
     steps, repeats = int(rng.integers(3, 6)), int(rng.integers(2, 4))
     rate = float(np.exp(rng.uniform(np.log(0.005), np.log(0.04))))
     knots = []
-    for deep in reach.deepest:
+    for deep in limits.deepest:
         peaks = np.repeat(np.linspace(rng.uniform(0.3, 0.5), 1.0, steps), repeats) * deep
         values = np.zeros(2 * peaks.size + 1)
         values[1::2] = peaks
         knots.append((np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)) / rate)]), values))
-    period = reach.shallowest / rate
+    period = limits.shallowest / rate
     step = _sample_step(rng, knots, period / 6.0)
-    return _polyline("growing_triangle", knots, reach.surfaces, step, 0.03 * period)
+    return _polyline("growing_triangle", knots, limits.surfaces, step, 0.03 * period)
 
 
-def ramp_and_hold(rng: np.random.Generator, reach: Reach) -> Motion:
+def ramp_and_hold(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """Quick ramps between levels, each level held for seconds."""
     rate = rng.uniform(0.01, 0.05)
     hold = rng.uniform(4.0, 15.0)
     levels = int(rng.integers(3, 6))
-    return _staircase(rng, reach, "ramp_and_hold", rate, [hold] * levels)
+    return _staircase(rng, limits, "ramp_and_hold", rate, [hold] * levels)
 
 
-def staircase(rng: np.random.Generator, reach: Reach) -> Motion:
+def staircase(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """Many small steps up and down, each held for a short time."""
     holds = list(rng.uniform(0.5, 3.0, int(rng.integers(8, 15))))
-    return _staircase(rng, reach, "staircase", rng.uniform(0.01, 0.03), holds)
+    return _staircase(rng, limits, "staircase", rng.uniform(0.01, 0.03), holds)
 
 
-def sine(rng: np.random.Generator, reach: Reach) -> Motion:
+def sine(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A sine at one frequency about a mean deflection."""
     frequency = float(np.exp(rng.uniform(np.log(0.1), np.log(3.0))))
     duration = rng.uniform(15.0, 40.0) / frequency if frequency > 0.5 else rng.uniform(5.0, 12.0) / frequency
-    swing = min(rng.uniform(0.25, 0.48), FASTEST / (2.0 * np.pi * frequency * reach.shallowest))
+    swing = min(rng.uniform(0.25, 0.48), FASTEST / (2.0 * np.pi * frequency * limits.shallowest))
     middle = rng.uniform(swing + 0.02, 0.99 - swing)
     step = _sample_step(rng, [(np.array([0.0, duration]), np.zeros(2))], 1.0 / frequency)
 
     def path(time: FloatArray) -> FloatArray:
         return middle - swing * np.cos(2.0 * np.pi * frequency * time)
 
-    return _sampled("sine", path, duration, step, reach)
+    return _sampled("sine", path, duration, step, limits)
 
 
-def multisine(rng: np.random.Generator, reach: Reach) -> Motion:
+def multisine(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """Odd harmonics with random phases, two to six periods (the multisine of Pintelon & Schoukens)."""
     base = rng.uniform(0.08, 0.25)
     highest = rng.uniform(4.0, 10.0)
@@ -129,21 +129,21 @@ def multisine(rng: np.random.Generator, reach: Reach) -> Motion:
     one = np.arange(0.0, 1.0 / base, 0.002)
     crest = _sum_of_cosines(one, harmonics, sizes, phases)
     swing = rng.uniform(0.35, 0.48) / float(np.max(np.abs(crest)))
-    top = float(np.max(np.abs(np.gradient(crest, 0.002)))) * swing * reach.shallowest
+    top = float(np.max(np.abs(np.gradient(crest, 0.002)))) * swing * limits.shallowest
     swing *= min(1.0, FASTEST / top)
 
     def path(time: FloatArray) -> FloatArray:
         return 0.5 + swing * _sum_of_cosines(time, harmonics, sizes, phases)
 
-    return _sampled("multisine", path, periods / base, step, reach)
+    return _sampled("multisine", path, periods / base, step, limits)
 
 
-def sweep(rng: np.random.Generator, reach: Reach) -> Motion:
+def sweep(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A sine whose frequency runs up, linearly or by decades, about a mean deflection."""
     low, high = rng.uniform(0.05, 0.2), rng.uniform(5.0, 12.0)
     duration = rng.uniform(25.0, 60.0)
     logarithmic = bool(rng.random() < 0.5)
-    swing = min(rng.uniform(0.15, 0.4), FASTEST / (2.0 * np.pi * high * reach.shallowest))
+    swing = min(rng.uniform(0.15, 0.4), FASTEST / (2.0 * np.pi * high * limits.shallowest))
     middle = rng.uniform(max(0.4, swing + 0.05), 0.98 - swing)
 
     def path(time: FloatArray) -> FloatArray:
@@ -154,10 +154,10 @@ def sweep(rng: np.random.Generator, reach: Reach) -> Motion:
             phase = low * time + 0.5 * (high - low) / duration * time**2
         return np.asarray(middle - swing * np.cos(2.0 * np.pi * phase), dtype=np.float64)
 
-    return _sampled("sweep", path, duration, _dynamic_step(rng, high, duration), reach)
+    return _sampled("sweep", path, duration, _dynamic_step(rng, high, duration), limits)
 
 
-def ride(rng: np.random.Generator, reach: Reach) -> Motion:
+def ride(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A ride over rough ground at a varying speed."""
     duration = rng.uniform(25.0, 40.0)
     rough, highest = _rough_ground(rng, duration)
@@ -166,11 +166,11 @@ def ride(rng: np.random.Generator, reach: Reach) -> Motion:
     def path(time: FloatArray) -> FloatArray:
         return np.asarray(ndtr(middle + swing * rough(time)), dtype=np.float64)
 
-    return _sampled("ride", path, duration, _dynamic_step(rng, highest, duration), reach)
+    return _sampled("ride", path, duration, _dynamic_step(rng, highest, duration), limits)
 
 
-def hits(rng: np.random.Generator, reach: Reach) -> Motion:
-    """A gentle ride with a few hard hits that reach the full depth."""
+def hits(rng: np.random.Generator, limits: DepthLimits) -> Motion:
+    """A gentle ride with a few hard hits that limits the full depth."""
     duration = rng.uniform(20.0, 40.0)
     rough, highest = _rough_ground(rng, duration)
     middle = rng.uniform(0.25, 0.4)
@@ -183,16 +183,16 @@ def hits(rng: np.random.Generator, reach: Reach) -> Motion:
         strength = np.max(pulses, axis=1)
         return np.asarray(gentle + (0.97 - gentle) * strength, dtype=np.float64)
 
-    return _sampled("hits", path, duration, _dynamic_step(rng, max(highest, 8.0), duration), reach)
+    return _sampled("hits", path, duration, _dynamic_step(rng, max(highest, 8.0), duration), limits)
 
 
-def burst(rng: np.random.Generator, reach: Reach) -> Motion:
+def burst(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A slow triangle with one short fast burst on top of it."""
     period = rng.uniform(8.0, 20.0)
     cycles = int(rng.integers(2, 4))
     frequency, width = rng.uniform(4.0, 9.0), rng.uniform(0.25, 0.5)
     moment = (int(rng.integers(0, cycles)) + rng.uniform(0.4, 0.6)) * period
-    swing = min(rng.uniform(0.1, 0.2), FASTEST / (2.0 * np.pi * frequency * reach.shallowest))
+    swing = min(rng.uniform(0.1, 0.2), FASTEST / (2.0 * np.pi * frequency * limits.shallowest))
 
     def path(time: FloatArray) -> FloatArray:
         slow = 0.5 - 0.5 * np.cos(2.0 * np.pi * time / period)
@@ -202,7 +202,7 @@ def burst(rng: np.random.Generator, reach: Reach) -> Motion:
 
     duration = cycles * period
     span = (moment - 2.0 * width, moment + 2.0 * width)
-    return _sampled("burst", path, duration, _dynamic_step(rng, frequency, duration), reach, span)
+    return _sampled("burst", path, duration, _dynamic_step(rng, frequency, duration), limits, span)
 
 
 EXCITATIONS: dict[str, Excitation] = {
@@ -231,14 +231,14 @@ def _cycles(deep: float, period: float, cycles: int) -> tuple[FloatArray, FloatA
 
 
 def _staircase(
-    rng: np.random.Generator, reach: Reach, name: str, rate: float, holds: Sequence[float]
+    rng: np.random.Generator, limits: DepthLimits, name: str, rate: float, holds: Sequence[float]
 ) -> Motion:
     up = (len(holds) + 1) // 2
     levels = np.concatenate([np.linspace(1.0 / up, 1.0, up), np.linspace(1.0, 0.1, len(holds) - up + 1)[1:]])
     if rng.random() < 0.3:
         levels = rng.permutation(levels)
     knots = []
-    for deep in reach.deepest:
+    for deep in limits.deepest:
         times, values = [0.0], [0.0]
         for level, hold in zip(levels, holds, strict=True):
             times.append(times[-1] + max(abs(deep * level - values[-1]) / rate, 0.05))
@@ -248,8 +248,8 @@ def _staircase(
         times.append(times[-1] + values[-1] / rate)
         values.append(0.0)
         knots.append((np.array(times), np.array(values)))
-    quickest = reach.shallowest / (up * rate)
-    return _polyline(name, knots, reach.surfaces, _sample_step(rng, knots, quickest), 0.2 * quickest)
+    quickest = limits.shallowest / (up * rate)
+    return _polyline(name, knots, limits.surfaces, _sample_step(rng, knots, quickest), 0.2 * quickest)
 
 
 def _sample_step(
@@ -305,16 +305,16 @@ def _sampled(
     path: Callable[[FloatArray], FloatArray],
     duration: float,
     sample_step: float,
-    reach: Reach,
+    limits: DepthLimits,
     span: tuple[float, float] | None = None,
 ) -> Motion:
     """A path given as a share of the allowed depth; the surfaces change at even times, at speed."""
     samples = min(int(duration / sample_step), MOST_SAMPLES)
     stride = stride_for(sample_step, samples)
     time = even_grid((samples - 1) * stride + 1, sample_step / stride)
-    mounted = np.minimum(time * len(reach.surfaces) // (time[-1] + sample_step), len(reach.surfaces) - 1)
-    radius = np.array(reach.surfaces)[mounted.astype(int)]
-    return Motion(name, time, reach.shallowest * path(time), radius, stride, span)
+    mounted = np.minimum(time * len(limits.surfaces) // (time[-1] + sample_step), len(limits.surfaces) - 1)
+    radius = np.array(limits.surfaces)[mounted.astype(int)]
+    return Motion(name, time, limits.shallowest * path(time), radius, stride, span)
 
 
 def _sum_of_cosines(
@@ -329,19 +329,19 @@ def _sum_of_cosines(
 def _rough_ground(
     rng: np.random.Generator, duration: float
 ) -> tuple[Callable[[FloatArray], FloatArray], float]:
-    """Band-limited noise of unit variance over the way, passed at a varying speed; and its highest frequency.
+    """Band-limited noise of unit variance over the distance, passed at a varying speed; its highest frequency [Hz].
 
     Height spectrum 1/n^2 over the wavenumber above a corner, as of ISO 8608 roads.
     """
     speed, swing, slow = rng.uniform(3.0, 8.0), rng.uniform(0.1, 0.4), rng.uniform(8.0, 20.0)
-    way = np.arange(0.0, duration * speed * (1.0 + swing) + 10.0, 0.05)
-    spectrum = np.fft.rfft(rng.standard_normal(way.size))
-    wavenumber = np.fft.rfftfreq(way.size, 0.05)
+    distance = np.arange(0.0, duration * speed * (1.0 + swing) + 10.0, 0.05)
+    spectrum = np.fft.rfft(rng.standard_normal(distance.size))
+    wavenumber = np.fft.rfftfreq(distance.size, 0.05)
     highest = rng.uniform(3.0, 8.0)
     shape = 1.0 / np.hypot(wavenumber, rng.uniform(0.05, 0.2))
     shape *= (wavenumber < highest / speed / (1.0 + swing)) & (wavenumber > 0.0)
-    height = np.fft.irfft(spectrum * shape, way.size)
-    profile = CubicSpline(way, height / np.std(height))
+    height = np.fft.irfft(spectrum * shape, distance.size)
+    profile = CubicSpline(distance, height / np.std(height))
 
     def passed(time: FloatArray) -> FloatArray:
         travelled = speed * (time + swing * slow / (2.0 * np.pi) * (1.0 - np.cos(2.0 * np.pi * time / slow)))

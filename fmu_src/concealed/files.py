@@ -1,4 +1,4 @@
-"""A trial on disk: the recordings alone in one folder, the believed tire and the answer elsewhere."""
+"""A trial on disk: the recordings alone in one folder, the baseline tire and the answer elsewhere."""
 
 import hashlib
 import json
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from concealed.trial import Record, Trial
+from .trial import Record, Trial
 
 HEADER = "time [s],deflection [cm],radius [cm],force [N]"
 
@@ -32,14 +32,14 @@ def write(trial: Trial, folder: Path) -> None:
 
 def answer_json(trial: Trial) -> str:
     """The answer as JSON text; lengths in metres, times in seconds, forces in newtons, infinity as "inf"."""
-    answer = {"seed": trial.seed, **asdict(trial.answer), "believed": believed(trial)}
+    answer = {"seed": trial.seed, **asdict(trial.answer), "believed": baseline_table(trial)}
     return json.dumps(_plain(answer), indent=1, allow_nan=False) + "\n"
 
 
 def write_answer(trial: Trial, path: Path) -> str:
-    """Write the answer, and return the SHA-256 of its bytes, by which it can be sealed.
+    """Write the answer, and return the SHA-256 of its bytes: its commitment hash.
 
-    Errors: ValueError for a path inside of a folder that holds recordings: there the answer would be found.
+    Errors: ValueError for a path in a folder that holds recordings: a diagnosis could read the answer there.
     """
     if path.parent.is_dir() and any(path.parent.glob("train_*.csv")):
         raise ValueError(f"{path.parent} holds recordings: the answer belongs elsewhere")
@@ -49,26 +49,26 @@ def write_answer(trial: Trial, path: Path) -> str:
     return hashlib.sha256(text.encode("ascii")).hexdigest()
 
 
-def believed(trial: Trial) -> Mapping[str, object]:
-    """The tire that the user believes in: F = A x^B with x in cm and F in N, surface by surface.
+def baseline_table(trial: Trial) -> Mapping[str, object]:
+    """The baseline tire: F = A x^B with x in cm and F in N, surface by surface.
 
     `law` is "hull1996" where these are the values of the article's equations, "table" where they are not;
     every radius of the article and every one that is recorded is listed, in cm, with "inf" for the flat.
     """
-    radii = {s.radius for s in trial.believed.surfaces}
+    radii = {s.radius for s in trial.baseline.surfaces}
     for record in (*trial.train, *trial.heldout):
         radii |= {float(r) for r in np.unique(record.radius)}
-    surfaces = [trial.believed.at(radius) for radius in sorted(radii, key=lambda r: 1.0 / r)]
+    surfaces = [trial.baseline.at(radius) for radius in sorted(radii, key=lambda r: 1.0 / r)]
     return {
-        "law": trial.believed_source,
+        "law": trial.baseline_source,
         "surfaces": [{"radius [cm]": _centimetres(s.radius), "A": s.a, "B": s.b} for s in surfaces],
     }
 
 
-def write_believed(trial: Trial, path: Path) -> None:
-    """Write what the user would have beside the recordings: the tire that is believed in."""
+def write_baseline(trial: Trial, path: Path) -> None:
+    """Write the baseline tire, which a user has beside the recordings."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(believed(trial), indent=1) + "\n", encoding="ascii")
+    path.write_text(json.dumps(baseline_table(trial), indent=1) + "\n", encoding="ascii")
 
 
 def _csv(record: Record) -> str:

@@ -1,4 +1,4 @@
-"""Measurement as it is: white and slow noise, mains hum, steps of the converter, spikes, a noisy gauge."""
+"""Errors of the measurement: white and slow noise, mains hum, steps of the converter, spikes, a noisy gauge."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import numpy as np
 from scipy.fft import dct, idct
 from scipy.signal import lfilter
 
-from concealed.motion import FloatArray
+from .motion import FloatArray
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,8 @@ class Instrument:
             time = np.arange(samples) * step
             phase = rng.uniform(0.0, 2.0 * np.pi)
             error += self.hum * np.sqrt(2.0) * np.sin(2.0 * np.pi * self.mains * time + phase)
-        for place in rng.integers(0, samples, self.spikes):
-            error[place] += self.spike_size * self.noise * rng.choice((-1.0, 1.0)) * rng.uniform(0.5, 1.0)
+        for sample in rng.integers(0, samples, self.spikes):
+            error[sample] += self.spike_size * self.noise * rng.choice((-1.0, 1.0)) * rng.uniform(0.5, 1.0)
         return error
 
     def converted(self, force: FloatArray) -> FloatArray:
@@ -86,7 +86,7 @@ class Instrument:
 
 
 def drawn_instrument(rng: np.random.Generator) -> Instrument:
-    """An instrument with 3 to 12 N of noise, every kind of error there or not at random."""
+    """An instrument with 3 to 12 N of noise; each kind of error is present or absent at random."""
     noise = float(np.exp(rng.uniform(np.log(3.0), np.log(12.0))))
     shares = {
         "drifting": rng.uniform(0.05, 0.4) if rng.random() < 0.4 else 0.0,

@@ -1,13 +1,13 @@
-"""Physics that no catalogue of tire effects holds: what the ground, the rig and its surroundings do."""
+"""Physics outside any catalogue of tire effects: what the ground, the rig and its surroundings do."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from concealed.effects.effect import Contact, Effect, Place, Scene
-from concealed.effects.machine import filtered
-from concealed.motion import BoolArray, FloatArray, Motion
+from .effects.effect import Conditions, Contact, Effect, Region
+from .effects.machine import filtered
+from .motion import BoolArray, FloatArray, Motion
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class KnobRipple(Effect):
     limit: ClassVar[float] = 200.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "KnobRipple":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "KnobRipple":
         """Four to nine knobs over the deepest deflection: knobs stand 3 to 6 mm apart in x."""
-        return cls(30.0, scene.deepest / rng.uniform(4.0, 9.0), rng.uniform(0.0, 2.0 * np.pi))
+        return cls(30.0, conditions.deepest / rng.uniform(4.0, 9.0), rng.uniform(0.0, 2.0 * np.pi))
 
     def parallel(self, contact: Contact) -> FloatArray:
         """Ripple [N]."""
@@ -34,7 +34,7 @@ class KnobRipple(Effect):
 
 @dataclass(frozen=True)
 class StickSlip(Effect):
-    """A squeaking guide: a saw tooth over the way travelled s, F = a saw(s/l) sgn(v)."""
+    """A squeaking guide: a saw tooth over the distance travelled s, F = a saw(s/l) sgn(v)."""
 
     pitch: float
     release: float
@@ -44,15 +44,15 @@ class StickSlip(Effect):
     limit: ClassVar[float] = 250.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "StickSlip":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "StickSlip":
         """Slips after every tenth to quarter of the stroke."""
-        return cls(40.0, scene.deepest * rng.uniform(0.1, 0.25), rng.uniform(0.75, 0.9))
+        return cls(40.0, conditions.deepest * rng.uniform(0.1, 0.25), rng.uniform(0.75, 0.9))
 
     def machine(self, contact: Contact) -> FloatArray:
         """Saw tooth [N] of zero mean."""
         x = contact.motion.deflection
-        way = np.cumsum(np.abs(np.diff(x, prepend=x[0]))) / self.pitch
-        phase = way - np.floor(way)
+        path = np.cumsum(np.abs(np.diff(x, prepend=x[0]))) / self.pitch
+        phase = path - np.floor(path)
         tooth = np.where(phase < self.release, phase / self.release, (1.0 - phase) / (1.0 - self.release))
         return self.strength * (tooth - 0.5) * np.tanh(contact.motion.rate / 1e-4)
 
@@ -69,10 +69,10 @@ class EccentricWheel(Effect):
     limit: ClassVar[float] = 0.002
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "EccentricWheel":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "EccentricWheel":
         """Some turns in the shortest recording, not in step with a drive."""
-        shortest = min(m.duration for m in scene.motions)
-        slowest = min(m.sample_step for m in scene.motions)
+        shortest = min(m.duration for m in conditions.motions)
+        slowest = min(m.sample_step for m in conditions.motions)
         return cls(
             0.2e-3, min(rng.uniform(5.3, 13.7) / shortest, 0.11 / slowest), rng.uniform(0.0, 2.0 * np.pi)
         )
@@ -93,26 +93,26 @@ class DeadZoneDamper(Effect):
     limit: ClassVar[float] = 20000.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "DeadZoneDamper":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "DeadZoneDamper":
         """Threshold at the typical rate."""
-        return cls(500.0, scene.typical_rate * rng.uniform(0.8, 1.3))
+        return cls(500.0, conditions.typical_rate * rng.uniform(0.8, 1.3))
 
     def machine(self, contact: Contact) -> FloatArray:
         """Force of the valve [N]."""
         return -self.strength * np.maximum(-contact.motion.rate - self.threshold, 0.0)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Unloading faster than the threshold."""
         return contact.motion.rate < -self.threshold
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """Below the threshold in rate."""
-        return [Place("rate", None, -self.threshold, "m/s")]
+        return [Region("rate", None, -self.threshold, "m/s")]
 
 
 @dataclass(frozen=True)
 class OneSidedPlay(Effect):
-    """A pin with play on the way out: unloading, the frame gives up f within a window of deflection."""
+    """A pin with a dead zone: while unloading, the frame loses the force f within a window of deflection."""
 
     middle: float
     width: float
@@ -122,12 +122,12 @@ class OneSidedPlay(Effect):
     limit: ClassVar[float] = 300.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "OneSidedPlay":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "OneSidedPlay":
         """A window in the middle of the stroke."""
         return cls(
             40.0,
-            scene.deflection_quantile(rng.uniform(0.35, 0.65)),
-            scene.deepest * rng.uniform(0.03, 0.06),
+            conditions.deflection_quantile(rng.uniform(0.35, 0.65)),
+            conditions.deepest * rng.uniform(0.03, 0.06),
         )
 
     def machine(self, contact: Contact) -> FloatArray:
@@ -135,17 +135,17 @@ class OneSidedPlay(Effect):
         bump = np.exp(-0.5 * ((contact.motion.deflection - self.middle) / self.width) ** 2)
         return -self.strength * bump * unloading(contact)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Unloading, within two widths."""
         near = np.abs(contact.motion.deflection - self.middle) < 2.0 * self.width
         return near & unloading(contact)
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """The window and the branch."""
         low, high = self.middle - 2.0 * self.width, self.middle + 2.0 * self.width
         return [
-            Place("deflection", low, high, "m"),
-            Place("direction", "unloading", "unloading", "1"),
+            Region("deflection", low, high, "m"),
+            Region("direction", "unloading", "unloading", "1"),
         ]
 
 
@@ -161,7 +161,7 @@ class AmplifierJump(Effect):
     limit: ClassVar[float] = 300.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "AmplifierJump":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "AmplifierJump":
         """A few percent up to a fifth of the time."""
         begin = rng.uniform(0.15, 0.75)
         return cls(float(rng.choice((-1.0, 1.0))) * 20.0, begin, begin + rng.uniform(0.03, 0.2))
@@ -174,13 +174,13 @@ class AmplifierJump(Effect):
         """Force [N] with the jump."""
         return force + self.strength * self._inside(motion)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Within the span."""
         return self._inside(contact.motion)
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """The span of time."""
-        return [Place("time", self.begin * motion.duration, self.end * motion.duration, "s")]
+        return [Region("time", self.begin * motion.duration, self.end * motion.duration, "s")]
 
 
 @dataclass(frozen=True)
@@ -196,9 +196,9 @@ class Crosstalk(Effect):
     limit: ClassVar[float] = 200.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "Crosstalk":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "Crosstalk":
         """Below a quarter of the slowest sampling rate, above the drive's own period."""
-        slowest = max(m.sample_step for m in scene.motions)
+        slowest = max(m.sample_step for m in conditions.motions)
         return cls(
             12.0, rng.uniform(0.08, 0.23) / slowest, rng.uniform(1.3, 4.7), rng.uniform(0.0, 2.0 * np.pi)
         )
@@ -225,9 +225,9 @@ class FrameResonance(Effect):
     limit: ClassVar[float] = 1.5
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "FrameResonance":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "FrameResonance":
         """A mode that the drive excites: between 2 Hz and an eighth of the sampling rate."""
-        quickest = 1.0 / min(m.sample_step for m in scene.motions)
+        quickest = 1.0 / min(m.sample_step for m in conditions.motions)
         return cls(0.3, min(rng.uniform(3.0, 9.0), quickest / 8.0), rng.uniform(0.01, 0.04))
 
     def channel(self, motion: Motion, force: FloatArray) -> FloatArray:
@@ -239,7 +239,7 @@ class FrameResonance(Effect):
 
 @dataclass(frozen=True)
 class BeadSnap(Effect):
-    """The bead snaps from its seat at one deflection and back at a smaller one: Preisach's relay."""
+    """The bead snaps out of the rim at one deflection and back at a smaller one: Preisach's relay."""
 
     snaps: float
     seats: float
@@ -249,10 +249,10 @@ class BeadSnap(Effect):
     limit: ClassVar[float] = 300.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "BeadSnap":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "BeadSnap":
         """Out at two thirds of the stroke, back a little below."""
-        snaps = scene.deepest * rng.uniform(0.55, 0.85)
-        return cls(40.0, snaps, snaps - scene.deepest * rng.uniform(0.03, 0.12))
+        snaps = conditions.deepest * rng.uniform(0.55, 0.85)
+        return cls(40.0, snaps, snaps - conditions.deepest * rng.uniform(0.03, 0.12))
 
     def parallel(self, contact: Contact) -> FloatArray:
         """Lost force [N] while the bead is out."""
@@ -264,13 +264,13 @@ class BeadSnap(Effect):
         last = np.maximum.accumulate(np.where(decided >= 0, np.arange(decided.size), 0))
         return np.asarray(decided[last] == 1)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """While the bead is out."""
         return self._out(contact.deflection)
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """Beyond the deflection at which the bead sits again."""
-        return [Place("deflection", self.seats, None, "m")]
+        return [Region("deflection", self.seats, None, "m")]
 
 
 @dataclass(frozen=True)
@@ -285,7 +285,7 @@ class ZeroDrift(Effect):
     limit: ClassVar[float] = 200.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "ZeroDrift":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "ZeroDrift":
         """Swings that no exponential approach resembles."""
         return cls(12.0, rng.uniform(1.7, 3.4), rng.uniform(0.0, 2.0 * np.pi))
 
@@ -307,24 +307,24 @@ class Adhesion(Effect):
     limit: ClassVar[float] = 300.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "Adhesion":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "Adhesion":
         """Within the shallowest tenth or two of the samples."""
-        return cls(40.0, scene.deflection_quantile(rng.uniform(0.1, 0.2)) * 0.6 + 0.5e-3)
+        return cls(40.0, conditions.deflection_quantile(rng.uniform(0.1, 0.2)) * 0.6 + 0.5e-3)
 
     def machine(self, contact: Contact) -> FloatArray:
         """Pull [N], falling off with the deflection."""
         x = np.maximum(contact.motion.deflection, 0.0)
         return -self.strength * np.exp(-((x / self.height) ** 2)) * unloading(contact)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Unloading, near the surface."""
         return (contact.motion.deflection < 1.5 * self.height) & unloading(contact)
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """The shallow end of the unloading branch."""
         return [
-            Place("deflection", 0.0, 1.5 * self.height, "m"),
-            Place("direction", "unloading", "unloading", "1"),
+            Region("deflection", 0.0, 1.5 * self.height, "m"),
+            Region("direction", "unloading", "unloading", "1"),
         ]
 
 
@@ -339,7 +339,7 @@ class StuckChannel(Effect):
     limit: ClassVar[float] = 0.15
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "StuckChannel":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "StuckChannel":
         """Two to six times in a recording."""
         return cls(0.04, tuple(np.sort(rng.uniform(0.05, 0.85, int(rng.integers(2, 7)))).tolist()))
 
@@ -353,14 +353,16 @@ class StuckChannel(Effect):
         free = np.where(self._hanging(motion), 0, np.arange(force.size))
         return force[np.maximum.accumulate(free)]
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """While it hangs."""
         return self._hanging(contact.motion)
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """Every span in which it hangs."""
         length = self.strength / len(self.moments)
-        return [Place("time", m * motion.duration, (m + length) * motion.duration, "s") for m in self.moments]
+        return [
+            Region("time", m * motion.duration, (m + length) * motion.duration, "s") for m in self.moments
+        ]
 
 
 def unloading(contact: Contact) -> BoolArray:

@@ -1,13 +1,13 @@
-"""What a gauge tells of a motion: its rate and acceleration, from noisy readings and without look-ahead."""
+"""Rate and acceleration of a motion estimated from the noisy readings of a gauge, without look-ahead."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import factorial
 
 import numpy as np
 
-from concealed.motion import FloatArray, Motion
+from .motion import FloatArray, Motion
 
 #: Numbers of readings through which a polynomial is laid, and degrees beyond the derivative's order.
 LENGTHS = (*range(2, 12), 14, 17, 20, 24, 29, 35, 42, 50)
@@ -15,66 +15,76 @@ DEGREES = (0, 1, 2)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Told(Motion):
-    """A motion of which rate [m/s] and acceleration [m/s^2] are those that the readings tell."""
+class EstimatedMotion(Motion):
+    """A motion whose rate [m/s] and acceleration [m/s^2] are estimates from readings."""
 
-    told_rate: FloatArray
-    told_acceleration: FloatArray
+    estimated_rate: FloatArray
+    estimated_acceleration: FloatArray
 
     @cached_property
     def rate(self) -> FloatArray:
-        """Deflection rate [m/s] as it was told."""
-        return self.told_rate
+        """Estimated deflection rate [m/s]."""
+        return self.estimated_rate
 
     @cached_property
     def acceleration(self) -> FloatArray:
-        """Acceleration [m/s^2] as it was told."""
-        return self.told_acceleration
+        """Estimated acceleration [m/s^2]."""
+        return self.estimated_acceleration
 
 
-def told(motion: Motion, shown: FloatArray) -> Told:
-    """The motion with the rate and the acceleration that its readings `shown` [m] tell at best.
+def estimated(motion: Motion, readings: FloatArray) -> EstimatedMotion:
+    """The motion with the best estimates of rate and acceleration that its `readings` [m] allow.
 
-    Each is the derivative, at the last reading, of the least-squares polynomial through the last ones; degree and
-    number of readings are those that come nearest to the truth on this very recording, which only the rig can
-    know. Between the readings the error goes straight on.
+    Each estimate is the derivative, at the last reading, of a least-squares polynomial through the last ones. Degree
+    and number of readings are those with the least error on this recording; only the rig knows the true motion, so
+    only the rig can choose them. Between the readings the error is interpolated linearly.
     """
     time = motion.recorded(motion.time)
 
     def with_error(order: int, true: FloatArray) -> FloatArray:
         at_readings = motion.recorded(true)
-        best = nearest(derivatives(shown, motion.sample_step, order), at_readings)
+        best = nearest(derivatives(readings, motion.sample_step, order), at_readings)
         return true + np.interp(motion.time, time, best - at_readings)
 
-    return Told(
+    return EstimatedMotion(
         motion.name,
         motion.time,
         motion.deflection,
         motion.radius,
         motion.stride,
         motion.burst,
-        told_rate=with_error(1, motion.rate),
-        told_acceleration=with_error(2, motion.acceleration),
+        estimated_rate=with_error(1, motion.rate),
+        estimated_acceleration=with_error(2, motion.acceleration),
     )
 
 
-def derivatives(shown: FloatArray, step: float, order: int) -> Iterable[FloatArray]:
-    """Derivatives of an order at every reading: one series for each degree and length of the polynomial.
+def derivatives(readings: FloatArray, step: float, order: int) -> Iterable[FloatArray]:
+    """Derivatives of an order at every reading: one array for each degree and length of the polynomial.
 
-    shown [m] on an even grid of `step` [s]; before the first reading it came the way it went on (odd about it).
+    readings [m] on an even grid of `step` [s]; they are continued before the first one by odd reflection.
     """
     for degree in (order + d for d in DEGREES):
         for length in LENGTHS:
-            if degree < length <= shown.size:
-                ages = step * np.arange(1 - length, 1)
-                weights = (
-                    factorial(order) * np.linalg.pinv(np.vander(ages, degree + 1, increasing=True))[order]
+            if degree < length <= readings.size:
+                before = 2.0 * readings[0] - readings[length - 1 : 0 : -1]
+                weights = _weights(step, order, degree, length)
+                # the weights of a derivative sum to zero; without the offset rounding errors stay small
+                yield np.convolve(
+                    np.concatenate([before, readings]) - readings[0], weights[::-1], mode="valid"
                 )
-                before = 2.0 * shown[0] - shown[length - 1 : 0 : -1]
-                # the weights of a derivative add up to nothing: away from zero rounding would be heard
-                yield np.convolve(np.concatenate([before, shown]) - shown[0], weights[::-1], mode="valid")
 
 
-def nearest(series: Iterable[FloatArray], true: FloatArray) -> FloatArray:
-    """The series with the least squared error."""
-    return min(series, key=lambda s: float(np.sum((s - true) ** 2)))
+@lru_cache(maxsize=1024)
+def _weights(step: float, order: int, degree: int, length: int) -> FloatArray:
+    """Weights of the last readings, the oldest first, in a derivative of their least-squares polynomial."""
+    ages = step * np.arange(1 - length, 1)
+    weights: FloatArray = (
+        factorial(order) * np.linalg.pinv(np.vander(ages, degree + 1, increasing=True))[order]
+    )
+    weights.flags.writeable = False
+    return weights
+
+
+def nearest(candidates: Iterable[FloatArray], true: FloatArray) -> FloatArray:
+    """The candidate with the least squared error."""
+    return min(candidates, key=lambda s: float(np.sum((s - true) ** 2)))

@@ -1,4 +1,4 @@
-"""What a trial is to be about, before anything is simulated: kind, effects, tire, surfaces, tests."""
+"""The plan of a trial, before anything is simulated: kind, effects, tires, surfaces, tests."""
 
 import math
 from collections.abc import Mapping
@@ -6,26 +6,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concealed import article
-from concealed.effects import Effect
-from concealed.excitation import EXCITATIONS, Reach
-from concealed.imitations import NAMES
-from concealed.motion import Motion
-from concealed.open_world import OPEN_WORLD
-from concealed.tires import (
+from . import article
+from .effects import Effect
+from .excitation import EXCITATIONS, DepthLimits
+from .motion import Motion
+from .open_world import OPEN_WORLD
+from .regressors import NAMES
+from .tires import (
     PowerTire,
     Tire,
     article_tire,
-    believed_table,
     contact_patch_tire,
     deviating_tire,
+    fitted_table,
 )
 
 #: How often each kind is drawn: nothing at all one time in six.
 KINDS = {"none": 1 / 6, "single": 1 / 3, "masked": 1 / 6, "pair": 1 / 8, "triple": 1 / 24, "open": 1 / 6}
 
-#: Tests that let an effect show itself; elsewhere it may hide behind another.
-TELLING: Mapping[str, tuple[str, ...]] = {
+#: Tests that excite an effect well; in others a second effect may look the same.
+INFORMATIVE_TESTS: Mapping[str, tuple[str, ...]] = {
     "deflection_offset": (
         "article_triangle",
         "single_rate_triangle",
@@ -57,30 +57,30 @@ TELLING: Mapping[str, tuple[str, ...]] = {
     "adhesion": ("article_triangle", "growing_triangle", "many_rates_triangle", "single_rate_triangle"),
     "one_sided_play": ("article_triangle", "growing_triangle", "many_rates_triangle", "ride"),
 }
-#: How often a single effect is shown by one constant rate alone, and how often an elastic one may stay
-#: hidden.
-POOR_TEST, MAY_STAY_HIDDEN = 0.12, 0.2
+#: How often a single effect gets a test of one constant rate alone, and how often an elastic one may stay
+#: invisible.
+POORLY_EXCITED, MAY_STAY_HIDDEN = 0.12, 0.2
 #: Largest force of the article's tests [N] and of its load cell [N].
 ARTICLE_FORCE, CELL_FORCE = 2240.0, 4000.0
 #: Largest deflections of the article's tests [m].
 DEFLECTIONS = (0.0127, 0.03175)
-#: Part of the training motions' depth that a motion to hold out reaches: what was seen, no deeper.
+#: Depth of a held-out motion over that of the training motions: no deeper than the fitted data.
 HELD_OUT_DEPTH = (0.75, 0.92)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Kind, names of the effects, the form from the open world, and how poor the tests may be."""
+    """Kind, names of the effects, the form outside the catalogue, and whether the tests may excite them poorly."""
 
     kind: str
     names: tuple[str, ...]
     open_form: type[Effect] | None
-    poor: bool
+    poorly_excited: bool
     may_hide: bool
 
     @property
     def another_tire(self) -> bool:
-        """Whether the tire is another than the one believed in."""
+        """Whether the tire differs from the baseline tire."""
         return "recalibration" in self.names
 
     @property
@@ -91,13 +91,13 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Belief:
-    """The tire on the bench, the tire the user believes in, and where the latter comes from."""
+class Setup:
+    """The tire on the bench, the baseline tire, where the latter comes from, and the depth limits."""
 
     tire: Tire
-    believed: PowerTire
+    baseline: PowerTire
     source: str
-    reach: Reach
+    limits: DepthLimits
 
 
 def planned(rng: np.random.Generator, kind: str | None) -> Plan:
@@ -122,13 +122,13 @@ def planned(rng: np.random.Generator, kind: str | None) -> Plan:
     if "recalibration" in names and "series_compliance" in names and not may_hide:
         return planned(rng, kind)
     # a slow triangle has no acceleration but at its corners, between two samples
-    poor = kind == "single" and names != ("inertia",) and bool(rng.random() < POOR_TEST)
-    return Plan(kind, names, open_form, poor, may_hide)
+    poorly_excited = kind == "single" and names != ("inertia",) and bool(rng.random() < POORLY_EXCITED)
+    return Plan(kind, names, open_form, poorly_excited, may_hide)
 
 
-def believed_in(rng: np.random.Generator, plan: Plan) -> Belief:
-    """Draw the surfaces, the tire, and the tire that is believed in."""
-    surfaces = _surfaces(rng, plan.poor)
+def drawn_setup(rng: np.random.Generator, plan: Plan) -> Setup:
+    """Draw the surfaces, the tire, and the baseline tire."""
+    surfaces = _surfaces(rng, plan.poorly_excited)
     kind = rng.random()
     if not plan.another_tire:
         tire: Tire = article_tire() if kind < 0.6 else deviating_tire(rng)
@@ -140,43 +140,43 @@ def believed_in(rng: np.random.Generator, plan: Plan) -> Belief:
         source = "hull1996" if kind < 0.75 else "table"
     ceiling = ARTICLE_FORCE if rng.random() < 0.8 else CELL_FORCE
     deepest = DEFLECTIONS[1] * rng.uniform(0.7, 1.0)
-    reach = Reach(surfaces, tuple(_depth(tire, r, ceiling, deepest) for r in surfaces))
+    limits = DepthLimits(surfaces, tuple(_depth(tire, r, ceiling, deepest) for r in surfaces))
     if source == "hull1996":
-        return Belief(tire, article_tire(), source, reach)
+        return Setup(tire, article_tire(), source, limits)
     if isinstance(tire, PowerTire):
-        return Belief(tire, tire, source, reach)
+        return Setup(tire, tire, source, limits)
     listed = article.SURFACES
     depths = [_depth(tire, r, ceiling, deepest) for r in listed]
-    return Belief(tire, believed_table(tire, depths, listed), source, reach)
+    return Setup(tire, fitted_table(tire, depths, listed), source, limits)
 
 
-def tests(
-    rng: np.random.Generator, plan: Plan, reach: Reach
+def drawn_tests(
+    rng: np.random.Generator, plan: Plan, limits: DepthLimits
 ) -> tuple[tuple[Motion, ...], tuple[Motion, ...]]:
-    """Draw the training motions, chosen to show the effects, and held-out ones of another kind."""
-    if plan.poor:
+    """Draw the training motions, chosen to excite the effects, and held-out ones of another kind."""
+    if plan.poorly_excited:
         names = [str(rng.choice(("article_triangle", "single_rate_triangle")))]
     else:
-        names = [str(rng.choice(TELLING.get(name, tuple(EXCITATIONS)))) for name in plan.wanted]
+        names = [str(rng.choice(INFORMATIVE_TESTS.get(name, tuple(EXCITATIONS)))) for name in plan.wanted]
         most = max(len(names), 1)
         while len(names) < most + int(rng.integers(0, 2)):
             names.append(str(rng.choice(list(EXCITATIONS))))
-    train = tuple(EXCITATIONS[name](rng, reach.scaled(rng.uniform(0.92, 1.0))) for name in names)
+    train = tuple(EXCITATIONS[name](rng, limits.scaled(rng.uniform(0.92, 1.0))) for name in names)
     left = [name for name in EXCITATIONS if name not in names]
-    shown = [str(n) for n in rng.choice(left, int(rng.integers(1, 3)), replace=False)]
-    others = tuple(EXCITATIONS[name](rng, reach.scaled(rng.uniform(*HELD_OUT_DEPTH))) for name in shown)
+    kinds = [str(n) for n in rng.choice(left, int(rng.integers(1, 3)), replace=False)]
+    others = tuple(EXCITATIONS[name](rng, limits.scaled(rng.uniform(*HELD_OUT_DEPTH))) for name in kinds)
     return train, others
 
 
-def alike(rng: np.random.Generator, train: tuple[Motion, ...], reach: Reach) -> Motion:
-    """Draw one more motion to hold out, of the kind of one of the training motions."""
+def drawn_alike(rng: np.random.Generator, train: tuple[Motion, ...], limits: DepthLimits) -> Motion:
+    """Draw one more held-out motion, of the kind of one of the training motions."""
     name = str(rng.choice([motion.name for motion in train]))
-    return EXCITATIONS[name](rng, reach.scaled(rng.uniform(*HELD_OUT_DEPTH)))
+    return EXCITATIONS[name](rng, limits.scaled(rng.uniform(*HELD_OUT_DEPTH)))
 
 
-def _surfaces(rng: np.random.Generator, poor: bool) -> tuple[float, ...]:
+def _surfaces(rng: np.random.Generator, poorly_excited: bool) -> tuple[float, ...]:
     """One surface, mostly the flat, or two to four mounted in turn."""
-    if poor or rng.random() < 0.5:
+    if poorly_excited or rng.random() < 0.5:
         return (math.inf,) if rng.random() < 0.7 else (float(rng.choice(article.SURFACES)),)
     chosen = rng.choice(len(article.SURFACES), int(rng.integers(2, 5)), replace=False)
     return tuple(article.SURFACES[int(i)] for i in chosen)

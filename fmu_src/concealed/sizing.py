@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concealed.bench import Bench
-from concealed.effects.effect import Effect
-from concealed.motion import BoolArray, FloatArray, Motion
+from .bench import Bench
+from .effects.effect import Effect
+from .motion import BoolArray, FloatArray, Motion
 
 #: Relative error of a size that the search accepts.
 CLOSE_ENOUGH = 0.01
@@ -17,12 +17,11 @@ MOST_STEPS = 12
 class Size:
     """Sizes of an effect in units of the noise's RMS.
 
-    requested: what was asked for (0: nothing was); raw: RMS of the force with less the force without, over
-    the samples to which the effect is confined; overall: the same over all samples; refitted: overall, after
-    A and B of every surface were refitted to it; beyond_shape: overall, after any smooth function of
-    deflection on every surface was taken off; share: part of the samples to which the effect is confined;
-    reached: whether the raw size is the requested one (within 5 %); it is not where that would take an
-    implausible strength.
+    requested: what was asked for (0: nothing was); raw: RMS of the force with the effect less the force without it,
+    over the samples in which the effect is active; overall: the same over all samples; refitted: overall, after A and
+    B of every surface were refitted to it; beyond_shape: overall, after the best smooth function of deflection on
+    every surface was subtracted; share: part of the samples in which the effect is active; reached: whether the raw
+    size is the requested one (within 5 %); it is not where that would take an implausible strength.
     """
 
     requested: float
@@ -43,13 +42,13 @@ def contributions(bench: Bench, name: str, motions: tuple[Motion, ...]) -> list[
 def measured(
     bench: Bench, effect: Effect, motions: tuple[Motion, ...], noise: float, requested: float
 ) -> Size:
-    """All sizes of one effect in the company of the others."""
+    """All sizes of one effect, with the other effects present."""
     parts = contributions(bench, effect.name, motions)
     return _sizes(bench, motions, parts, _active(bench, effect, motions), noise, requested)
 
 
 def misfit_size(bench: Bench, motions: tuple[Motion, ...], misfit: list[FloatArray], noise: float) -> Size:
-    """All sizes of the difference [N] between a tire and the one that was believed in."""
+    """All sizes of the difference [N] between a tire and the baseline tire."""
     everywhere = [np.ones(part.size, dtype=bool) for part in misfit]
     return _sizes(bench, motions, misfit, everywhere, noise, 0.0)
 
@@ -76,7 +75,7 @@ def resized(bench: Bench, effect: Effect, motions: tuple[Motion, ...], noise: fl
         if strength >= effect.limit and found < wanted:
             break
         if found <= 0.0:
-            # too small to touch a single sample: back towards the last strength that did
+            # too small to change a single sample: back towards the last strength that did
             strength = min(effect.limit, np.sqrt(strength * last[0]) if last else 4.0 * strength)
             continue
         if last is not None and abs(np.log(strength / last[0])) > 1e-9:
@@ -115,7 +114,7 @@ def _active(bench: Bench, effect: Effect, motions: tuple[Motion, ...]) -> list[B
     result = []
     for motion in motions:
         contact = bench.contact(motion)
-        where = effect.active(contact, contact.elastic)
+        where = effect.active(contact)
         everywhere = np.ones(motion.time.size, dtype=bool)
         result.append(motion.recorded(everywhere if where is None else where))
     return result

@@ -8,8 +8,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import PPoly, make_interp_spline
 
-from concealed import article
-from concealed.motion import FloatArray
+from . import article
+from .motion import FloatArray
 
 #: Inflation pressure (gauge) of the article's test, 50 psi [Pa]; outside of the tire, 1 atm [Pa].
 INFLATION = 344.7e3
@@ -117,7 +117,7 @@ Tire = PowerTire | ContactPatchTire
 
 
 def distinct(radius: FloatArray) -> set[float]:
-    """The surfaces [m] in a column of radii, found at the places where it changes."""
+    """The surfaces [m] in a column of radii, found at the regions where it changes."""
     changed = radius[1:] != radius[:-1]
     return {float(r) for r in (*radius[:1], *radius[1:][changed])}
 
@@ -196,6 +196,6 @@ def best_power_law(tire: Tire, radius: float, deepest: float) -> Surface:
     return Surface(radius, miss(b)[1], b)
 
 
-def believed_table(tire: Tire, deepest: Sequence[float], radii: Sequence[float]) -> PowerTire:
+def fitted_table(tire: Tire, deepest: Sequence[float], radii: Sequence[float]) -> PowerTire:
     """Best power law on every surface, over the range of deflection that is used there."""
     return PowerTire(tuple(best_power_law(tire, r, deep) for r, deep in zip(radii, deepest, strict=True)))

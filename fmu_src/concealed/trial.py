@@ -1,16 +1,16 @@
-"""What a trial is: recordings, what was believed of the tire, and the sealed answer."""
+"""What a trial is: recordings, the baseline tire, and the answer."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from concealed.bench import Bench
-from concealed.measurement import Instrument
-from concealed.motion import FINEST_STEP, FloatArray, Motion, even_grid, rounded
-from concealed.reading import told
-from concealed.sizing import Size
-from concealed.tires import PowerTire
+from .bench import Bench
+from .measurement import Instrument
+from .motion import FINEST_STEP, FloatArray, Motion, even_grid, rounded
+from .reading import estimated
+from .sizing import Size
+from .tires import PowerTire
 
 Parameters = Mapping[str, object]
 
@@ -32,11 +32,11 @@ class Record:
 
 @dataclass(frozen=True)
 class FileTruth:
-    """What is known of one recording: samples, excitation, RMSE [N] of the believed tire and the floors.
+    """What is known of one recording: samples, excitation, RMSE [N] of the baseline tire, noise floors [N].
 
-    floor_rmse is what the truth would still miss if it knew rate and acceleration: the error of the force, and
-    what the error of the recorded deflection moves through the tire's spring. read_floor_rmse is what it would
-    miss on the readings as they are, from which it has to tell rate and acceleration (see `reading.told`).
+    floor_rmse: RMSE of the true tire where rate and acceleration are known exactly: the error of the force reading,
+    and the error of the deflection reading times the tire's stiffness. read_floor_rmse: RMSE of the true tire on the
+    readings as they are, where rate and acceleration are estimated from them (see `reading.estimated`).
     """
 
     samples: int
@@ -51,10 +51,10 @@ class Answer:
     """What is hidden in a trial.
 
     effects: parameters of every named effect (`recalibration` included); hidden: those of an effect that no
-    catalogue names; right: the sets of names that count as right, the true one first; margins: by how much
-    log-likelihood each other right set falls short; sizes over the noise; where: places of confined effects;
-    noise [N]; files: truth by file name; rule: why sets beyond the exact one count as right, or ""; tire and
-    instrument: their constants.
+    catalogue names; right: the sets of names that count as right, the true one first; margins: loss of
+    log-likelihood of each other right set; sizes over the noise; where: regions of localized effects; noise [N];
+    files: truth by file name; rule: why sets beside the exact one count as right, or ""; tire and instrument: their
+    constants. The names of the fields are the keys of the answer's file.
     """
 
     kind: str
@@ -75,18 +75,17 @@ class Answer:
 class Trial:
     """Recordings to diagnose, recordings to show the improvement on, and the answer.
 
-    heldout: tests of other kinds than the training ones, and last one of a kind among them.
-    believed: the tire that the user believes in; believed_source: "hull1996" where it is the article's,
-    "table" where A and B were identified surface by surface. bench and instrument can make further
-    recordings.
+    heldout: tests of other kinds than the training ones, then one test of a training kind.
+    baseline: the tire that the user starts from; baseline_source: "hull1996" where it is the article's tire, "table"
+    where A and B were identified surface by surface. bench and instrument can make further recordings.
     """
 
     seed: int
     train: tuple[Record, ...]
     heldout: tuple[Record, ...]
     answer: Answer
-    believed: PowerTire
-    believed_source: str
+    baseline: PowerTire
+    baseline_source: str
     noise: float
     bench: Bench
     instrument: Instrument
@@ -95,20 +94,20 @@ class Trial:
 def recorded(
     bench: Bench, instrument: Instrument, motion: Motion, name: str, rng: np.random.Generator
 ) -> tuple[Record, tuple[float, float]]:
-    """A recording of a motion, and its two floors [N] (see `FileTruth`)."""
+    """A recording of a motion, and its two noise floors [N] (see `FileTruth`)."""
     clean = bench.force(motion)
     time, true = motion.recorded(motion.time), motion.recorded(motion.deflection)
     radius = motion.recorded(motion.radius)
-    shown = true + instrument.gauge * rng.standard_normal(true.size)
+    readings = true + instrument.gauge * rng.standard_normal(true.size)
     force = instrument.converted(
         motion.recorded(clean) + instrument.force_error(rng, time.size, motion.sample_step)
     )
     ones = np.ones_like(true)
-    misled = bench.tire.force(shown, radius, ones) - bench.tire.force(true, radius, ones)
-    left = force - motion.recorded(clean) - misled
-    passed_on = motion.recorded(bench.force(told(motion, shown)) - clean)
-    floor, read_floor = (float(np.sqrt(np.mean(error**2))) for error in (left, left - passed_on))
-    return Record(name, motion.name, time, shown, radius, force), (floor, read_floor)
+    by_stiffness = bench.tire.force(readings, radius, ones) - bench.tire.force(true, radius, ones)
+    by_rate = motion.recorded(bench.force(estimated(motion, readings)) - clean)
+    error = force - motion.recorded(clean) - by_stiffness
+    floor, read_floor = (float(np.sqrt(np.mean(e**2))) for e in (error, error - by_rate))
+    return Record(name, motion.name, time, readings, radius, force), (floor, read_floor)
 
 
 def rerun(
@@ -120,10 +119,10 @@ def rerun(
     seed: int,
     name: str = "test",
 ) -> Record:
-    """Run another test on the rig of a trial, for instance one that is to tell rivals apart.
+    """Run another test on the rig of a trial, for instance one that discriminates between alternatives.
 
     time [s] on an even grid, deflection [m], radius [m] (convex > 0, concave < 0, flat = inf); one shape
-    (n,), n >= 8. Between the samples the actuator goes straight on; it rounds corners over one step.
+    (n,), n >= 8. Between the samples the deflection is linear; corners are rounded over one step.
     Errors: ValueError for a grid that is not even, or too few samples.
     """
     if time.size < 8:

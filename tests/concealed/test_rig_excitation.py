@@ -1,27 +1,27 @@
-"""Tests that the actuator is told to make."""
+"""The motions that the actuator is given."""
 
 import math
 
 import numpy as np
 import pytest
-from concealed.excitation import EXCITATIONS, FASTEST, FEWEST_SAMPLES, MOST_SAMPLES, Reach
+from concealed.alternatives import one_constant_rate
+from concealed.excitation import EXCITATIONS, FASTEST, FEWEST_SAMPLES, MOST_SAMPLES, DepthLimits
 from concealed.motion import rounded
-from concealed.rivals import one_constant_rate
 
-FLAT = Reach((math.inf,), (0.025,))
-THREE = Reach((math.inf, 0.0508, -0.381), (0.025, 0.03, 0.02))
+FLAT = DepthLimits((math.inf,), (0.025,))
+THREE = DepthLimits((math.inf, 0.0508, -0.381), (0.025, 0.03, 0.02))
 
 
 @pytest.mark.parametrize("name", EXCITATIONS)
 @pytest.mark.parametrize("reach", [FLAT, THREE], ids=["one surface", "three surfaces"])
-def test_every_test_stays_within_the_rig(name: str, reach: Reach) -> None:
+def test_every_test_stays_within_the_rig(name: str, reach: DepthLimits) -> None:
     for seed in range(6):
         motion = EXCITATIONS[name](np.random.default_rng(seed), reach)
         samples = motion.recorded(motion.time).size
         assert 0.9 * FEWEST_SAMPLES <= samples <= MOST_SAMPLES + 1
         assert motion.time.size <= MOST_SAMPLES * 1.2
         assert np.all(np.diff(motion.time) > 0.0)
-        assert 0.0024 < 1.0 / (1.0 / motion.sample_step) <= 0.5
+        assert 0.0024 < motion.sample_step <= 0.5
         assert set(motion.surfaces) == set(reach.surfaces)
         assert np.min(motion.deflection) >= -1e-12
         for radius, deepest in zip(reach.surfaces, reach.deepest, strict=True):

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from concealed import Trial, draw, write, write_answer, write_believed
+from concealed import Trial, draw, write, write_answer, write_baseline
 from concealed.__main__ import main
 
 
@@ -52,10 +52,10 @@ def test_the_answer_never_stands_beside_the_recordings(trial: Trial, tmp_path: P
     assert not (tmp_path / "trial" / "answer.json").exists()
 
 
-def test_the_answer_is_strict_json_and_sealed(trial: Trial, tmp_path: Path) -> None:
+def test_the_answer_is_strict_json_with_a_commitment_hash(trial: Trial, tmp_path: Path) -> None:
     path = tmp_path / "sealed" / "trial.json"
-    seal = write_answer(trial, path)
-    assert seal == hashlib.sha256(path.read_bytes()).hexdigest()
+    commitment = write_answer(trial, path)
+    assert commitment == hashlib.sha256(path.read_bytes()).hexdigest()
 
     def refuse(constant: str) -> None:
         raise AssertionError(f"{constant} is not JSON")
@@ -69,9 +69,9 @@ def test_the_answer_is_strict_json_and_sealed(trial: Trial, tmp_path: Path) -> N
         assert {"samples", "baseline_rmse", "floor_rmse", "read_floor_rmse"} <= set(file)
 
 
-def test_the_believed_tire_covers_every_surface(trial: Trial, tmp_path: Path) -> None:
-    path = tmp_path / "believed.json"
-    write_believed(trial, path)
+def test_the_baseline_tire_covers_every_surface(trial: Trial, tmp_path: Path) -> None:
+    path = tmp_path / "baseline.json"
+    write_baseline(trial, path)
     tire = json.loads(path.read_text())
     radii = [math.inf if s["radius [cm]"] == "inf" else s["radius [cm]"] for s in tire["surfaces"]]
     assert tire["law"] in {"hull1996", "table"}
@@ -81,19 +81,19 @@ def test_the_believed_tire_covers_every_surface(trial: Trial, tmp_path: Path) ->
     assert tire["law"] == "table" or (flat["A"], flat["B"]) == (550.9, 1.422)
 
 
-def test_a_series_from_the_command_line(tmp_path: Path) -> None:
+def test_trials_from_the_command_line(tmp_path: Path) -> None:
     arguments = ["--seed", "4", "--trials", "2", "--kind", "none", "--out", str(tmp_path)]
     first = CliRunner().invoke(main, arguments, catch_exceptions=False)
     assert first.exit_code == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "believed",
+        "baseline",
         "sealed",
         "trial_0000",
         "trial_0001",
     ]
     lines = [line.split() for line in first.output.splitlines()]
-    for name, seal in lines:
-        assert seal == hashlib.sha256((tmp_path / "sealed" / f"{name}.json").read_bytes()).hexdigest()
+    for name, commitment in lines:
+        assert commitment == hashlib.sha256((tmp_path / "sealed" / f"{name}.json").read_bytes()).hexdigest()
     assert CliRunner().invoke(main, arguments, catch_exceptions=False).output == first.output
 
 

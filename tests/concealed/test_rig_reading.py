@@ -1,4 +1,4 @@
-"""What readings tell of a motion: exact without noise, no more than noise allows with it, and the floor it sets."""
+"""Rate and acceleration from readings: exact without noise, as good as noise allows, and their noise floor."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from concealed.effects.damping import LinearDashpot
 from concealed.effects.machine import MovingMass
 from concealed.measurement import Instrument
 from concealed.motion import Motion
-from concealed.reading import derivatives, nearest, told
+from concealed.reading import derivatives, estimated, nearest
 from concealed.tires import PowerTire, Surface
 from concealed.trial import recorded
 
@@ -20,7 +20,7 @@ def sine(frequency: float, stride: int = 4) -> Motion:
 
 
 @pytest.mark.parametrize(("order", "expected"), [(1, [0.3, -0.8, 3.6]), (2, [-0.8, 7.2])])
-def test_a_cubic_is_told_by_the_polynomials_of_its_degree(order: int, expected: list[float]) -> None:
+def test_polynomials_of_its_degree_differentiate_a_cubic_exactly(order: int, expected: list[float]) -> None:
     time = np.arange(0.0, 1.0, 0.01)
     shown = 0.01 + 0.3 * time - 0.4 * time**2 + 1.2 * time**3
     true = np.polynomial.Polynomial(expected)(time)
@@ -45,15 +45,15 @@ def test_the_nearest_is_the_one_with_the_least_error() -> None:
     ]
 
 
-def test_without_noise_a_slow_motion_is_told_nearly_as_it_is() -> None:
+def test_without_noise_a_slow_motion_is_estimated_closely() -> None:
     motion = sine(0.5)
-    heard = told(motion, motion.recorded(motion.deflection))
-    for true, said in ((motion.rate, heard.rate), (motion.acceleration, heard.acceleration)):
-        assert np.std((said - true)[400:]) < 1e-3 * np.std(true)
-    np.testing.assert_array_equal(heard.deflection, motion.deflection)
+    found = estimated(motion, motion.recorded(motion.deflection))
+    for true, estimate in ((motion.rate, found.rate), (motion.acceleration, found.acceleration)):
+        assert np.std((estimate - true)[400:]) < 1e-3 * np.std(true)
+    np.testing.assert_array_equal(found.deflection, motion.deflection)
 
 
-def floors(
+def noise_floors(
     effect: MovingMass | LinearDashpot | None, gauge: float, frequency: float = 0.5
 ) -> tuple[float, float]:
     bench = Bench(PowerTire((Surface(np.inf, 600.0, 1.4),)), () if effect is None else (effect,))
@@ -61,19 +61,19 @@ def floors(
     return recorded(bench, instrument, sine(frequency), "r", np.random.default_rng(1))[1]
 
 
-def test_where_nothing_looks_at_the_rate_both_floors_are_one() -> None:
-    floor, read_floor = floors(None, 1e-5)
+def test_without_an_effect_of_the_rate_both_noise_floors_are_equal() -> None:
+    floor, read_floor = noise_floors(None, 1e-5)
     assert read_floor == floor
 
 
 @pytest.mark.parametrize("effect", [MovingMass(10.0), LinearDashpot(2000.0)])
-def test_a_finer_gauge_brings_the_floors_together(effect: MovingMass | LinearDashpot) -> None:
-    coarse, fine = (floors(effect, gauge, 3.0) for gauge in (1.5e-5, 1.5e-7))
+def test_a_finer_gauge_brings_the_noise_floors_together(effect: MovingMass | LinearDashpot) -> None:
+    coarse, fine = (noise_floors(effect, gauge, 3.0) for gauge in (1.5e-5, 1.5e-7))
     assert coarse[1] > 1.02 * coarse[0]
     assert fine[1] == pytest.approx(fine[0], rel=0.02)
 
 
-def test_the_read_floor_is_below_what_plain_differences_pass() -> None:
-    # differences of two readings pass c sqrt(2) s / d: 2000 * 1.4 * 1.5e-5 / 0.005 = 8.5 N beside the floor's own
-    floor, read_floor = floors(LinearDashpot(2000.0), 1.5e-5)
+def test_the_reading_noise_floor_is_below_that_of_plain_differences() -> None:
+    # differences of two readings add c sqrt(2) s / d: 2000 * 1.4 * 1.5e-5 / 0.005 = 8.5 N to the floor
+    floor, read_floor = noise_floors(LinearDashpot(2000.0), 1.5e-5)
     assert read_floor < np.hypot(floor, 0.5 * 8.5)

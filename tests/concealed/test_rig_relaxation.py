@@ -72,7 +72,7 @@ def test_the_loss_of_a_springpot_is_a_power_of_the_frequency(
 
 
 def test_nothing_is_left_of_a_prony_series_after_a_long_hold(flat_motion: MakeMotion, added: Added) -> None:
-    """The believed law is the relaxed one."""
+    """The law of the tire is the relaxed one."""
     time = np.arange(6001) * 0.02
     force = added(PronySeries(0.1, (0.5, 0.5), (0.3, 4.0)), flat_motion(time, 0.02 * np.minimum(time, 1.0)))
     assert np.max(force) > 50.0

@@ -1,9 +1,9 @@
 """The hidden effects that a catalogue of tire physics has a name for, each in other equations than usual."""
 
-from concealed.effects.damping import LinearDashpot, PowerDashpot, SaturatingDashpot
-from concealed.effects.effect import Contact, Effect, Place, Scene
-from concealed.effects.friction import BoucWenFriction, IwanFriction
-from concealed.effects.machine import (
+from .damping import LinearDashpot, PowerDashpot, SaturatingDashpot
+from .effect import Conditions, Contact, Effect, Region
+from .friction import BoucWenFriction, IwanFriction
+from .machine import (
     GaugeZero,
     LoadCellZero,
     LowPass,
@@ -12,11 +12,11 @@ from concealed.effects.machine import (
     RationalClip,
     SoftClip,
 )
-from concealed.effects.pressure import ExponentialLeak, OrificeLeak, PolytropicGas, WarmingAir
-from concealed.effects.relaxation import PronySeries, Springpot
-from concealed.effects.rim import QuadraticRim, SoftplusRim
-from concealed.effects.series import YieldingWheel
-from concealed.effects.softening import GatheringDamage, OgdenRoxburgh
+from .pressure import ExponentialLeak, OrificeLeak, PolytropicGas, WarmingAir
+from .relaxation import PronySeries, Springpot
+from .rim import QuadraticRim, SoftplusRim
+from .series import YieldingWheel
+from .softening import GatheringDamage, OgdenRoxburgh
 
 #: Every form of every effect that has a name, without `recalibration`, which is a property of the tire.
 FORMS: tuple[type[Effect], ...] = (
@@ -55,7 +55,7 @@ __all__ = [
     "FORMS",
     "Contact",
     "Effect",
-    "Place",
-    "Scene",
+    "Region",
+    "Conditions",
     *sorted(form.__name__ for form in FORMS),
 ]

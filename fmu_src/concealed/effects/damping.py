@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from concealed.effects.effect import Contact, RateEffect, Scene
-from concealed.motion import FloatArray
+from ..motion import FloatArray
+from .effect import Conditions, Contact, RateEffect
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class LinearDashpot(RateEffect):
     limit: ClassVar[float] = 6000.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "LinearDashpot":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "LinearDashpot":
         """Any damping; the size is set afterwards."""
         return cls(300.0)
 
@@ -39,9 +39,9 @@ class PowerDashpot(RateEffect):
     limit: ClassVar[float] = 6000.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "PowerDashpot":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "PowerDashpot":
         """Exponent between shear thinning and a throttle."""
-        return cls(300.0, scene.typical_rate, rng.uniform(0.75, 1.4))
+        return cls(300.0, conditions.typical_rate, rng.uniform(0.75, 1.4))
 
     def parallel(self, contact: Contact) -> FloatArray:
         """Damping force [N]."""
@@ -61,9 +61,9 @@ class SaturatingDashpot(RateEffect):
     limit: ClassVar[float] = 6000.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "SaturatingDashpot":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "SaturatingDashpot":
         """Saturating above one and a half to four times the typical rate."""
-        return cls(300.0, scene.typical_rate * rng.uniform(1.5, 4.0))
+        return cls(300.0, conditions.typical_rate * rng.uniform(1.5, 4.0))
 
     def parallel(self, contact: Contact) -> FloatArray:
         """Damping force [N]."""

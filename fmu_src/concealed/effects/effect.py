@@ -1,4 +1,4 @@
-"""What one hidden piece of physics may do to the signal on its way from the gauge to the load cell."""
+"""What one hidden effect may do to the signal between the gauge and the load cell."""
 
 import dataclasses
 from abc import ABC, abstractmethod
@@ -8,15 +8,15 @@ from typing import ClassVar, TypeVar
 
 import numpy as np
 
-from concealed.motion import BoolArray, FloatArray, Motion
-from concealed.tires import Tire
+from ..motion import BoolArray, FloatArray, Motion
+from ..tires import Tire
 
 AnyEffect = TypeVar("AnyEffect", bound="Effect")
 
 
 @dataclass(frozen=True)
-class Scene:
-    """What is known of a trial before its effects are chosen: they are chosen to fit.
+class Conditions:
+    """Conditions of the training tests; the constants of an effect are drawn to fit them.
 
     motions and elastic [N] forces of the training recordings on their fine grids; noise [N] of the load cell.
     """
@@ -50,11 +50,6 @@ class Scene:
         """The deflection [m] below which a share of all recorded samples lies."""
         return float(np.quantile(np.concatenate([m.recorded(m.deflection) for m in self.motions]), share))
 
-    def force_quantile(self, share: float) -> float:
-        """The elastic force [N] below which a share of all recorded samples lies."""
-        pairs = zip(self.motions, self.elastic, strict=True)
-        return float(np.quantile(np.concatenate([m.recorded(f) for m, f in pairs]), share))
-
 
 @dataclass(frozen=True)
 class Contact:
@@ -71,8 +66,8 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a confined effect is: from `begin` to `end` of a coordinate, None where there is no end."""
+class Region:
+    """Region of a localized effect: from `begin` to `end` of the coordinate `by`, None where there is no end."""
 
     by: str
     begin: float | str | None
@@ -82,7 +77,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Effect(ABC):
-    """One hidden piece of physics; every hook does nothing unless a kind of effect gives it a meaning.
+    """One hidden effect; every hook does nothing unless a subclass overrides it.
 
     `strength` is its one free size in its own unit, zero when absent; `limit` is the largest that is
     plausible. The hooks are called in the order of the signal: gauge, pressure, spring, elastic, parallel,
@@ -99,8 +94,8 @@ class Effect(ABC):
 
     @classmethod
     @abstractmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "Effect":
-        """An effect of this form with constants drawn to fit the scene; its strength is set afterwards."""
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "Effect":
+        """Draw the constants of this form to fit the conditions; the strength is set afterwards."""
 
     def with_strength(self: AnyEffect, strength: float) -> AnyEffect:
         """The same effect in another size."""
@@ -146,25 +141,25 @@ class Effect(ABC):
         """What the force channel makes of the force [N]."""
         return force
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray | None:
-        """The samples to which a confined effect is confined; None for an effect that is everywhere."""
+    def active(self, contact: Contact) -> BoolArray | None:
+        """The samples in which a localized effect is active; None for an effect that is active everywhere."""
         return None
 
-    def places(self, motion: Motion) -> list[Place]:
-        """Where a confined effect is confined to; empty for one that is everywhere."""
+    def regions(self, motion: Motion) -> list[Region]:
+        """Regions of a localized effect; empty for one that is active everywhere."""
         return []
 
 
 class RateEffect(Effect):
-    """An effect of the rate: where the motion is fast in one burst only, it is confined to that burst."""
+    """An effect of the rate: where the motion is fast in one burst only, it is localized in that burst."""
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray | None:
+    def active(self, contact: Contact) -> BoolArray | None:
         """Within the burst, if there is one."""
         if contact.motion.burst is None:
             return None
         begin, end = contact.motion.burst
         return (contact.motion.time >= begin) & (contact.motion.time <= end)
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """The burst, if there is one."""
-        return [] if motion.burst is None else [Place("time", *motion.burst, "s")]
+        return [] if motion.burst is None else [Region("time", *motion.burst, "s")]

@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 from scipy.signal import bessel, butter, cont2discrete, lfilter, lfilter_zi
 
-from concealed.effects.effect import Contact, Effect, Place, RateEffect, Scene
-from concealed.motion import BoolArray, FloatArray, Motion
+from ..motion import BoolArray, FloatArray, Motion
+from .effect import Conditions, Contact, Effect, RateEffect, Region
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class MovingMass(RateEffect):
     limit: ClassVar[float] = 15.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "MovingMass":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "MovingMass":
         """Any mass; the size is set afterwards."""
         return cls(2.0)
 
@@ -38,7 +38,7 @@ class GaugeZero(Effect):
     elastic_only: ClassVar[bool] = True
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "GaugeZero":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "GaugeZero":
         """Either sign."""
         return cls(float(rng.choice((-1.0, 1.0))) * 0.5e-3)
 
@@ -56,7 +56,7 @@ class LoadCellZero(Effect):
     limit: ClassVar[float] = 250.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "LoadCellZero":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "LoadCellZero":
         """Either sign."""
         return cls(float(rng.choice((-1.0, 1.0))) * 20.0)
 
@@ -74,7 +74,7 @@ class PureDelay(RateEffect):
     limit: ClassVar[float] = 0.08
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "PureDelay":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "PureDelay":
         """Some milliseconds."""
         return cls(0.005)
 
@@ -98,7 +98,7 @@ class LowPass(RateEffect):
     limit: ClassVar[float] = 0.08
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "LowPass":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "LowPass":
         """Some milliseconds."""
         return cls(0.005, int(rng.choice((3, 4, 6))), bool(rng.random() < 0.6))
 
@@ -126,9 +126,9 @@ class SoftClip(Effect):
     limit: ClassVar[float] = 0.5
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "SoftClip":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "SoftClip":
         """Reached by some of the samples."""
-        return cls(0.1, scene.strongest, scene.noise * float(np.exp(rng.uniform(-1.5, 0.5))))
+        return cls(0.1, conditions.strongest, conditions.noise * float(np.exp(rng.uniform(-1.5, 0.5))))
 
     @property
     def ceiling(self) -> float:
@@ -139,18 +139,18 @@ class SoftClip(Effect):
         """Clipped force [N]."""
         return force - self.rounding * np.logaddexp(0.0, (force - self.ceiling) / self.rounding)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Where the tire presses harder than the ceiling allows."""
         return contact.elastic > self.ceiling - 2.0 * self.rounding
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """From the ceiling on."""
-        return [Place("force", self.ceiling - 2.0 * self.rounding, None, "N")]
+        return [Region("force", self.ceiling - 2.0 * self.rounding, None, "N")]
 
 
 @dataclass(frozen=True)
 class RationalClip(SoftClip):
-    """A gauge that gives way: F / (1 + (F/C)^n)^(1/n) above zero, with n from the same rounding."""
+    """An amplifier that compresses: F / (1 + (F/C)^n)^(1/n) above zero, with n from the same rounding."""
 
     def channel(self, motion: Motion, force: FloatArray) -> FloatArray:
         """Clipped force [N]."""
@@ -169,7 +169,7 @@ def filtered(force: FloatArray, step: float, b: FloatArray, a: FloatArray, corne
     numerator = np.atleast_1d(b) * corner ** (order + np.arange(1 - np.size(b), 1))
     digital_b, digital_a, _ = cont2discrete((numerator, scaled), step, method="foh")
     digital_b = np.ravel(digital_b)
-    # rounding must not leave a gain at rest: a lag keeps the mean of the force
+    # rounding must not change the gain at zero frequency: a lag keeps the mean of the force
     digital_b *= float(np.sum(digital_a) / np.sum(digital_b))
     start = lfilter_zi(digital_b, digital_a) * force[0]
     return np.asarray(lfilter(digital_b, digital_a, force, zi=start)[0], dtype=np.float64)

@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from concealed.effects.effect import Effect, Scene
-from concealed.motion import FloatArray, Motion
-from concealed.tires import AMBIENT, INFLATION
+from ..motion import FloatArray, Motion
+from ..tires import AMBIENT, INFLATION
+from .effect import Conditions, Effect
 
 #: Absolute over gauge pressure of the inflated tire [1].
 ABSOLUTE = (INFLATION + AMBIENT) / INFLATION
@@ -19,7 +19,7 @@ QUOTED_DEFLECTION = 0.025
 
 @dataclass(frozen=True)
 class PolytropicGas(Effect):
-    """p V^n = const with V = V_0 (1 - e (x/25 mm)^m (k_flat/k)^(1/2)): the patch presses air out of its way.
+    """p V^n = const with V = V_0 (1 - e (x/25 mm)^m (k_flat/k)^(1/2)): the contact patch displaces air.
 
     `strength` e is the volume lost at 25 mm on the flat over the whole [1]; polytropic index n, between slow
     (1) and quick (1.4); volume exponent m (5/2 for a parabolic cap); wheel radius [m] for the curvature.
@@ -36,7 +36,7 @@ class PolytropicGas(Effect):
     elastic_only: ClassVar[bool] = True
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "PolytropicGas":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "PolytropicGas":
         """Any index between isothermal and adiabatic."""
         return cls(0.02, rng.uniform(1.0, 1.4), rng.uniform(2.2, 2.6), 0.335)
 
@@ -57,9 +57,9 @@ class ExponentialLeak(Effect):
     limit: ClassVar[float] = 1.0 / 150.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "ExponentialLeak":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "ExponentialLeak":
         """A leak that takes some percent in a recording."""
-        return cls(0.05 / scene.longest)
+        return cls(0.05 / conditions.longest)
 
     def pressure_ratio(self, motion: Motion) -> FloatArray:
         """Pressure over inflation pressure."""
@@ -75,9 +75,9 @@ class OrificeLeak(Effect):
     limit: ClassVar[float] = 1.0 / 150.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "OrificeLeak":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "OrificeLeak":
         """A leak that takes some percent in a recording."""
-        return cls(0.05 / scene.longest)
+        return cls(0.05 / conditions.longest)
 
     def pressure_ratio(self, motion: Motion) -> FloatArray:
         """Pressure over inflation pressure."""
@@ -101,9 +101,9 @@ class WarmingAir(Effect):
     limit: ClassVar[float] = 45.0
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "WarmingAir":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "WarmingAir":
         """Time constants within the recording, so that the approach to the end can be seen."""
-        quick = scene.longest * rng.uniform(0.03, 0.12)
+        quick = conditions.longest * rng.uniform(0.03, 0.12)
         return cls(8.0, rng.uniform(0.3, 0.7), quick, quick * rng.uniform(3.0, 8.0))
 
     def pressure_ratio(self, motion: Motion) -> FloatArray:

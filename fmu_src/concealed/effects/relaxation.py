@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 from scipy.signal import fftconvolve, lfilter
 
-from concealed.effects.effect import Contact, Effect, Scene
-from concealed.motion import FloatArray
+from ..motion import FloatArray
+from .effect import Conditions, Contact, Effect
 
 
 def overstress(elastic: FloatArray, step: float, time_constant: float) -> FloatArray:
@@ -49,10 +49,10 @@ class PronySeries(Effect):
     limit: ClassVar[float] = 0.35
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "PronySeries":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "PronySeries":
         """Time constants around those that the recordings can show."""
         count = int(rng.integers(3, 7))
-        middle = float(np.exp(rng.uniform(np.log(0.15), np.log(max(0.1 * scene.longest, 0.5)))))
+        middle = float(np.exp(rng.uniform(np.log(0.15), np.log(max(0.1 * conditions.longest, 0.5)))))
         decades = rng.uniform(1.5, 3.0)
         constants = middle * 10.0 ** (decades * np.linspace(-0.5, 0.5, count))
         weights = rng.dirichlet(np.full(count, 3.0))
@@ -81,7 +81,7 @@ class Springpot(Effect):
     limit: ClassVar[float] = 0.25
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "Springpot":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "Springpot":
         """Order as of rubber between its plateau and its transition."""
         return cls(0.03, float(np.exp(rng.uniform(np.log(0.1), np.log(2.0)))), rng.uniform(0.25, 0.5))
 

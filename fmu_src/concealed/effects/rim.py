@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from concealed.effects.effect import Contact, Effect, Place, Scene
-from concealed.motion import BoolArray, FloatArray, Motion
+from ..motion import BoolArray, FloatArray, Motion
+from .effect import Conditions, Contact, Effect, Region
 
 
 class _Rim(Effect):
@@ -14,13 +14,13 @@ class _Rim(Effect):
 
     onset: float
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Beyond the onset."""
         return contact.deflection > self.onset
 
-    def places(self, motion: Motion) -> list[Place]:
+    def regions(self, motion: Motion) -> list[Region]:
         """From the onset on."""
-        return [Place("deflection", self.onset, None, "m")]
+        return [Region("deflection", self.onset, None, "m")]
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ class QuadraticRim(_Rim):
     elastic_only: ClassVar[bool] = True
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "QuadraticRim":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "QuadraticRim":
         """Reached by a few percent up to a fifth of the samples."""
-        return cls(1e5, rim_onset(rng, scene), scene.deepest * rng.uniform(0.01, 0.04))
+        return cls(1e5, rim_onset(rng, conditions), conditions.deepest * rng.uniform(0.01, 0.04))
 
     def parallel(self, contact: Contact) -> FloatArray:
         """Force of the stop [N]."""
@@ -64,17 +64,17 @@ class SoftplusRim(_Rim):
     elastic_only: ClassVar[bool] = True
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "SoftplusRim":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "SoftplusRim":
         """Reached by a few percent up to a fifth of the samples."""
-        return cls(1e5, rim_onset(rng, scene), scene.deepest * rng.uniform(0.005, 0.02))
+        return cls(1e5, rim_onset(rng, conditions), conditions.deepest * rng.uniform(0.005, 0.02))
 
     def parallel(self, contact: Contact) -> FloatArray:
         """Force of the stop [N]."""
-        rest = np.logaddexp(0.0, -self.onset / self.soft)
+        at_zero = np.logaddexp(0.0, -self.onset / self.soft)
         bent = np.logaddexp(0.0, (contact.deflection - self.onset) / self.soft)
-        return np.asarray(self.strength * self.soft * (bent - rest), dtype=np.float64)
+        return np.asarray(self.strength * self.soft * (bent - at_zero), dtype=np.float64)
 
 
-def rim_onset(rng: np.random.Generator, scene: Scene) -> float:
+def rim_onset(rng: np.random.Generator, conditions: Conditions) -> float:
     """A deflection [m] that 3 to 20 % of the samples exceed, at most 97 % of the deepest."""
-    return min(scene.deflection_quantile(1.0 - rng.uniform(0.03, 0.2)), 0.97 * scene.deepest)
+    return min(conditions.deflection_quantile(1.0 - rng.uniform(0.03, 0.2)), 0.97 * conditions.deepest)

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from concealed.effects.effect import Effect, Scene
-from concealed.motion import FloatArray
+from ..motion import FloatArray
+from .effect import Conditions, Effect
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class YieldingWheel(Effect):
     elastic_only: ClassVar[bool] = True
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "YieldingWheel":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "YieldingWheel":
         """A wheel that stiffens by some percent over its travel."""
         return cls(1.0 / 1e6, rng.uniform(0.01, 0.04))
 

@@ -1,4 +1,4 @@
-"""Mullins softening: pseudo-elastic damage, and damage that gathers over the cycles."""
+"""Mullins softening: pseudo-elastic damage, and damage that accumulates over the cycles."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 from scipy.special import erf
 
-from concealed.effects.effect import Contact, Effect, Scene
-from concealed.motion import BoolArray, FloatArray
+from ..motion import BoolArray, FloatArray
+from .effect import Conditions, Contact, Effect
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class OgdenRoxburgh(Effect):
     limit: ClassVar[float] = 0.4
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "OgdenRoxburgh":
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "OgdenRoxburgh":
         """Energies of the size of the tire's own."""
-        whole = 0.4 * scene.strongest * scene.deepest
+        whole = 0.4 * conditions.strongest * conditions.deepest
         return cls(0.08, whole * rng.uniform(0.1, 0.4), rng.uniform(0.1, 0.6))
 
     def softening(self, contact: Contact) -> FloatArray:
@@ -39,18 +39,17 @@ class OgdenRoxburgh(Effect):
         lost = erf((largest - energy) / (self.energy + self.share * largest))
         return np.asarray(1.0 - self.strength * lost, dtype=np.float64)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Below the largest deflection so far."""
         return contact.deflection < np.maximum.accumulate(contact.deflection) - 1e-6
 
 
 @dataclass(frozen=True)
 class GatheringDamage(Effect):
-    """Bonds go on breaking on the way below the largest deflection so far: F = F_e (1 - s D (1 -
-    (x/x_max)^q)).
+    """Bonds break over the path below the largest deflection so far: F = F_e (1 - s D (1 - (x/x_max)^q)).
 
-    Damage D = 1 - exp(-w/l), with w the way travelled below x_max and its scale l [m]; softening s [1], power
-    q.
+    Damage D = 1 - exp(-w/l), with the path length w [m] below x_max and its scale `way` l [m]; softening s [1], power
+    q [1].
     """
 
     way: float
@@ -61,9 +60,9 @@ class GatheringDamage(Effect):
     limit: ClassVar[float] = 0.4
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, scene: Scene) -> "GatheringDamage":
-        """Gathered within one or two cycles."""
-        return cls(0.08, scene.deepest * rng.uniform(0.3, 1.5), rng.uniform(2.0, 6.0))
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "GatheringDamage":
+        """Accumulated within one or two cycles."""
+        return cls(0.08, conditions.deepest * rng.uniform(0.3, 1.5), rng.uniform(2.0, 6.0))
 
     def softening(self, contact: Contact) -> FloatArray:
         """Factor on the elastic force."""
@@ -73,6 +72,6 @@ class GatheringDamage(Effect):
         damage = -np.expm1(-np.cumsum(below) / self.way)
         return 1.0 - self.strength * damage * (1.0 - (x / largest) ** self.power)
 
-    def active(self, contact: Contact, force: FloatArray) -> BoolArray:
+    def active(self, contact: Contact) -> BoolArray:
         """Below the largest deflection so far."""
         return contact.deflection < np.maximum.accumulate(contact.deflection) - 1e-6

@@ -26,7 +26,7 @@ def draw_and_seal(folders: Folders, seed: int, number: int, kind: str | None) ->
     shutil.rmtree(folders.trial(key), ignore_errors=True)
     concealed.write(trial, folders.trial(key))
     folders.tire(key).parent.mkdir(parents=True, exist_ok=True)
-    write_tire(believed_tire(concealed.believed(trial)), folders.tire(key))
+    write_tire(believed_tire(concealed.baseline_table(trial)), folders.tire(key))
     return concealed.write_answer(trial, folders.sealed(key))
 
 

@@ -28,8 +28,8 @@ def test_a_table_keeps_its_numbers_through_a_tire_file(tmp_path: Path) -> None:
 
 def test_the_article_of_the_rig_is_ours() -> None:
     trial = concealed.draw(7)  # a seed whose user believes in the article
-    assert trial.believed_source == "hull1996"
-    assert believed_tire(concealed.believed(trial)) == TireModel()
+    assert trial.baseline_source == "hull1996"
+    assert believed_tire(concealed.baseline_table(trial)) == TireModel()
 
 
 def test_another_reading_of_the_article_is_refused() -> None:

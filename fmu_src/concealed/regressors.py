@@ -1,19 +1,18 @@
-"""What each named effect could at most add to the force: the span of its forms, in equations of the rig's
-own.
+"""Regressors of each named effect: what its forms can add to the force, in equations of the rig's own.
 
-The spans are generous on purpose (many reaches, many time constants at once): a set of effects that cannot
-imitate a recording even so is ruled out for certain.
+They are generous on purpose (many breakaway distances, many time constants at once): a set of effects that does not
+explain a recording even so is certainly excluded.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from concealed.bench import Bench
-from concealed.effects.effect import Contact
-from concealed.effects.friction import jenkins
-from concealed.effects.relaxation import overstress
-from concealed.motion import FloatArray, Motion
+from .bench import Bench
+from .effects.effect import Contact
+from .effects.friction import jenkins
+from .effects.relaxation import overstress
+from .motion import FloatArray, Motion
 
 #: Effects that a catalogue of tire physics has a name for.
 NAMES = (
@@ -33,8 +32,8 @@ NAMES = (
     "saturation",
     "recalibration",
 )
-#: Effects whose columns may enter with either sign; all others only add what their physics adds (a shift or
-#: a lag has columns for both directions).
+#: Effects whose regressors may enter with either sign; all others only add what their physics adds (a shift or
+#: a lag has regressors for both directions).
 EITHER_SIGN = frozenset({"force_offset", "recalibration"})
 
 
@@ -60,11 +59,10 @@ class Range:
         )
 
 
-def spans(bench: Bench, motion: Motion, common: Range, shape: bool) -> dict[str, FloatArray]:
-    """Columns [N] of every name on the recorded samples of a motion, shape (n, k) with k the same for all
-    motions.
+def regressors(bench: Bench, motion: Motion, common: Range, law_shape: bool) -> dict[str, FloatArray]:
+    """Regressors [N] of every name on the recorded samples of a motion, shape (n, k); k is the same for all motions.
 
-    shape: recalibration may bend the law too, not only change A and B.
+    law_shape: whether recalibration may change the shape of the law too, not only A and B.
     """
     contact = Bench(bench.tire).contact(motion)
     columns = {
@@ -82,7 +80,7 @@ def spans(bench: Bench, motion: Motion, common: Range, shape: bool) -> dict[str,
         "inertia": [motion.acceleration],
         "force_lag": _lag(contact, common),
         "saturation": _ceiling(contact, common),
-        "recalibration": _recalibration(contact, common, shape),
+        "recalibration": _recalibration(contact, common, law_shape),
     }
     return {name: np.stack([motion.recorded(c) for c in parts], axis=1) for name, parts in columns.items()}
 
@@ -96,8 +94,8 @@ def _shifted(bench: Bench, contact: Contact) -> list[FloatArray]:
 
 
 def _friction(contact: Contact, common: Range) -> list[FloatArray]:
-    reaches = common.deepest * np.array([0.003, 0.01, 0.03, 0.08, 0.2, 0.4])
-    states = jenkins(contact.deflection, reaches)
+    breakaway = common.deepest * np.array([0.003, 0.01, 0.03, 0.08, 0.2, 0.4])
+    states = jenkins(contact.deflection, breakaway)
     load = contact.elastic / common.strongest
     return [*(contact.touching * states), *(load * states)]
 
@@ -141,10 +139,10 @@ def _softening(contact: Contact, common: Range) -> list[FloatArray]:
     x = np.maximum(contact.deflection, 0.0)
     largest = np.maximum(np.maximum.accumulate(x), 1e-9)
     below = 1.0 - x / largest
-    way = np.cumsum(np.abs(np.diff(x, prepend=x[0])) * (x < largest))
+    path = np.cumsum(np.abs(np.diff(x, prepend=x[0])) * (x < largest))
     columns = [-contact.elastic * (1.0 - (x / largest) ** power) for power in (0.5, 1.0, 3.0, 8.0)]
     columns += [-contact.elastic * below * largest / common.deepest]
-    columns += [contact.elastic * below * np.expm1(-way / (share * common.deepest)) for share in (0.5, 2.0)]
+    columns += [contact.elastic * below * np.expm1(-path / (share * common.deepest)) for share in (0.5, 2.0)]
     return columns
 
 
@@ -169,10 +167,10 @@ def _ceiling(contact: Contact, common: Range) -> list[FloatArray]:
     return [-np.maximum(contact.elastic - ceiling, 0.0) for ceiling in ceilings]
 
 
-def _recalibration(contact: Contact, common: Range, shape: bool) -> list[FloatArray]:
+def _recalibration(contact: Contact, common: Range, law_shape: bool) -> list[FloatArray]:
     log = np.log(np.maximum(100.0 * contact.deflection, 1e-3))
     columns = []
     for radius in common.surfaces:
         here = contact.elastic * (contact.motion.radius == radius)
-        columns += [here, here * log, *([here * log**2] if shape else [])]
+        columns += [here, here * log, *([here * log**2] if law_shape else [])]
     return columns

@@ -8,14 +8,14 @@ import numpy as np
 from scipy.fft import dct
 from scipy.optimize import nnls
 
-from concealed.bench import Bench
-from concealed.imitations import EITHER_SIGN, NAMES, Range, spans
-from concealed.measurement import Instrument
-from concealed.motion import FloatArray, Motion
+from .bench import Bench
+from .measurement import Instrument
+from .motion import FloatArray, Motion
+from .regressors import EITHER_SIGN, NAMES, Range, regressors
 
-#: Two explanations are told apart when their log-likelihoods differ by this much (odds of 22 000 to 1).
+#: Recordings decide between two explanations whose log-likelihoods differ by this much (odds of 22 000 to 1).
 DECIDED = 10.0
-#: Loops that one constant rate on one surface cannot tell apart.
+#: Effects whose loops look alike at one constant rate on one surface.
 LOOPS = (
     "rate_independent_hysteresis",
     "viscous_damping",
@@ -30,26 +30,29 @@ Names = frozenset[str]
 class Explanations:
     """Least loss of log-likelihood of any set of effects, for a residual free of noise.
 
-    The residual and all columns are divided by the noise's standard deviation, coefficient by coefficient of
-    their cosine transform, so that slow noise counts as what it is. The columns of a set may enter in any
-    amount that their sign allows; the least squares loss, halved, is the loss of log-likelihood.
+    The residual and all regressors are whitened: each coefficient of their cosine transform is divided by the noise's
+    standard deviation there. The regressors of a set may enter in any amount that their sign allows; half the least
+    sum of squares is the loss of log-likelihood.
+
+    factor: Cholesky factor of the regressors' Gram matrix; target: the residual projected on it; unexplained: sum of
+    squares of the residual outside the span of all regressors; members: columns of `factor` of each name.
     """
 
     factor: FloatArray
     target: FloatArray
-    rest: float
+    unexplained: float
     members: Mapping[str, tuple[int, ...]]
 
     def loss(self, names: Iterable[str]) -> float:
         """Loss of log-likelihood [1] when these effects are all there is."""
         chosen = [(name, i) for name in sorted(names) for i in self.members.get(name, ())]
         if not chosen:
-            return 0.5 * (self.rest + float(self.target @ self.target))
+            return 0.5 * (self.unexplained + float(self.target @ self.target))
         columns = [self.factor[:, i] for _, i in chosen]
         columns += [-self.factor[:, i] for name, i in chosen if name in EITHER_SIGN]
         matrix = np.stack(columns, axis=1)
         _, left = nnls(matrix, self.target, maxiter=50 * matrix.shape[1])
-        return 0.5 * (self.rest + float(left) ** 2)
+        return 0.5 * (self.unexplained + float(left) ** 2)
 
     def best(self, base: Iterable[str], more: int) -> float:
         """Least loss [1] of all sets of so many names beside the given ones."""
@@ -71,30 +74,30 @@ def explanations(
     residuals: Sequence[FloatArray],
     known: Mapping[str, Sequence[FloatArray]],
     instrument: Instrument,
-    shape: bool,
+    law_shape: bool,
 ) -> Explanations:
     """Prepare the losses of all sets.
 
-    bench: the tire with its effects, of which the spans take the tire alone; samples at which the tire lifts
-    off count for nothing, because no span knows of lifting. residuals [N]: what the believed tire leaves
-    unexplained, noise-free, on the recorded samples; known [N]: what each true effect adds, so that a set
-    that holds it can add exactly that.
+    bench: the tire with its effects; the regressors use the tire alone. Samples at which contact is lost have no
+    weight, because the regressors do not model that. residuals [N]: noise-free residuals of the baseline tire on the
+    recorded samples; known [N]: what each true effect adds, as a further regressor of its name; law_shape: see
+    `regressors.regressors`.
     """
     common = Range.of(bench, tuple(motions))
     blocks, targets = [], []
     members: dict[str, tuple[int, ...]] = {}
     for k, motion in enumerate(motions):
-        columns = spans(bench, motion, common, shape)
-        parts, place = [], 0
+        columns = regressors(bench, motion, common, law_shape)
+        parts, first = [], 0
         for name in NAMES:
-            own = columns[name]
+            of_name = columns[name]
             if name in known:
-                own = np.concatenate([own, known[name][k][:, None]], axis=1)
-            members[name] = tuple(range(place, place + own.shape[1]))
-            place += own.shape[1]
-            parts.append(own)
+                of_name = np.concatenate([of_name, known[name][k][:, None]], axis=1)
+            members[name] = tuple(range(first, first + of_name.shape[1]))
+            first += of_name.shape[1]
+            parts.append(of_name)
         stiffness = _stiffness(bench, motion)
-        pressed = ~motion.recorded(bench.lifted(motion))
+        pressed = ~motion.recorded(bench.contact_lost(motion))
         stacked = np.concatenate([*parts, residuals[k][:, None]], axis=1) * pressed[:, None]
         white = whitened(stacked, instrument, motion.sample_step, stiffness)
         blocks.append(white[:, :-1])
@@ -102,12 +105,12 @@ def explanations(
     matrix, target = np.concatenate(blocks), np.concatenate(targets)
     norms = np.sqrt(np.sum(matrix**2, axis=0))
     matrix = matrix / np.where(norms > 0.0, norms, 1.0)
-    # all sets share one Gram matrix; its root stands for the columns in every smaller problem
+    # all sets share one Gram matrix; its factor replaces the long regressors in every smaller problem
     gram = matrix.T @ matrix
     factor = np.linalg.cholesky(gram + 1e-9 * np.eye(gram.shape[0])).T
     projected = np.linalg.solve(factor.T, matrix.T @ target)
-    rest = max(float(target @ target - projected @ projected), 0.0)
-    return Explanations(factor, projected, rest, members)
+    unexplained = max(float(target @ target - projected @ projected), 0.0)
+    return Explanations(factor, projected, unexplained, members)
 
 
 def loss_of(
@@ -122,13 +125,13 @@ def loss_of(
 
 
 def indistinguishable(explained: Explanations, truth: Names) -> dict[Names, float]:
-    """Sets no larger than the truth that lose less than `DECIDED` against it; none holds another.
+    """Sets no larger than the truth that lose less than `DECIDED` against it, and their loss; none holds another.
 
-    Returns their loss beyond the truth's. A name is in every such set if even all others together lose more
-    than that without it, because more names never lose more: so few sets are left to look at.
+    A name is in every such set if all other names together lose `DECIDED` or more without it, because more names
+    never lose more. So few sets are left to test.
     """
-    own = explained.loss(truth)
-    needed = {name for name in NAMES if explained.loss(set(NAMES) - {name}) - own >= DECIDED}
+    truth_loss = explained.loss(truth)
+    needed = {name for name in NAMES if explained.loss(set(NAMES) - {name}) - truth_loss >= DECIDED}
     optional = [name for name in NAMES if name not in needed]
     found: dict[Names, float] = {}
     for more in range(len(truth) - len(needed) + 1):
@@ -136,7 +139,7 @@ def indistinguishable(explained: Explanations, truth: Names) -> dict[Names, floa
             names = frozenset(needed.union(chosen))
             if names == truth or any(smaller < names for smaller in found):
                 continue
-            loss = explained.loss(names) - own
+            loss = explained.loss(names) - truth_loss
             if loss < DECIDED:
                 found[names] = loss
     return found

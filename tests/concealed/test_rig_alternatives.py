@@ -1,20 +1,20 @@
-"""What counts as right: look-alikes are named together where no recording can tell them apart."""
+"""What counts as right: effects that look alike are alternatives where the recordings cannot decide."""
 
 import math
 
 import numpy as np
 import pytest
+from concealed.alternatives import DECIDED, Explanations, explanations, indistinguishable, loss_of
 from concealed.bench import Bench
 from concealed.effects import Effect, IwanFriction, LinearDashpot, PureDelay, SoftplusRim, YieldingWheel
-from concealed.excitation import EXCITATIONS, Reach
-from concealed.imitations import NAMES
+from concealed.excitation import EXCITATIONS, DepthLimits
 from concealed.measurement import Instrument
 from concealed.motion import Motion
 from concealed.open_world import KnobRipple
-from concealed.rivals import DECIDED, Explanations, explanations, indistinguishable, loss_of
+from concealed.regressors import NAMES
 from concealed.tires import article_tire
 
-FLAT = Reach((math.inf,), (0.025,))
+FLAT = DepthLimits((math.inf,), (0.025,))
 NOISE = Instrument(white=6.0)
 
 
@@ -23,7 +23,7 @@ def explained(effect: Effect, motions: tuple[Motion, ...]) -> Explanations:
     bench = Bench(bare.tire, (effect,))
     added = [m.recorded(bench.force(m) - bare.force(m)) for m in motions]
     known = {effect.name: added} if effect.name in NAMES else {}
-    return explanations(bench, motions, added, known, NOISE, shape=False)
+    return explanations(bench, motions, added, known, NOISE, law_shape=False)
 
 
 def motions(*names: str) -> tuple[Motion, ...]:
@@ -55,7 +55,7 @@ def test_slow_noise_hides_slow_effects() -> None:
     assert loss_of(bare, (motion,), drift, slow) < 0.2 * loss_of(bare, (motion,), drift, NOISE)
 
 
-def test_one_rate_cannot_tell_viscosity_from_friction_but_three_can() -> None:
+def test_one_rate_does_not_separate_viscosity_from_friction_but_three_do() -> None:
     """The table of look-alikes: N = 3e5 samples on one constant-rate triangle, 17 with three rates."""
     effect = LinearDashpot(150.0)
     single = explained(effect, motions("single_rate_triangle"))
@@ -65,7 +65,7 @@ def test_one_rate_cannot_tell_viscosity_from_friction_but_three_can() -> None:
     assert not indistinguishable(several, frozenset({"viscous_damping"}))
 
 
-def test_a_wheel_in_series_cannot_be_told_from_another_tire() -> None:
+def test_a_wheel_in_series_looks_like_another_tire() -> None:
     """2e6 N/m leaves 0.02 % of the peak after A and B are refitted: N = 4e4 samples at one pressure."""
     view = explained(YieldingWheel(1.0 / 2e6, 0.03), motions("article_triangle"))
     found = indistinguishable(view, frozenset({"series_compliance"}))
@@ -83,6 +83,6 @@ def test_a_negative_loop_is_a_lag_and_nothing_else() -> None:
     assert not indistinguishable(view, frozenset({"force_lag"}))
 
 
-def test_a_ripple_is_out_of_the_reach_of_all_names_in_pairs() -> None:
+def test_no_pair_of_names_explains_a_ripple() -> None:
     view = explained(KnobRipple(20.0, 0.004, 0.3), motions("article_triangle", "ride"))
     assert view.best((), 2) > 0.5 * view.loss(())
