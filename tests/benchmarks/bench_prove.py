@@ -1,8 +1,8 @@
-"""How long a proof takes: a dozen trials through the user's command on all cores, and 200 reckoned from them.
+"""Duration of a proof: a dozen trials on all cores, and an estimate for 200.
 
 Run: python tests/benchmarks/bench_prove.py
 
-Nothing is asserted but that no trial failed: seconds depend on the machine. The bar is 200 trials in under 30 minutes
+Nothing is asserted but that no trial failed: seconds depend on the machine. The limit is 200 trials in under 30 minutes
 on two cores.
 """
 
@@ -15,7 +15,7 @@ from pathlib import Path
 import joblib
 import numpy as np
 from tirelab.batch.workers import Cores
-from tirelab.validation import Folders, Series, prove
+from tirelab.validation import BlindTrials, Folders, prove
 
 TRIALS = 12
 SEED = 4096
@@ -26,7 +26,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folders = Folders(Path(name))
         began = time.perf_counter()
-        proof = prove(Series(folders, SEED, TRIALS), Cores(), lambda line: None)
+        proof = prove(BlindTrials(folders, SEED, TRIALS), Cores(), lambda line: None)
         wall = time.perf_counter() - began
         outcomes = [json.loads(path.read_text()) for path in sorted(Path(name, "outcomes").iterdir())]
         seconds = np.array([outcome["seconds"] for outcome in outcomes])
@@ -37,7 +37,7 @@ def main() -> None:
         f"{TRIALS} trials on {joblib.cpu_count()} cores in {wall:.0f} s (load {ahead:.1f}), {second} diagnosed twice"
     )
     print(f"one diagnosis: median {np.median(seconds):.1f} s, longest {seconds.max():.1f} s")
-    print(f"200 trials: {200 / TRIALS * wall / 60:.0f} min (bar: 30 min on two cores)")
+    print(f"200 trials: {200 / TRIALS * wall / 60:.0f} min (limit: 30 min on two cores)")
 
 
 if __name__ == "__main__":

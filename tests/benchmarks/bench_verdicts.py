@@ -66,11 +66,11 @@ def run(words: list[str]) -> tuple[float, float]:
 
 
 def draw(program: Path, out: Path, seed: int, trials: int) -> None:
-    """Write trials, and the tires that are believed in, as the blind trials do; the answers are thrown away."""
+    """Write trials and their baseline tires as the blind trials do; the answers are removed."""
     code = (
         "import sys; from pathlib import Path; from tirelab.validation.folders import Folders;"
-        "from tirelab.validation.seal import draw_and_seal;"
-        "[draw_and_seal(Folders(Path(sys.argv[1])), int(sys.argv[2]), n, None) for n in range(int(sys.argv[3]))]"
+        "from tirelab.validation.commitment import draw_and_commit;"
+        "[draw_and_commit(Folders(Path(sys.argv[1])), int(sys.argv[2]), n, None) for n in range(int(sys.argv[3]))]"
     )
     run([str(program.with_name("python")), "-c", code, str(out), str(seed), str(trials)])
     shutil.rmtree(out / "sealed")

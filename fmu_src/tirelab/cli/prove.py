@@ -1,4 +1,4 @@
-"""tirelab prove: blind trials on recordings that never existed before."""
+"""tirelab prove: blind trials of the diagnosis on recordings of an independent rig."""
 
 from __future__ import annotations
 
@@ -10,15 +10,19 @@ from rich.console import Console
 from ..batch.workers import Cores
 from .options import FILE, SentenceCommand
 
-WIDTH = 110
-"""Columns of the table where it does not go to a terminal."""
+TABLE_WIDTH = 110
+"""Width of the table [characters] where the output is no terminal."""
 
 
 @click.command("prove", cls=SentenceCommand)
 @click.option("--trials", type=click.IntRange(min=1), default=200, show_default=True, help="How many trials.")
-@click.option("--seed", type=click.IntRange(min=0), required=True, help="Seed of the whole series.")
+@click.option("--seed", type=click.IntRange(min=0), required=True, help="Seed of all trials.")
 @click.option(
-    "--out", type=FILE, required=True, metavar="DIR", help="Folder for the proof; started again, it goes on."
+    "--out",
+    type=FILE,
+    required=True,
+    metavar="DIR",
+    help="Folder for the proof; an interrupted proof is continued.",
 )
 @click.option("--jobs", type=int, help="Processes to work in.  [default: one per core]")
 @click.option(
@@ -27,24 +31,24 @@ WIDTH = 110
 @click.option(
     "--kind",
     type=click.Choice(["none", "single", "masked", "pair", "triple", "open"]),
-    help="Hide only this: nothing, one effect, one under another tire's coefficients, two, three, or what no catalogue "
-    "names.  [default: all of them]",
+    help="Draw only one kind of trial: nothing hidden, one effect, one effect on another tire, two effects, three, or "
+    "an effect outside the catalogue.  [default: all kinds]",
 )
 def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | None, kind: str | None) -> None:
-    """Prove the diagnosis by blind trials, and write proof.json and proof.html.
+    """Test the diagnosis by blind trials, and write proof.json and proof.html.
 
-    A rig that shares nothing with the tool hides effects in recordings and seals the answers; their SHA-256 are
-    printed first. Each trial is diagnosed as a user would, from the recordings alone. Then the seals are opened and
-    the verdicts scored.
+    An independent rig hides effects in recordings and writes the answers. The SHA-256 of every answer is printed
+    before the first diagnosis. Each trial is diagnosed from its recordings and the baseline tire alone. Then the
+    answers are opened, their SHA-256 are checked, and the verdicts are scored.
     """
-    from ..validation import Folders, Series, prove  # here, since the rig is loaded for a proof only
-    from ..validation.terminal import bar_table
+    from ..validation import BlindTrials, Folders, prove  # here: the rig is imported for this command only
+    from ..validation.terminal import criteria_table
 
-    proof = prove(Series(Folders(out), seed, trials, kind), Cores(jobs, dask), click.echo)
+    proof = prove(BlindTrials(Folders(out), seed, trials, kind), Cores(jobs, dask), click.echo)
     console = Console()
     if not console.is_terminal:
-        console.width = WIDTH
-    console.print(bar_table(proof))
+        console.width = TABLE_WIDTH
+    console.print(criteria_table(proof))
     for score in proof.failures:
         click.echo(f"trial {score.trial} failed: {score.error}")
     click.echo(f"proof: {out / 'proof.html'}")

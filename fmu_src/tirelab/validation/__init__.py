@@ -1,10 +1,10 @@
-"""The proof: blind trials on an independent rig, scored.
+"""Blind trials of the diagnosis on an independent rig.
 
-The only part of the tool that knows the rig; what diagnoses never sees it.
+The only part of the tool that imports the rig; the diagnosis never sees it.
 """
 
-from .blind_trials import Series, prove
+from .blind_trials import BlindTrials, prove
 from .folders import Folders
 from .page import Proof
 
-__all__ = ["Folders", "Proof", "Series", "prove"]
+__all__ = ["BlindTrials", "Folders", "Proof", "prove"]

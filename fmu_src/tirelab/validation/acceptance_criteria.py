@@ -1,4 +1,4 @@
-"""The bar of the proof: what a diagnosis has to reach on seeds that nobody tuned on."""
+"""Acceptance criteria of the blind trials, for seeds that nothing was tuned on."""
 
 from __future__ import annotations
 
@@ -9,50 +9,50 @@ from dataclasses import dataclass
 from .metrics import Mean, Rate, among, brier, exact, false_alarms, near_floor, recognised
 from .score import Score
 
-NEAR_FLOOR = 0.10
-"""A held-out RMSE counts as at the noise floor up to this part above it."""
+NOISE_FLOOR_MARGIN = 0.10
+"""A held-out RMSE up to this part above the noise floor counts as being at it."""
 
-ALIKE = "held-out RMSE within 10 % of the floor on tests like those diagnosed"
-OTHER = "the same on tests of another kind"
+ALIKE = "held-out RMSE within 10 % of the noise floor, tests of the diagnosed kinds"
+OTHER = "the same, tests of another kind"
 
 
 @dataclass(frozen=True)
-class Line:
-    """One figure beside its bar: the value has to be at least (`at_least`) or at most the bar."""
+class Criterion:
+    """One figure and its limit: the value has to be at least (`at_least`) or at most the limit."""
 
     figure: str
     measured: Rate | Mean
-    bar: float
+    limit: float
     at_least: bool
 
     @property
     def passes(self) -> bool | None:
-        """Whether the measured value meets the bar; None where there was no trial to measure it on."""
+        """Whether the measured value meets the limit; None where no trial measured it."""
         value = self.measured.value
         if math.isnan(value):
             return None
-        return value >= self.bar if self.at_least else value <= self.bar
+        return value >= self.limit if self.at_least else value <= self.limit
 
 
-def against_the_bar(scores: Sequence[Score]) -> tuple[Line, ...]:
-    """Return every figure beside its bar."""
+def criteria(scores: Sequence[Score]) -> tuple[Criterion, ...]:
+    """Return every figure with its limit."""
     return (
-        Line("exact set named", exact(scores), 0.90, at_least=True),
-        Line("truth is the verdict or a rival", among(scores), 0.97, at_least=True),
-        Line("false alarms where nothing is hidden", false_alarms(scores), 0.02, at_least=False),
-        Line("unknown said outside the catalogue", recognised(scores), 0.90, at_least=True),
+        Criterion("exact set named", exact(scores), 0.90, at_least=True),
+        Criterion("truth is the verdict or a stated alternative", among(scores), 0.97, at_least=True),
+        Criterion("false alarms where nothing is hidden", false_alarms(scores), 0.02, at_least=False),
+        Criterion("unknown recognised outside the catalogue", recognised(scores), 0.90, at_least=True),
         *(
-            Line(
+            Criterion(
                 f"{what}, {how}",
-                near_floor(scores, NEAR_FLOOR, alike=alike, cleared=cleared),
+                near_floor(scores, NOISE_FLOOR_MARGIN, alike=alike, noise_free=noise_free),
                 0.95,
                 at_least=True,
             )
             for alike, what in ((True, ALIKE), (False, OTHER))
-            for cleared, how in (
-                (False, "readings as they are"),
-                (True, "told the motion without their noise"),
+            for noise_free, how in (
+                (False, "readings as recorded"),
+                (True, "given the noise-free deflection"),
             )
         ),
-        Line("Brier score of the confidence", brier(scores), 0.08, at_least=False),
+        Criterion("Brier score of the confidence", brier(scores), 0.08, at_least=False),
     )

@@ -1,4 +1,4 @@
-"""The tire that is believed in, from the rig's table to a tire file of the tool."""
+"""The baseline tire: from the rig's table to a tire of the tool."""
 
 from __future__ import annotations
 
@@ -10,23 +10,25 @@ from radialtire import Hull1996, Recalibrated, TireModel
 
 from ..errors import TirelabError
 
-AGREEMENT = 1e-9
+COEFFICIENT_TOLERANCE = 1e-9
 """Relative difference up to which the rig's A and B count as those of the article's law."""
 
 
-def believed_tire(content: Mapping[str, Any]) -> TireModel:
+def baseline_tire(content: Mapping[str, Any]) -> TireModel:
     """Return the tire of the rig's `{"law": ..., "surfaces": [{"radius [cm]", "A" [N/cm^B], "B" [1]}, ...]}`.
 
-    "hull1996" is the article's tire. "table" is the article's law measured anew on every surface of the table, so that
+    "hull1996" is the article's tire. "table" is the article's law refitted on every surface of the table, so that
     A and B there are the table's own: a = ln(A / A0), b = B - B0 (see `radialtire.recalibrated`).
-    Raises TirelabError for another law, and where the rig's article is not ours.
+    Raises TirelabError for another law, and where the rig's article has other coefficients than ours.
     """
     article = Hull1996()
     rows = [(_radius(row["radius [cm]"]), float(row["A"]), float(row["B"])) for row in content["surfaces"]]
     if content["law"] == "hull1996":
         for radius, A, B in rows:
             ours = article.coefficients(radius)
-            if not all(math.isclose(x, y, rel_tol=AGREEMENT) for x, y in zip((A, B), ours, strict=True)):
+            if not all(
+                math.isclose(x, y, rel_tol=COEFFICIENT_TOLERANCE) for x, y in zip((A, B), ours, strict=True)
+            ):
                 raise TirelabError(
                     f"the rig's article has A = {A:g}, B = {B:g} at the radius {radius:g} m, ours {ours[0]:g} and "
                     f"{ours[1]:g}; one of the two has a wrong reading of the print"
@@ -34,7 +36,7 @@ def believed_tire(content: Mapping[str, Any]) -> TireModel:
         return TireModel()
     if content["law"] != "table":
         raise TirelabError(
-            f"the rig believes in the law {content['law']!r}; known are 'hull1996' and 'table'"
+            f"the rig's baseline tire has the law {content['law']!r}; known are 'hull1996' and 'table'"
         )
     changes = []
     for radius, A, B in rows:

@@ -1,4 +1,4 @@
-"""A series of blind trials: draw and seal, diagnose from the recordings alone, run suggested tests, open and score."""
+"""Blind trials: draw and commit to the answers, diagnose the recordings alone, run recommended tests, open, score."""
 
 from __future__ import annotations
 
@@ -17,25 +17,26 @@ from ..diagnosis.diagnosis_file import Stated, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, diagnose_files
 from ..errors import TirelabError
 from ..recordings.recording import read_recording
+from .commitment import add_commitment, draw_and_commit, opened, read_commitments, trial_key
 from .figures import overview
 from .folders import Folders, read_json, write_json
-from .follow_up_test import run_suggested_test
+from .follow_up_test import run_recommended_test
 from .held_out import held_out
-from .overlap import place_scores
+from .overlap import RegionScore, region_scores
 from .page import Proof, numbers, page
-from .score import Score, right_sets, separation, sizes_over_noise
-from .seal import add_seal, draw_and_seal, key_of, opened, read_seals
+from .score import Score, discrimination, right_sets, sizes_over_noise
 
-SCHEMA = 3
+SETTINGS_SCHEMA = 4
+"""Version of the rig and of the scores; a folder of another version is not continued."""
 
-Told = Callable[[str], None]
+Show = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Series:
-    """So many trials from a seed in a folder; kind: of all trials (see `concealed.KINDS`), None: as they come.
+class BlindTrials:
+    """The number of trials, their seed and their folders; kind: one of `concealed.KINDS` for all, None: drawn.
 
-    diagnoser: what stands for the user with the command; it is handed recordings and the believed tire alone
+    diagnoser: diagnoses one trial; it gets the recordings and the baseline tire only
     """
 
     folders: Folders
@@ -47,71 +48,71 @@ class Series:
     @property
     def keys(self) -> dict[str, int]:
         """Names and numbers of the trials."""
-        return {key_of(number): number for number in range(self.trials)}
+        return {trial_key(number): number for number in range(self.trials)}
 
 
-def prove(series: Series, cores: Cores, tell: Told) -> Proof:
-    """Run what of the series is not done yet, write proof.json, proof.html, proof.png, and return the proof.
+def prove(trials: BlindTrials, cores: Cores, show: Show) -> Proof:
+    """Run the trials that are not done yet, write proof.json, proof.html, proof.png, and return the proof.
 
-    Every step's results are files; what is there is not done again, a failed diagnosis neither: a proof is not thrown
-    again until it fits. `tell` is handed one line for every seal, before the first diagnosis.
-    Raises TirelabError for a folder that holds another series, and BrokenSealError for a changed answer.
+    The results of every step are files. What is done is not done again, also where a diagnosis failed: a proof is not
+    repeated until it passes. `show` gets one line for every commitment hash, before the first diagnosis.
+    Raises TirelabError for a folder that holds other trials, and ChangedAnswerError for a changed answer.
     """
-    _claim(series)
-    seals = _seal_all(series, cores, tell)
-    _diagnose_all(series, cores, second=False)
-    _run_tests(series, cores)
-    _diagnose_all(series, cores, second=True)
-    proof = Proof(series.seed, _score_all(series, seals, cores))
-    write_json(series.folders.root / "proof.json", numbers(proof))
-    (series.folders.root / "proof.html").write_text(page(proof), encoding="utf-8")
-    overview(proof.scores, proof.command).savefig(series.folders.root / "proof.png", dpi=110)
+    _claim(trials)
+    commitments = _commit_all(trials, cores, show)
+    _diagnose_all(trials, cores, second=False)
+    _run_tests(trials, cores)
+    _diagnose_all(trials, cores, second=True)
+    proof = Proof(trials.seed, _score_all(trials, commitments, cores))
+    write_json(trials.folders.root / "proof.json", numbers(proof))
+    (trials.folders.root / "proof.html").write_text(page(proof), encoding="utf-8")
+    overview(proof.scores, proof.command).savefig(trials.folders.root / "proof.png", dpi=110)
     return proof
 
 
-def _claim(series: Series) -> None:
-    path = series.folders.root / "settings.json"
-    wanted = {"schema": SCHEMA, "seed": series.seed, "kind": series.kind}
+def _claim(trials: BlindTrials) -> None:
+    path = trials.folders.root / "settings.json"
+    wanted = {"schema": SETTINGS_SCHEMA, "seed": trials.seed, "kind": trials.kind}
     if not path.exists():
         try:
             write_json(path, wanted)
         except OSError as error:
             raise TirelabError(
-                f"{series.folders.root}: cannot be written ({error.strerror}); name another with --out"
+                f"{trials.folders.root}: cannot be written ({error.strerror}); name another with --out"
             ) from None
-    elif (found := read_json(path)).get("schema") != SCHEMA:
+    elif (found := read_json(path)).get("schema") != SETTINGS_SCHEMA:
         raise TirelabError(
-            f"{series.folders.root} holds trials of another version of this rig; name another folder with --out"
+            f"{trials.folders.root} holds trials of another version of this rig; name another folder with --out"
         )
     elif found != wanted:
         raise TirelabError(
-            f"{series.folders.root} holds the trials of seed {found.get('seed')}, kind {found.get('kind')}; "
+            f"{trials.folders.root} holds the trials of seed {found.get('seed')}, kind {found.get('kind')}; "
             "give that seed, or another folder with --out"
         )
 
 
-def _seal_all(series: Series, cores: Cores, tell: Told) -> dict[str, str]:
-    folders = series.folders
-    seals = read_seals(folders)
+def _commit_all(trials: BlindTrials, cores: Cores, show: Show) -> dict[str, str]:
+    folders = trials.folders
+    commitments = read_commitments(folders)
     tasks = {
-        key: (folders, series.seed, number, series.kind)
-        for key, number in series.keys.items()
-        if key not in seals
+        key: (folders, trials.seed, number, trials.kind)
+        for key, number in trials.keys.items()
+        if key not in commitments
     }
-    for done in work(draw_and_seal, tasks, cores, "sealing answers"):
+    for done in work(draw_and_commit, tasks, cores, "committing to the answers"):
         if done.value is None:
             raise TirelabError(f"trial {done.key} cannot be drawn: {done.error}")
-        add_seal(folders, done.key, done.value)
-        seals[done.key] = done.value
-    for key in series.keys:
-        tell(f"{key}  {seals[key]}")
-    return {key: seals[key] for key in series.keys}
+        add_commitment(folders, done.key, done.value)
+        commitments[done.key] = done.value
+    for key in trials.keys:
+        show(f"{key}  {commitments[key]}")
+    return {key: commitments[key] for key in trials.keys}
 
 
-def _diagnose_all(series: Series, cores: Cores, *, second: bool) -> None:
-    folders = series.folders
+def _diagnose_all(trials: BlindTrials, cores: Cores, *, second: bool) -> None:
+    folders = trials.folders
     tasks: dict[str, tuple[Any, ...]] = {}
-    for key in series.keys:
+    for key in trials.keys:
         recordings = folders.recordings(key, "train")
         if second:
             if not folders.test(key).exists():
@@ -119,12 +120,12 @@ def _diagnose_all(series: Series, cores: Cores, *, second: bool) -> None:
             recordings.append(folders.test(key))
         if not folders.outcome(key, second=second).exists():
             tasks[key] = (
-                series.diagnoser,
+                trials.diagnoser,
                 recordings,
                 folders.tire(key),
                 folders.verdict(key, second=second),
             )
-    title = "diagnosing with the suggested test" if second else "diagnosing"
+    title = "diagnosing with the recommended test" if second else "diagnosing"
     for done in work(timed_diagnosis, tasks, cores, title):
         outcome = done.value or {"error": done.error, "seconds": None}
         write_json(folders.outcome(done.key, second=second), outcome)
@@ -149,69 +150,69 @@ def timed_diagnosis(
     return {"error": error, "seconds": seconds, "diagnosis_sha256": found}
 
 
-def _run_tests(series: Series, cores: Cores) -> None:
-    folders = series.folders
+def _run_tests(trials: BlindTrials, cores: Cores) -> None:
+    folders = trials.folders
     tasks: dict[str, tuple[Any, ...]] = {}
-    for key, number in series.keys.items():
-        stated = _verdict(folders, key)
-        suggested = stated.separating_test if stated is not None else None
+    for key, number in trials.keys.items():
+        verdict = _verdict(folders, key)
+        recommended = verdict.separating_test if verdict is not None else None
         tried = folders.test(key).exists() or folders.outcome(key, second=True).exists()
-        if suggested is not None and not tried:
-            tasks[key] = (folders, series.seed, number, series.kind, suggested)
-    for done in work(run_suggested_test, tasks, cores, "running suggested tests"):
+        if recommended is not None and not tried:
+            tasks[key] = (folders, trials.seed, number, trials.kind, recommended)
+    for done in work(run_recommended_test, tasks, cores, "running recommended tests"):
         if done.error is not None:
             write_json(folders.outcome(done.key, second=True), {"error": done.error, "seconds": None})
 
 
-def _score_all(series: Series, seals: dict[str, str], cores: Cores) -> tuple[Score, ...]:
-    folders = series.folders
-    for key in series.keys:
-        opened(folders, key, seals[key])
-    tasks = {key: (folders, key, seals[key]) for key in series.keys if not folders.score(key).exists()}
+def _score_all(trials: BlindTrials, commitments: dict[str, str], cores: Cores) -> tuple[Score, ...]:
+    folders = trials.folders
+    for key in trials.keys:
+        opened(folders, key, commitments[key])
+    tasks = {key: (folders, key, commitments[key]) for key in trials.keys if not folders.score(key).exists()}
     for done in work(score_trial, tasks, cores, "scoring"):
         if done.error is not None:
             raise TirelabError(f"trial {done.key} cannot be scored: {done.error}")
-    return tuple(Score.from_json(read_json(folders.score(key))) for key in series.keys)
+    return tuple(Score.from_json(read_json(folders.score(key))) for key in trials.keys)
 
 
-def score_trial(folders: Folders, key: str, seal: str) -> None:
-    """Open the answer of a trial, check its seal, and write the score."""
-    answer = opened(folders, key, seal)
+def score_trial(folders: Folders, key: str, commitment: str) -> None:
+    """Open the answer of a trial, check its commitment hash, and write the score."""
+    answer = opened(folders, key, commitment)
     outcome = read_json(folders.outcome(key))
-    stated = _verdict(folders, key)
+    verdict = _verdict(folders, key)
     error = outcome["error"]
-    measured = None
-    places: tuple[Any, ...] = ()
-    if stated is not None:
-        places = place_scores(
-            answer["where"], stated.places, [read_recording(p) for p in folders.recordings(key, "train")]
+    errors = None
+    regions: tuple[RegionScore, ...] = ()
+    if verdict is not None:
+        regions = region_scores(
+            answer["where"], verdict.places, [read_recording(p) for p in folders.recordings(key, "train")]
         )
         try:
-            believed = read_tire(folders.tire(key))
-            measured = held_out(
-                believed,
-                believed if stated.tire is None else read_tire(stated.tire),
-                stated.corrected_fmu,
+            baseline = read_tire(folders.tire(key))
+            errors = held_out(
+                baseline,
+                baseline if verdict.tire is None else read_tire(verdict.tire),
+                verdict.corrected_fmu,
                 [read_recording(p) for p in folders.recordings(key, "heldout")],
                 answer["files"],
             )
         except Exception as failure:
             error = f"its corrected tire fails on held-out recordings: {type(failure).__name__}: {failure}"
-    told = None
-    if stated is not None and stated.alternatives:
-        told = separation(right_sets(answer), stated, _verdict(folders, key, second=True))
+    decided = None
+    if verdict is not None and verdict.alternatives:
+        decided = discrimination(right_sets(answer), verdict, _verdict(folders, key, second=True))
     score = Score(
         trial=key,
         kind=answer["kind"],
         right=right_sets(answer),
-        verdict=None if stated is None else stated.names,
-        alternatives=() if stated is None else stated.alternatives,
-        confidence=None if stated is None else stated.confidence,
+        verdict=None if verdict is None else verdict.names,
+        alternatives=() if verdict is None else verdict.alternatives,
+        confidence=None if verdict is None else verdict.confidence,
         error=error,
         sizes=sizes_over_noise(answer),
-        places=places,
-        held_out=measured,
-        separation=told,
+        regions=regions,
+        held_out=errors,
+        discrimination=decided,
         seconds=outcome["seconds"] or 0.0,
     )
     write_json(folders.score(key), score.to_json())

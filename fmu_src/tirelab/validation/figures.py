@@ -1,4 +1,4 @@
-"""The pictures of a proof, each as an SVG element to be set into a page."""
+"""The figures of a proof."""
 
 from __future__ import annotations
 
@@ -11,18 +11,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .acceptance_criteria import NEAR_FLOOR
+from .acceptance_criteria import NOISE_FLOOR_MARGIN
 from .metrics import ANY_EFFECT, NO_NAME, Point, naming, reliability
 from .score import Score
 
 BLUE, LIGHT_BLUE, ORANGE, GREY = "#1f6f9f", "#93c4e0", "#d9731a", "#777777"
 
-COLUMNS = 4
-"""Curves of effects side by side."""
+CURVES_PER_ROW = 4
 
 
 def svg(figure: Figure, name: str) -> str:
-    """Return a figure as an `<svg>` element without metadata, its text kept as text; names within start with `name`."""
+    """Return a figure as an `<svg>` element without metadata, with its text as text; ids are derived from `name`."""
     text = io.StringIO()
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
         figure.savefig(
@@ -32,7 +31,7 @@ def svg(figure: Figure, name: str) -> str:
 
 
 def confusion_matrix(table: Mapping[str, Mapping[str, float]]) -> Figure:
-    """Draw which name (row) was given which name (column); rows are coloured by their own part."""
+    """Draw how often each hidden effect (row) was given each name (column); the colour is the part of the row."""
     order = sorted({*table, *(name for row in table.values() for name in row)}, key=_last)
     rows = [name for name in order if name in table]
     counts = np.array([[table[row].get(column, 0.0) for column in order] for row in rows])
@@ -56,10 +55,10 @@ def confusion_matrix(table: Mapping[str, Mapping[str, float]]) -> Figure:
 
 
 def naming_curves(curves: Mapping[str, Sequence[Point]]) -> Figure:
-    """Draw how often each effect was named over its size, with the intervals."""
-    lines = math.ceil(max(len(curves), 1) / COLUMNS)
+    """Draw how often each effect was named over its size, with 95 % intervals."""
+    lines = math.ceil(max(len(curves), 1) / CURVES_PER_ROW)
     figure = Figure(figsize=(11.0, 1.9 * lines + 0.5), layout="constrained")
-    grid = figure.subplots(lines, COLUMNS, sharex=True, sharey=True, squeeze=False).ravel()
+    grid = figure.subplots(lines, CURVES_PER_ROW, sharex=True, sharey=True, squeeze=False).ravel()
     for axes, (effect, points) in zip(grid, curves.items(), strict=False):
         _rates(axes, points)
         count = sum(p.rate.trials for p in points)
@@ -73,28 +72,28 @@ def naming_curves(curves: Mapping[str, Sequence[Point]]) -> Figure:
 
 
 def reliability_diagram(points: Sequence[Point]) -> Figure:
-    """Draw how often verdicts were exact over the confidence that they stated."""
+    """Draw how often verdicts were exact over their stated confidence."""
     figure = Figure(figsize=(4.6, 4.4), layout="constrained")
     _reliability(figure.subplots(), points)
     return figure
 
 
 def held_out_errors(scores: Sequence[Score]) -> Figure:
-    """Draw the held-out RMSE over the noise floor, after against before, one point a trial."""
+    """Draw the held-out RMSE over the noise floor, corrected against baseline tire, one point for each trial."""
     figure = Figure(figsize=(5.8, 4.4), layout="constrained")
     _held_out(figure.subplots(), scores)
     return figure
 
 
 def overview(scores: Sequence[Score], title: str) -> Figure:
-    """Draw the proof in one picture: naming over size, held-out errors, reliability."""
+    """Draw the proof in one figure: naming over size, held-out errors, reliability."""
     figure = Figure(figsize=(13.0, 4.2), layout="constrained")
-    named, errors, honest = figure.subplots(1, 3)
+    named, errors, confidence = figure.subplots(1, 3)
     _rates(named, naming(scores).get(ANY_EFFECT, []))
     _over_sizes(named)
     named.set(xlabel="size of a hidden effect over the noise", ylabel="how often it was named")
     _held_out(errors, scores)
-    _reliability(honest, reliability(scores))
+    _reliability(confidence, reliability(scores))
     figure.suptitle(title, fontsize=10)
     return figure
 
@@ -107,7 +106,7 @@ def _over_sizes(axes: Axes) -> None:
 
 
 def _reliability(axes: Axes, points: Sequence[Point]) -> None:
-    axes.plot([0, 1], [0, 1], color=GREY, lw=1, ls="--", label="honest")
+    axes.plot([0, 1], [0, 1], color=GREY, lw=1, ls="--", label="calibrated")
     _rates(axes, points)
     for p in points:
         axes.annotate(
@@ -120,7 +119,7 @@ def _reliability(axes: Axes, points: Sequence[Point]) -> None:
         )
     axes.set(
         xlabel="stated confidence",
-        ylabel="part of the verdicts that were exact",
+        ylabel="part of the verdicts that was exact",
         xlim=(0, 1.03),
         ylim=(0, 1.03),
     )
@@ -131,19 +130,21 @@ def _reliability(axes: Axes, points: Sequence[Point]) -> None:
 def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
     for outside, alike, colour, label in (
         (False, False, LIGHT_BLUE, "tests of another kind"),
-        (False, True, BLUE, "tests like those diagnosed"),
+        (False, True, BLUE, "tests of the diagnosed kinds"),
         (True, True, ORANGE, "the same, outside the catalogue"),
     ):
         held = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
         found = [h.alike if alike else h.other for h in held]
         if found:
-            before, after = ([getattr(e, name) / e.read_floor for e in found] for name in ("before", "after"))
+            before, after = (
+                [getattr(e, name) / e.reading_noise_floor for e in found] for name in ("before", "after")
+            )
             axes.plot(before, after, "o", ms=4, alpha=0.8, mec="none", color=colour, label=label)
-    axes.axhline(1.0 + NEAR_FLOOR, color=GREY, lw=1, ls="--", label="10 % above the floor")
+    axes.axhline(1.0 + NOISE_FLOOR_MARGIN, color=GREY, lw=1, ls="--", label="10 % above the noise floor")
     axes.axline((1.0, 1.0), slope=1.0, color=GREY, lw=1, ls=":", label="no better than before")
     axes.set(xscale="log", yscale="log")
-    axes.set_xlabel("held-out RMSE of the believed tire over the noise floor")
-    axes.set_ylabel("of the corrected tire")
+    axes.set_xlabel("held-out RMSE of the baseline tire over the noise floor")
+    axes.set_ylabel("the same of the corrected tire")
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.95), max(high, 2.0))
     for axis in (axes.xaxis, axes.yaxis):

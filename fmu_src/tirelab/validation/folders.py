@@ -1,12 +1,12 @@
-"""Where a proof keeps what: recordings, believed tires, sealed answers, verdicts, scores.
+"""Files of a proof: recordings, baseline tires, answers, verdicts, scores.
 
 DIR/settings.json            the seed
-DIR/seals.sha256             SHA-256 of every sealed answer, as `sha256sum -c` reads it
+DIR/seals.sha256             commitment hash (SHA-256) of every answer, as `sha256sum -c` reads it
 DIR/trials/NNNN/             the recordings alone
-DIR/tires/NNNN.json          the tire that is believed in, a tire file
+DIR/tires/NNNN.json          the baseline tire, a tire file
 DIR/sealed/NNNN.json         the answer
-DIR/verdicts/NNNN/           what `tirelab diagnose` wrote; outcomes/NNNN.json how it ended
-DIR/tests/NNNN/test.csv      the suggested separating test, as the rig recorded it
+DIR/verdicts/NNNN/           what the diagnosis wrote; outcomes/NNNN.json how it ended
+DIR/tests/NNNN/test.csv      the recommended test, as the rig recorded it
 DIR/second_verdicts/NNNN/    the diagnosis with that recording; second_outcomes/NNNN.json how it ended
 DIR/scores/NNNN.json         the score
 DIR/proof.json, .html, .png  the proof
@@ -38,15 +38,15 @@ class Folders:
         return sorted(self.trial(key).glob(f"{group}_*.csv"), key=lambda p: int(p.stem.rpartition("_")[2]))
 
     def tire(self, key: str) -> Path:
-        """The believed tire."""
+        """The baseline tire."""
         return self.root / "tires" / f"{key}.json"
 
     def sealed(self, key: str) -> Path:
-        """The sealed answer."""
+        """The answer."""
         return self.root / "sealed" / f"{key}.json"
 
     def verdict(self, key: str, *, second: bool = False) -> Path:
-        """What the diagnosis wrote; second: the one with the separating test."""
+        """What the diagnosis wrote; second: the diagnosis with the recommended test."""
         return self.root / ("second_verdicts" if second else "verdicts") / key
 
     def outcome(self, key: str, *, second: bool = False) -> Path:
@@ -54,7 +54,7 @@ class Folders:
         return self.root / ("second_outcomes" if second else "outcomes") / f"{key}.json"
 
     def test(self, key: str) -> Path:
-        """The recording of the suggested separating test."""
+        """The recording of the recommended test."""
         return self.root / "tests" / key / "test.csv"
 
     def score(self, key: str) -> Path:
@@ -62,8 +62,8 @@ class Folders:
         return self.root / "scores" / f"{key}.json"
 
     @property
-    def seals(self) -> Path:
-        """The SHA-256 of every sealed answer."""
+    def commitments(self) -> Path:
+        """The commitment hash of every answer."""
         return self.root / "seals.sha256"
 
 
@@ -80,7 +80,9 @@ def read_json(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise TirelabError(f"{path}: cannot be read ({error}); remove it, and it is made anew") from None
+        raise TirelabError(
+            f"{path}: cannot be read ({error}); remove the file, and it is written again"
+        ) from None
     if not isinstance(content, dict):
-        raise TirelabError(f"{path}: is no object; remove it, and it is made anew")
+        raise TirelabError(f"{path}: is no object; remove the file, and it is written again")
     return content

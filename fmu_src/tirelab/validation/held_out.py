@@ -1,4 +1,4 @@
-"""Recordings that no fit has seen: error of the believed tire, of the corrected one, and of the truth itself."""
+"""Held-out recordings: errors of the baseline tire, of the corrected tire, and of the true one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..preprocessing.kinematics import motion_of
 from ..recordings.recording import Recording
 from ..simulation.simulate import simulate
 
-REPLAYED = 1000
+REPLAYED_SAMPLES = 1000
 """Samples at the start of a held-out recording on which the corrected FMU itself is run."""
 
 
@@ -24,20 +24,22 @@ REPLAYED = 1000
 class Errors:
     """Root mean square errors [N] over some held-out recordings of a trial, pooled by samples.
 
-    before: the believed tire; after: the corrected one; read_floor: what the truth would miss on the same readings
-    cleared: the corrected tire told the motion without the noise of its reading, as a simulation tells it; floor: what
-    the truth would still miss if it knew rate and acceleration (see `concealed.FileTruth`)
+    before: the baseline tire; after: the corrected tire; reading_noise_floor: the true tire on the same readings
+    noise_free: the corrected tire given the noise-free deflection, as in a simulation; noise_floor: the true tire with
+    rate and acceleration known (see `concealed.FileTruth`)
     """
 
     before: float
     after: float
-    cleared: float
-    floor: float
-    read_floor: float
+    noise_free: float
+    noise_floor: float
+    reading_noise_floor: float
 
-    def near(self, within: float, *, cleared: bool = False) -> bool:
-        """Whether the corrected tire's error, `cleared` or as read, is at most 1 + `within` times its floor."""
-        error, floor = (self.cleared, self.floor) if cleared else (self.after, self.read_floor)
+    def near(self, within: float, *, noise_free: bool = False) -> bool:
+        """Whether the corrected tire's error is at most 1 + `within` times its noise floor."""
+        error, floor = (
+            (self.noise_free, self.noise_floor) if noise_free else (self.after, self.reading_noise_floor)
+        )
         return error <= (1.0 + within) * floor
 
 
@@ -45,7 +47,7 @@ class Errors:
 class HeldOut:
     """Errors on the held-out recordings of a trial.
 
-    alike: tests of a kind that was diagnosed, driven anew; other: tests of another kind
+    alike: new tests of a kind that was diagnosed; other: tests of another kind
     fmu_difference [N]: largest difference between the corrected FMU and the corrected tire on the first samples of
     every recording, None where there is no FMU
     """
@@ -65,25 +67,25 @@ class _Start:
 
 
 def held_out(
-    believed: TireModel,
+    baseline: TireModel,
     corrected: TireModel,
     fmu: Path | None,
     recordings: Sequence[Recording],
     truths: Mapping[str, Mapping[str, Any]],
 ) -> HeldOut:
     """Return the errors; truths: what is known of each file (`concealed.FileTruth`), from the opened answer."""
-    shown = {truth["excitation"] for file, truth in truths.items() if file.startswith("train_")}
-    alike = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] in shown]
-    other = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] not in shown]
+    diagnosed = {truth["excitation"] for file, truth in truths.items() if file.startswith("train_")}
+    alike = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] in diagnosed]
+    other = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] not in diagnosed]
     return HeldOut(
-        _errors(believed, corrected, alike, truths),
-        _errors(believed, corrected, other, truths),
+        _errors(baseline, corrected, alike, truths),
+        _errors(baseline, corrected, other, truths),
         _fmu_difference(fmu, corrected, recordings),
     )
 
 
 def _errors(
-    believed: TireModel,
+    baseline: TireModel,
     corrected: TireModel,
     recordings: Sequence[Recording],
     truths: Mapping[str, Mapping[str, Any]],
@@ -92,7 +94,7 @@ def _errors(
     squares = np.array(
         [
             (
-                np.mean((r.force - simulate(believed, r)) ** 2),
+                np.mean((r.force - simulate(baseline, r)) ** 2),
                 np.mean((r.force - simulate(corrected, r)) ** 2),
                 np.mean(noise_free_residual(corrected, r, motion_of(r.time, r.deflection)) ** 2),
                 float(truths[f"{r.name}.csv"]["floor_rmse"]) ** 2,
@@ -109,6 +111,8 @@ def _fmu_difference(fmu: Path | None, corrected: TireModel, recordings: Sequence
         return None
     largest = 0.0
     for r in recordings:
-        start = _Start(r.time[:REPLAYED], r.deflection[:REPLAYED], r.surface_radius[:REPLAYED])
+        start = _Start(
+            r.time[:REPLAYED_SAMPLES], r.deflection[:REPLAYED_SAMPLES], r.surface_radius[:REPLAYED_SAMPLES]
+        )
         largest = max(largest, float(np.max(np.abs(replay(fmu, start) - simulate(corrected, start)))))
     return largest

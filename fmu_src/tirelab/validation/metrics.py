@@ -1,4 +1,4 @@
-"""The figures of a proof from the scores of its trials, each with its 95 % interval."""
+"""Statistics of the scores of a proof, each with its 95 % interval."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy as np
 from scipy.stats import binomtest
 
 from ..diagnosis.diagnosis_file import NOTHING
-from .score import Score
+from .score import OUTCOMES, Score
 
-CONFIDENCE = 0.95
+COVERAGE = 0.95
 """Coverage of all intervals."""
 
 SIZE_EDGES = (0.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf)
@@ -28,7 +28,7 @@ ANY_EFFECT = "any effect"
 RESAMPLES = 2000
 
 NO_NAME = "(nothing)"
-"""Column of the confusion matrix for an effect in whose place nothing was named, row for a name in place of nothing."""
+"""Column of the confusion matrix for an effect that got no name, row for a name without an effect."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Rate:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """The 95 % interval; everything where there is no trial."""
+        """The 95 % interval; 0 to 1 where there is no trial."""
         if not self.trials:
             return 0.0, 1.0
-        found = binomtest(self.hits, self.trials).proportion_ci(CONFIDENCE, method="wilson")
+        found = binomtest(self.hits, self.trials).proportion_ci(COVERAGE, method="wilson")
         return float(found.low), float(found.high)
 
     @classmethod
@@ -74,7 +74,7 @@ class Mean:
             return cls(float("nan"), (float("nan"), float("nan")), 0)
         rng = np.random.default_rng(1)
         means = listed[rng.integers(listed.size, size=(RESAMPLES, listed.size))].mean(axis=1)
-        tail = 50.0 * (1.0 - CONFIDENCE)
+        tail = 50.0 * (1.0 - COVERAGE)
         low, high = np.percentile(means, [tail, 100.0 - tail])
         return cls(float(listed.mean()), (float(low), float(high)), int(listed.size))
 
@@ -95,7 +95,7 @@ def exact(scores: Sequence[Score]) -> Rate:
 
 
 def among(scores: Sequence[Score]) -> Rate:
-    """How often a right set was the verdict or one of its rivals."""
+    """How often a right set was the verdict or one of its alternatives."""
     return Rate.of(s.among for s in scores)
 
 
@@ -105,25 +105,25 @@ def false_alarms(scores: Sequence[Score]) -> Rate:
 
 
 def recognised(scores: Sequence[Score]) -> Rate:
-    """How often "unknown" was said where something outside of the catalogue was hidden."""
+    """How often the verdict was "unknown" where something outside the catalogue was hidden."""
     return Rate.of(s.recognised for s in scores if s.open)
 
 
 def wrongly_unknown(scores: Sequence[Score]) -> Rate:
-    """How often "unknown" was said where all that was hidden is in the catalogue."""
+    """How often the verdict was "unknown" where every hidden effect is in the catalogue."""
     return Rate.of(s.recognised for s in scores if not s.open)
 
 
-def near_floor(scores: Sequence[Score], within: float, *, alike: bool, cleared: bool = False) -> Rate:
+def near_floor(scores: Sequence[Score], within: float, *, alike: bool, noise_free: bool = False) -> Rate:
     """How often the corrected tire's held-out RMSE is at most 1 + `within` times the noise floor, inside the catalogue.
 
-    alike: on tests of the kinds that were diagnosed, or on those of other kinds
-    cleared: whether the tire is told the motion without the noise of its reading
+    alike: on tests of the diagnosed kinds, or on tests of other kinds
+    noise_free: whether the tire is given the noise-free deflection
     A failed diagnosis, and a verdict without a corrected tire, count as misses.
     """
     return Rate.of(
         s.held_out is not None
-        and (s.held_out.alike if alike else s.held_out.other).near(within, cleared=cleared)
+        and (s.held_out.alike if alike else s.held_out.other).near(within, noise_free=noise_free)
         for s in scores
         if not s.open
     )
@@ -171,32 +171,32 @@ def _curve(pairs: Sequence[tuple[float, bool]], edges: Sequence[float]) -> list[
 
 
 def confusion(scores: Sequence[Score]) -> dict[str, dict[str, float]]:
-    """How often each hidden name (row) was given each name (column).
+    """How often each hidden effect (row) was given each name (column).
 
-    A name that is both hidden and named is a hit. Of a set in which names are missing and others are too many, each
-    missing one was taken for the others in equal parts; with none too many it was taken for nothing. Names that are
-    too many while none is missing stand in the row of nothing. Every other row sums to the trials that hold its name.
+    An effect that is both hidden and named is a hit. A missed effect counts in equal parts for the wrong names of the
+    verdict, or for "(nothing)" where there is none. Wrong names of a verdict that misses no effect count in the row
+    "(nothing)". Every other row sums to the number of trials that hold its effect.
     """
     table: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
     for s in scores:
         if s.verdict is None:
             continue
-        true, said = s.reference, s.verdict
-        missing, extra = true - said, said - true - NOTHING
-        for name in true & said:
+        true, named = s.reference, s.verdict
+        missed, wrong = true - named, named - true - NOTHING
+        for name in true & named:
             table[name][name] += 1.0
-        for name in missing:
-            for other in extra or {NO_NAME}:
-                table[name][other] += 1.0 / max(len(extra), 1)
-        if not missing:
-            for other in extra:
+        for name in missed:
+            for other in wrong or {NO_NAME}:
+                table[name][other] += 1.0 / max(len(wrong), 1)
+        if not missed:
+            for other in wrong:
                 table[NO_NAME][other] += 1.0
     return {row: dict(columns) for row, columns in table.items()}
 
 
 @dataclass(frozen=True)
-class PlaceSummary:
-    """Overlaps for one effect along one coordinate: trials, median, and how often at least half."""
+class RegionSummary:
+    """Overlap for one effect along one coordinate: median, and how often it is at least half."""
 
     effect: str
     by: str
@@ -204,26 +204,25 @@ class PlaceSummary:
     half: Rate
 
 
-def places(scores: Sequence[Score]) -> list[PlaceSummary]:
-    """How well the places of confined effects were found, whether or not the effect was named."""
+def regions(scores: Sequence[Score]) -> list[RegionSummary]:
+    """How well the regions of localized effects were found, whether or not the effect was named."""
     overlaps: dict[tuple[str, str], list[float]] = defaultdict(list)
     for s in scores:
-        for place in s.places:
-            overlaps[place.effect, place.by].append(place.overlap)
+        for region in s.regions:
+            overlaps[region.effect, region.by].append(region.overlap)
     return [
-        PlaceSummary(effect, by, float(np.median(values)), Rate.of(v >= 0.5 for v in values))
+        RegionSummary(effect, by, float(np.median(values)), Rate.of(v >= 0.5 for v in values))
         for (effect, by), values in sorted(overlaps.items())
     ]
 
 
-def separations(scores: Sequence[Score]) -> dict[str, Rate]:
-    """What became of rivals when the suggested test was run: of those with the truth among them, and of all."""
-    found = [s.separation for s in scores if s.separation is not None]
+def discriminations(scores: Sequence[Score]) -> dict[str, Rate]:
+    """What the recommended test decided, for the verdicts with the truth among their alternatives."""
+    found = [s.discrimination for s in scores if s.discrimination is not None]
     true = [x for x in found if x.truth_among]
-    outcomes = ("told right", "told wrong", "still rivals", "no test", "failed")
     return {
-        "truth among the rivals": Rate(len(true), len(found)),
-        **{f"{o}, truth among the rivals": Rate.of(x.outcome == o for x in true) for o in outcomes},
+        "truth among the alternatives": Rate(len(true), len(found)),
+        **{f"of these: {o}": Rate.of(x.outcome == o for x in true) for o in OUTCOMES},
     }
 
 

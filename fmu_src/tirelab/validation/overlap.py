@@ -1,4 +1,4 @@
-"""How well the place of a confined effect was found: overlap of the stated span with the true one.
+"""How well the region of a localized effect was found: overlap of the stated region with the true one.
 
 J = |stated and true| / |stated or true|   (Jaccard index of spans of one coordinate, 0 to 1)
 """
@@ -17,62 +17,61 @@ from ..recordings.recording import Recording
 from ..recordings.units import UnitError, conversion
 
 STATED_PART = 0.8
-"""Part of the squared error stated along one coordinate whose spans, the weightiest first, are the stated region."""
+"""Part of the stated squared error along a coordinate; the spans that hold it, the largest first, are the region."""
 
-UNITS = {"time": "s", "deflection": "m", "force": "N", "rate": "m/s", "radius": "m", "history": "m"}
-"""SI unit of the coordinates that have one."""
+SI_UNITS = {"time": "s", "deflection": "m", "force": "N", "rate": "m/s"}
+"""SI unit of the coordinates along which the rig states regions; a direction has none."""
 
 Span = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class PlaceScore:
-    """Overlap for one confined effect along one coordinate; 0 where the verdict names no place along it."""
+class RegionScore:
+    """Overlap for one localized effect along one coordinate; 0 where the verdict states no region along it."""
 
     effect: str
     by: str
     overlap: float
 
 
-def place_scores(
+def region_scores(
     where: Sequence[Mapping[str, Any]], stated: Sequence[StatedPlace], recordings: Sequence[Recording]
-) -> tuple[PlaceScore, ...]:
+) -> tuple[RegionScore, ...]:
     """Return the overlap for every effect and coordinate in the answer's `where`.
 
-    The stated region along a coordinate is made of its stated spans in falling order of their share of the squared
-    error, until they hold `STATED_PART` of what all of them hold together. The mean over the recordings with samples
-    in the true place counts; a place stated without its recording is meant in each of them. A direction is found or
-    not: 1 or 0.
+    The stated region along a coordinate is the union of its stated spans in falling order of their share of the
+    squared error, until they hold `STATED_PART` of the sum. The overlap is the mean over the recordings with samples
+    in the true region; a span stated without a recording applies to each of them. A direction is found or not: 1 or 0.
     """
     groups: dict[tuple[str, str], dict[str, list[Mapping[str, Any]]]] = {}
-    for place in where:
-        by_recording = groups.setdefault((str(place["effect"]), str(place["by"])), {})
-        by_recording.setdefault(str(place["recording"]), []).append(place)
+    for region in where:
+        by_recording = groups.setdefault((str(region["effect"]), str(region["by"])), {})
+        by_recording.setdefault(str(region["recording"]), []).append(region)
     by_name = {f"{r.name}.csv": r for r in recordings}
     scores = []
     for (effect, by), by_recording in groups.items():
         overlaps = []
-        for name, places in by_recording.items():
-            said = [
+        for name, regions in by_recording.items():
+            spans = [
                 p for p in stated if p.by == by and p.recording in (None, name, name.removesuffix(".csv"))
             ]
             if by == "direction":
-                overlaps.append(_direction_overlap(str(places[0]["from"]), said))
+                overlaps.append(_direction_overlap(str(regions[0]["from"]), spans))
             else:
                 values = _coordinate(by, by_name[name])
-                true = _inside(values, [_span(place["from"], place["to"]) for place in places])
+                true = _inside(values, [_span(region["from"], region["to"]) for region in regions])
                 if true.any():
-                    overlaps.append(_jaccard(true, _inside(values, _stated_region(said, by))))
+                    overlaps.append(_jaccard(true, _inside(values, _stated_region(spans, by))))
         if overlaps:
-            scores.append(PlaceScore(effect, by, float(np.mean(overlaps))))
+            scores.append(RegionScore(effect, by, float(np.mean(overlaps))))
     return tuple(scores)
 
 
-def _direction_overlap(true: str, said: Sequence[StatedPlace]) -> float:
-    if not said:
+def _direction_overlap(true: str, spans: Sequence[StatedPlace]) -> float:
+    if not spans:
         return 0.0
-    place = max(said, key=lambda p: p.share)
-    ends = (place.begin, place.end)
+    strongest = max(spans, key=lambda p: p.share)
+    ends = (strongest.begin, strongest.end)
     if any(isinstance(end, str) for end in ends):
         return float(true in ends)
     # as a number, unloading is negative
@@ -80,26 +79,24 @@ def _direction_overlap(true: str, said: Sequence[StatedPlace]) -> float:
     return float((middle < 0.0) == (true == "unloading"))
 
 
-def _stated_region(said: Sequence[StatedPlace], by: str) -> list[Span]:
-    whole = sum(p.share for p in said)
+def _stated_region(spans: Sequence[StatedPlace], by: str) -> list[Span]:
+    whole = sum(p.share for p in spans)
     region: list[Span] = []
     held = 0.0
-    for place in sorted(said, key=lambda p: -p.share):
+    for span in sorted(spans, key=lambda p: -p.share):
         if held >= STATED_PART * whole:
             break
-        held += place.share
-        factor = _to_si(place.unit, by)
-        if factor is not None and not isinstance(place.begin, str) and not isinstance(place.end, str):
-            low, high = _span(place.begin, place.end)
+        held += span.share
+        factor = _factor_to_si(span.unit, by)
+        if factor is not None and not isinstance(span.begin, str) and not isinstance(span.end, str):
+            low, high = _span(span.begin, span.end)
             region.append((factor * low, factor * high))
     return region
 
 
-def _to_si(unit: str, by: str) -> float | None:
-    if by not in UNITS:
-        return 1.0
+def _factor_to_si(unit: str, by: str) -> float | None:
     try:
-        found = conversion(unit, UNITS[by])
+        found = conversion(unit, SI_UNITS[by])
     except UnitError:
         return None
     return float(found.multiply / found.divide)
@@ -113,7 +110,7 @@ def _coordinate(by: str, recording: Recording) -> NDArray[np.float64]:
         change, interval = (v[2 * half :] - v[: v.size - 2 * half] for v in padded)
         return np.asarray(change / interval)
     known = {"time": recording.time, "deflection": recording.deflection, "force": recording.force}
-    return known.get(by, np.full(len(recording), np.nan))
+    return known[by]
 
 
 def _span(begin: float | None, end: float | None) -> Span:

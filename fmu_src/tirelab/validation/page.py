@@ -1,4 +1,4 @@
-"""The proof as numbers (proof.json) and as a page (proof.html) that needs nothing from elsewhere."""
+"""The proof as numbers (proof.json) and as a self-contained page (proof.html)."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from markupsafe import Markup
 
 from . import figures
 from . import metrics as summary
-from .acceptance_criteria import Line, against_the_bar
+from .acceptance_criteria import Criterion, criteria
 from .metrics import Mean, Point, Rate
 from .score import Score
 
-SCHEMA = 3
+PROOF_SCHEMA = 4
 
 
 @dataclass(frozen=True)
 class Proof:
-    """The scores of a series of trials, and the seed that makes them again."""
+    """The scores of blind trials, and the seed that draws them again."""
 
     seed: int
     scores: tuple[Score, ...]
 
     @property
-    def lines(self) -> tuple[Line, ...]:
-        """Every figure beside its bar."""
-        return against_the_bar(self.scores)
+    def criteria(self) -> tuple[Criterion, ...]:
+        """Every figure with its limit."""
+        return criteria(self.scores)
 
     @property
     def command(self) -> str:
-        """The command that makes the proof again."""
+        """The command that repeats the proof."""
         return f"tirelab prove --trials {len(self.scores)} --seed {self.seed} --out DIR"
 
     @property
@@ -47,33 +47,33 @@ def numbers(proof: Proof) -> dict[str, Any]:
     """Return the content of proof.json; rates as value, hits, trials and 95 % interval."""
     scores = proof.scores
     return {
-        "schema": SCHEMA,
+        "schema": PROOF_SCHEMA,
         "seed": proof.seed,
         "trials": len(scores),
         "failed": len(proof.failures),
         "command": proof.command,
-        "bar": [
+        "criteria": [
             {
-                "figure": line.figure,
-                **_measured(line.measured),
-                "bar": line.bar,
-                "direction": "at least" if line.at_least else "at most",
-                "passes": line.passes,
+                "figure": criterion.figure,
+                **_measured(criterion.measured),
+                "limit": criterion.limit,
+                "direction": "at least" if criterion.at_least else "at most",
+                "passes": criterion.passes,
             }
-            for line in proof.lines
+            for criterion in proof.criteria
         ],
         "exact_by_kind": _rates(summary.by_kind(scores, summary.exact)),
         "wrongly_unknown": _measured(summary.wrongly_unknown(scores)),
         "names_added": _measured(names_added(scores)),
-        "rivals_per_verdict": _measured(rivals_named(scores)),
+        "alternatives_per_verdict": _measured(alternatives_named(scores)),
         "confusion": summary.confusion(scores),
         "naming": {effect: [_point(p) for p in points] for effect, points in summary.naming(scores).items()},
         "reliability": [_point(p) for p in summary.reliability(scores)],
-        "places": [
-            {"effect": p.effect, "by": p.by, "median_overlap": p.median, "at_least_half": _measured(p.half)}
-            for p in summary.places(scores)
+        "regions": [
+            {"effect": r.effect, "by": r.by, "median_overlap": r.median, "at_least_half": _measured(r.half)}
+            for r in summary.regions(scores)
         ],
-        "separations": _rates(summary.separations(scores)),
+        "discriminations": _rates(summary.discriminations(scores)),
         "seconds": _measured(Mean.of(s.seconds for s in scores)),
         "scores": [s.to_json() for s in scores],
     }
@@ -84,26 +84,25 @@ def names_added(scores: Sequence[Score]) -> Rate:
     return Rate.of(bool(s.added) for s in scores)
 
 
-def rivals_named(scores: Sequence[Score]) -> Mean:
-    """How many rivals a verdict names: with many of them the truth is among them for nothing."""
+def alternatives_named(scores: Sequence[Score]) -> Mean:
+    """How many alternatives a verdict states: with many of them the truth is easily among them."""
     return Mean.of(float(len(s.alternatives)) for s in scores if s.verdict is not None)
 
 
 def page(proof: Proof) -> str:
-    """Return proof.html: one file, everything in it, all text escaped."""
+    """Return proof.html: one self-contained file, all text escaped."""
     scores = proof.scores
     source = importlib.resources.files(__package__).joinpath("proof.html.jinja").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    environment.filters |= {"interval": interval, "value": told_value, "names": told_names, "words": _words}
+    environment.filters |= {"interval": interval, "value": value_text, "names": names_text, "words": _words}
     return environment.from_string(source).render(
         proof=proof,
-        lines=proof.lines,
         kinds=summary.by_kind(scores, summary.exact),
         wrongly_unknown=summary.wrongly_unknown(scores),
         added=names_added(scores),
-        rivals=rivals_named(scores),
-        places=summary.places(scores),
-        separations=summary.separations(scores),
+        alternatives=alternatives_named(scores),
+        regions=summary.regions(scores),
+        discriminations=summary.discriminations(scores),
         pictures={
             "confusion": _picture(figures.confusion_matrix(summary.confusion(scores)), "confusion"),
             "naming": _picture(figures.naming_curves(summary.naming(scores)), "naming"),
@@ -113,7 +112,7 @@ def page(proof: Proof) -> str:
     )
 
 
-def told_value(measured: Rate | Mean) -> str:
+def value_text(measured: Rate | Mean) -> str:
     """A rate in percent with its counts, a mean with three digits."""
     if math.isnan(measured.value):
         return "no trial"
@@ -132,8 +131,8 @@ def interval(measured: Rate | Mean) -> str:
     return f"{low:.3g} to {high:.3g}"
 
 
-def told_names(names: frozenset[str] | None) -> str:
-    """A set of names in words."""
+def names_text(names: frozenset[str] | None) -> str:
+    """A set of names as text."""
     if names is None:
         return "failed"
     return " + ".join(_words(name) for name in sorted(names))
@@ -144,7 +143,7 @@ def _words(name: str) -> str:
 
 
 def _picture(figure: Any, name: str) -> Markup:
-    # what stands in a figure comes from names of effects, and matplotlib escapes it
+    # the text in a figure is names of effects, and matplotlib escapes it
     return Markup(figures.svg(figure, name))
 
 

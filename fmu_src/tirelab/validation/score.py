@@ -1,34 +1,36 @@
-"""The score of one trial: what was said against what was hidden."""
+"""The score of one trial: the verdict against the answer."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from ..diagnosis.diagnosis_file import NOTHING, Names, Stated
 from ..names import UNKNOWN
 from .held_out import Errors, HeldOut
-from .overlap import PlaceScore
+from .overlap import RegionScore
 
 OPEN = "open"
 """The kind of trial whose effect no catalogue names."""
 
-Told = Literal["told right", "told wrong", "still rivals", "no test", "failed"]
+Outcome = Literal["decided rightly", "decided wrongly", "undecided", "no test", "failed"]
+OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 
 
 @dataclass(frozen=True)
-class Separation:
-    """What became of rivals when the suggested test was run on the rig and diagnosed along with the recordings.
+class Discrimination:
+    """What the recommended test decided: the rig ran it, and its recording was diagnosed together with the others.
 
-    rivals: how many sets were named before; truth_among: whether the truth was one of them
-    outcome: "told right" (one set, the truth, none of the earlier rivals beside it), "told wrong" (one set, another),
-    "still rivals", "no test" (none was suggested), or "failed" (the rig refused it, or the second diagnosis failed)
+    alternatives: number of sets stated before, the verdict among them; truth_among: whether the truth was one of them
+    outcome: "decided rightly" (the verdict is the truth, no earlier set is left beside it), "decided wrongly" (it is
+    another set), "undecided", "no test" (none was recommended), or "failed" (the rig refused the test, or the second
+    diagnosis failed)
     """
 
-    rivals: int
+    alternatives: int
     truth_among: bool
-    outcome: Told
+    outcome: Outcome
 
 
 @dataclass(frozen=True)
@@ -37,9 +39,9 @@ class Score:
 
     kind: what was hidden, see `concealed.KINDS`; right: the sets that count as right, the true one first
     verdict: the set named ({"none"}: nothing is missing), None where the diagnosis failed; error: why it failed
-    alternatives: the rivals named; confidence: as stated, None where the diagnosis failed
-    sizes: size of everything hidden over the noise (RMS over the samples to which it is confined)
-    seconds: what the diagnosis took
+    alternatives: the alternatives stated; confidence: as stated, None where the diagnosis failed
+    sizes: size of every hidden effect over the noise (RMS over the samples in which it is active)
+    seconds: duration of the diagnosis
     """
 
     trial: str
@@ -50,9 +52,9 @@ class Score:
     confidence: float | None
     error: str | None
     sizes: Mapping[str, float]
-    places: tuple[PlaceScore, ...]
+    regions: tuple[RegionScore, ...]
     held_out: HeldOut | None
-    separation: Separation | None
+    discrimination: Discrimination | None
     seconds: float
 
     @property
@@ -62,22 +64,22 @@ class Score:
 
     @property
     def among(self) -> bool:
-        """Whether the verdict or one of its stated rivals is a set that counts as right."""
+        """Whether the verdict or one of its stated alternatives is a set that counts as right."""
         return self.exact or any(names in self.right for names in self.alternatives)
 
     @property
     def open(self) -> bool:
-        """Whether something outside of the catalogue was hidden."""
+        """Whether something outside the catalogue was hidden."""
         return self.kind == OPEN
 
     @property
     def recognised(self) -> bool:
-        """Whether the verdict says that something stays unexplained, whatever else it names."""
+        """Whether the verdict states that something is unexplained, whatever else it names."""
         return self.verdict is not None and UNKNOWN in self.verdict
 
     @property
     def false_alarm(self) -> bool:
-        """Whether something is said to be missing where nothing was hidden; a failed diagnosis raises no alarm."""
+        """Whether the verdict names something where nothing was hidden; a failed diagnosis raises no alarm."""
         return self.kind == "none" and self.verdict is not None and not self.exact
 
     @property
@@ -93,11 +95,11 @@ class Score:
         return self.verdict if self.exact and self.verdict is not None else self.right[0]
 
     def name_of(self, effect: str) -> str:
-        """Return the name that a right verdict has for something hidden: "unknown" where no catalogue names it."""
+        """Return the name of a hidden effect in a right verdict: "unknown" where no catalogue names it."""
         return effect if effect in frozenset().union(*self.right) else UNKNOWN
 
     def demands(self, effect: str) -> bool:
-        """Whether every set that counts as right names the effect, so that the recordings can show it."""
+        """Whether every set that counts as right names the effect: the recordings show it."""
         return all(self.name_of(effect) in names for names in self.right)
 
     def named(self, effect: str) -> bool:
@@ -105,23 +107,23 @@ class Score:
         return self.verdict is not None and self.name_of(effect) in self.verdict
 
     def to_json(self) -> dict[str, Any]:
-        """Return the score as what JSON knows; `from_json` gives it back."""
+        """Return the score as JSON data; `from_json` reads it back."""
         return {
             **{name: getattr(self, name) for name in ("trial", "kind", "confidence", "error", "seconds")},
             "right": [sorted(names) for names in self.right],
             "verdict": None if self.verdict is None else sorted(self.verdict),
             "alternatives": [sorted(names) for names in self.alternatives],
             "sizes": dict(self.sizes),
-            "places": [asdict(place) for place in self.places],
+            "regions": [asdict(region) for region in self.regions],
             "held_out": None if self.held_out is None else asdict(self.held_out),
-            "separation": None if self.separation is None else asdict(self.separation),
+            "discrimination": None if self.discrimination is None else asdict(self.discrimination),
             "exact": self.exact,
             "among": self.among,
         }
 
     @classmethod
     def from_json(cls, content: Mapping[str, Any]) -> Score:
-        """Return the score that `to_json` told."""
+        """Return the score that `to_json` wrote."""
         return cls(
             trial=content["trial"],
             kind=content["kind"],
@@ -131,9 +133,11 @@ class Score:
             confidence=content["confidence"],
             error=content["error"],
             sizes=content["sizes"],
-            places=tuple(PlaceScore(**place) for place in content["places"]),
+            regions=tuple(RegionScore(**region) for region in content["regions"]),
             held_out=_held_out(content["held_out"]),
-            separation=None if content["separation"] is None else Separation(**content["separation"]),
+            discrimination=None
+            if content["discrimination"] is None
+            else Discrimination(**content["discrimination"]),
             seconds=content["seconds"],
         )
 
@@ -154,17 +158,17 @@ def sizes_over_noise(answer: Mapping[str, Any]) -> dict[str, float]:
     return {name: float(size["raw"]) for name, size in answer["sizes"].items()}
 
 
-def separation(right: Sequence[Names], first: Stated, second: Stated | None) -> Separation:
-    """Return what became of the rivals of the `first` verdict in the `second` one (None: there is none)."""
+def discrimination(right: Sequence[Names], first: Stated, second: Stated | None) -> Discrimination:
+    """Return what the `second` verdict (None: there is none) decided about the alternatives of the `first`."""
     truth = right[0]
     before = {first.names, *first.alternatives}
-    outcome: Told = "no test" if first.separating_test is None else _told(truth, before, second)
-    return Separation(len(before), truth in before, outcome)
+    outcome: Outcome = "no test" if first.separating_test is None else _outcome(truth, before, second)
+    return Discrimination(len(before), truth in before, outcome)
 
 
-def _told(truth: Names, before: set[Names], second: Stated | None) -> Told:
+def _outcome(truth: Names, before: set[Names], second: Stated | None) -> Outcome:
     if second is None:
         return "failed"
     if set(second.alternatives) & before - {second.names}:
-        return "still rivals"
-    return "told right" if second.names == truth else "told wrong"
+        return "undecided"
+    return "decided rightly" if second.names == truth else "decided wrongly"

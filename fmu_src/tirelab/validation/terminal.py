@@ -1,25 +1,25 @@
-"""The proof in short, for a terminal."""
+"""The acceptance criteria of a proof as a table for the terminal."""
 
 from __future__ import annotations
 
 from rich.table import Table
 
-from .page import Proof, interval, told_value
+from .page import Proof, interval, value_text
 
 VERDICTS = {True: "[green]pass[/]", False: "[red]fail[/]", None: "not measured"}
 
 
-def bar_table(proof: Proof) -> Table:
-    """Return every figure with its interval, its bar, and whether it is met."""
+def criteria_table(proof: Proof) -> Table:
+    """Return every figure with its interval, its limit, and whether it passes."""
     table = Table(title=f"{len(proof.scores)} blind trials, seed {proof.seed}", title_justify="left")
-    for heading in ("figure", "measured", "95 % interval", "bar", ""):
+    for heading in ("figure", "measured", "95 % interval", "limit", ""):
         table.add_column(heading)
-    for line in proof.lines:
+    for criterion in proof.criteria:
         table.add_row(
-            line.figure,
-            told_value(line.measured),
-            interval(line.measured),
-            f"{'>=' if line.at_least else '<='} {line.bar:g}",
-            VERDICTS[line.passes],
+            criterion.figure,
+            value_text(criterion.measured),
+            interval(criterion.measured),
+            f"{'>=' if criterion.at_least else '<='} {criterion.limit:g}",
+            VERDICTS[criterion.passes],
         )
     return table

@@ -1,4 +1,4 @@
-"""Stand-ins for the diagnosis, and verdicts written by hand."""
+"""Replacements of the diagnosis, and verdicts written by hand."""
 
 from __future__ import annotations
 
@@ -41,21 +41,27 @@ def diagnosis() -> Callable[..., None]:
 
 
 class Oracle:
-    """Reads the sealed answer, as no diagnosis can, and names the true set; counts what it was handed."""
+    """Reads the answer, as no diagnosis can, and names the true set; keeps the names of the recordings it got."""
 
     def __init__(self) -> None:
-        self.handed: list[list[str]] = []
+        self.recordings: list[list[str]] = []
 
     def __call__(self, recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
         """Diagnose."""
-        self.handed.append([path.name for path in recordings])
+        self.recordings.append([path.name for path in recordings])
         answer = json.loads((out.parents[1] / "sealed" / f"{out.name}.json").read_text())
         write_diagnosis(out, answer["right"][0])
 
 
+@pytest.fixture(scope="session", name="Oracle")
+def oracle_type() -> type[Oracle]:
+    """The class of a diagnosis that always names the truth."""
+    return Oracle
+
+
 @pytest.fixture
 def oracle() -> Oracle:
-    """A stand-in that always knows."""
+    """A diagnosis that always names the truth."""
     return Oracle()
 
 
@@ -63,19 +69,19 @@ def oracle() -> Oracle:
 def score() -> Callable[..., Score]:
     """Makes a score: kind, the true set, the verdict; other right sets and the rest by name."""
 
-    def make(kind: str, true: str, said: str | None, **more: Any) -> Score:
+    def make(kind: str, true: str, named: str | None, **more: Any) -> Score:
         return Score(
             trial=more.get("trial", "0000"),
             kind=kind,
             right=(frozenset(true.split()), *(frozenset(s.split()) for s in more.get("also_right", ()))),
-            verdict=None if said is None else frozenset(said.split()),
-            alternatives=tuple(frozenset(s.split()) for s in more.get("rivals", ())),
-            confidence=None if said is None else more.get("confidence", 0.9),
-            error=None if said is not None else "it failed",
+            verdict=None if named is None else frozenset(named.split()),
+            alternatives=tuple(frozenset(s.split()) for s in more.get("alternatives", ())),
+            confidence=None if named is None else more.get("confidence", 0.9),
+            error=None if named is not None else "it failed",
             sizes=more.get("sizes", {}),
-            places=more.get("places", ()),
+            regions=more.get("regions", ()),
             held_out=more.get("held_out"),
-            separation=more.get("separation"),
+            discrimination=more.get("discrimination"),
             seconds=1.0,
         )
 

@@ -1,10 +1,11 @@
-"""A whole series with stand-ins for the diagnosis: sealed, blind, resumable, and scored."""
+"""Blind trials with replacements of the diagnosis: committed to, blind, resumable, and scored."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,15 @@ from typing import Any
 import numpy as np
 import polars as pl
 import pytest
+from matplotlib.figure import Figure
 from radialtire import TireModel
 from tirelab.batch.workers import Cores
 from tirelab.errors import TirelabError
-from tirelab.validation import Folders, Proof, Series, prove
+from tirelab.validation import BlindTrials, Folders, Proof, blind_trials, prove
+from tirelab.validation.commitment import ChangedAnswerError, opened
+from tirelab.validation.folders import read_json
 from tirelab.validation.follow_up_test import read_test
 from tirelab.validation.page import page
-from tirelab.validation.seal import BrokenSealError
 
 SEED = 31
 HERE = Cores(jobs=1)
@@ -27,60 +30,92 @@ Diagnoser = Callable[[Sequence[Path], "Path | None", Path], None]
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three trials, drawn and sealed once; every diagnosis fails."""
+    """Three trials, drawn once; every diagnosis fails."""
 
     def fails(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
         raise RuntimeError("no diagnosis <script>alert(1)</script>")
 
     root = tmp_path_factory.mktemp("drawn")
-    prove(Series(Folders(root), SEED, 3, None, fails), HERE, lambda line: None)
+    prove(BlindTrials(Folders(root), SEED, 3, None, fails), HERE, lambda line: None)
     return root
+
+
+def copied(drawn: Path, root: Path) -> Folders:
+    """The same trials before any diagnosis."""
+    for name in ("settings.json", "seals.sha256"):
+        (root / name).write_bytes((drawn / name).read_bytes())
+    for name in ("trials", "sealed", "tires"):
+        (root / name).symlink_to(drawn / name)
+    return Folders(root)
 
 
 @pytest.fixture
 def undiagnosed(drawn: Path, tmp_path: Path) -> Folders:
-    """The same trials before any diagnosis."""
-    folders = Folders(tmp_path)
-    for name in ("settings.json", "seals.sha256"):
-        (tmp_path / name).write_bytes((drawn / name).read_bytes())
-    for name in ("trials", "sealed", "tires"):
-        (tmp_path / name).symlink_to(drawn / name)
-    return folders
+    """The drawn trials before any diagnosis."""
+    return copied(drawn, tmp_path)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run of all trials: its folders, what the diagnosis got, and the proof."""
+
+    folders: Folders
+    recordings: list[list[str]]
+    proof: Proof
+
+
+@pytest.fixture(scope="module")
+def oracle_run(drawn: Path, tmp_path_factory: pytest.TempPathFactory, Oracle: Any) -> Run:
+    """The drawn trials, diagnosed by an oracle."""
+    folders = copied(drawn, tmp_path_factory.mktemp("oracle"))
+    oracle = Oracle()
+    return Run(folders, oracle.recordings, run(folders, oracle))
+
+
+@pytest.fixture
+def no_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leaves out the page and its figures, which take most of a second."""
+    monkeypatch.setattr(blind_trials, "page", lambda proof: "")
+    monkeypatch.setattr(blind_trials, "overview", lambda scores, title: Figure())
 
 
 def run(folders: Folders, diagnoser: Diagnoser, trials: int = 3) -> Proof:
-    return prove(Series(folders, SEED, trials, None, diagnoser), HERE, lambda line: None)
+    return prove(BlindTrials(folders, SEED, trials, None, diagnoser), HERE, lambda line: None)
 
 
-def test_seals_are_told_before_the_first_diagnosis(tmp_path: Path, oracle: Any) -> None:
-    told: list[str] = []
+@pytest.mark.usefixtures("no_page")
+def test_commitment_hashes_are_shown_before_the_first_diagnosis(tmp_path: Path, oracle: Any) -> None:
+    shown: list[str] = []
 
     def watched(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
-        assert len(told) == 2
+        assert len(shown) == 2
         oracle(recordings, tire, out)
 
-    prove(Series(Folders(tmp_path), SEED, 2, "none", watched), HERE, told.append)
-    for line in told:
-        key, seal = line.split()
-        assert hashlib.sha256((tmp_path / "sealed" / f"{key}.json").read_bytes()).hexdigest() == seal
-        assert f"{seal}  sealed/{key}.json" in (tmp_path / "seals.sha256").read_text().splitlines()
+    proof = prove(BlindTrials(Folders(tmp_path), SEED, 2, "none", watched), HERE, shown.append)
+    assert not proof.failures
+    assert len(oracle.recordings) == 2
+    for line in shown:
+        key, commitment = line.split()
+        assert hashlib.sha256((tmp_path / "sealed" / f"{key}.json").read_bytes()).hexdigest() == commitment
+        assert f"{commitment}  sealed/{key}.json" in (tmp_path / "seals.sha256").read_text().splitlines()
 
 
-def test_a_diagnosis_is_handed_training_recordings_alone(undiagnosed: Folders, oracle: Any) -> None:
-    run(undiagnosed, oracle)
-    assert len(oracle.handed) == 3
-    assert all(name.startswith("train_") for names in oracle.handed for name in names)
-    assert not any(path.suffix != ".csv" for path in (undiagnosed.root / "trials").rglob("*.*"))
+def test_a_diagnosis_gets_training_recordings_alone(oracle_run: Run) -> None:
+    assert len(oracle_run.recordings) == 3
+    assert all(name.startswith("train_") for names in oracle_run.recordings for name in names)
+    assert all(oracle_run.recordings)
+    files = list((oracle_run.folders.root / "trials").resolve().rglob("*.*"))
+    assert files
+    assert all(path.suffix == ".csv" for path in files)
 
 
-def test_an_oracle_is_exact_everywhere(undiagnosed: Folders, oracle: Any) -> None:
-    proof = run(undiagnosed, oracle)
-    assert [s.exact for s in proof.scores] == [True, True, True]
+def test_an_oracle_is_exact_everywhere(oracle_run: Run) -> None:
+    assert [s.exact for s in oracle_run.proof.scores] == [True, True, True]
 
 
-def test_the_believed_tire_errs_as_much_as_the_rig_says(undiagnosed: Folders, oracle: Any) -> None:
-    for s in run(undiagnosed, oracle).scores:
-        files = json.loads(undiagnosed.sealed(s.trial).read_text())["files"]
+def test_the_baseline_tire_errs_as_much_as_the_rig_says(oracle_run: Run) -> None:
+    for s in oracle_run.proof.scores:
+        files = json.loads(oracle_run.folders.sealed(s.trial).read_text())["files"]
         *others, last = (f for name, f in sorted(files.items()) if name.startswith("heldout"))
         assert s.held_out is not None
         for errors, held in ((s.held_out.other, others), (s.held_out.alike, [last])):
@@ -88,40 +123,46 @@ def test_the_believed_tire_errs_as_much_as_the_rig_says(undiagnosed: Folders, or
             squares = np.array([f["baseline_rmse"] for f in held]) ** 2
             # the files give deflection to 0.1 um and force to 1 mN: some 1e-2 N against RMSE of newtons
             assert errors.before == pytest.approx(float(np.sqrt(squares @ sizes / sizes.sum())), rel=1e-3)
-            assert errors.floor <= 1.001 * errors.before
+            floors = np.array([f["floor_rmse"] for f in held]) ** 2
+            assert errors.noise_floor == pytest.approx(float(np.sqrt(floors @ sizes / sizes.sum())))
+            assert errors.noise_floor <= 1.001 * errors.before
 
 
+@pytest.mark.usefixtures("no_page")
 def test_started_again_it_diagnoses_only_what_is_new(undiagnosed: Folders, oracle: Any) -> None:
     first = run(undiagnosed, oracle, trials=2)
-    seen = len(oracle.handed)
+    seen = len(oracle.recordings)
     second = run(undiagnosed, oracle)
-    assert (seen, len(oracle.handed)) == (2, 3)
+    assert (seen, len(oracle.recordings)) == (2, 3)
     assert second.scores[:2] == first.scores
 
 
-def test_failures_are_recorded_and_not_thrown_again(drawn: Path, oracle: Any) -> None:
+def test_failures_are_recorded_and_not_repeated(drawn: Path, oracle: Any) -> None:
     proof = run(Folders(drawn), oracle)
-    assert oracle.handed == []
+    assert oracle.recordings == []
     assert len(proof.failures) == 3
     assert all(s.error is not None and "no diagnosis" in s.error for s in proof.scores)
     assert json.loads((drawn / "proof.json").read_text())["failed"] == 3
 
 
-def test_a_changed_answer_breaks_the_seal(undiagnosed: Folders, oracle: Any) -> None:
+@pytest.mark.usefixtures("no_page")
+def test_a_changed_answer_is_refused(undiagnosed: Folders, oracle: Any) -> None:
     run(undiagnosed, oracle)
     (undiagnosed.root / "sealed").unlink()
     for key in ("0000", "0001", "0002"):
         undiagnosed.sealed(key).parent.mkdir(exist_ok=True)
         undiagnosed.sealed(key).write_text("{}")
-    with pytest.raises(BrokenSealError, match="was changed"):
+    with pytest.raises(ChangedAnswerError, match="was changed"):
         run(undiagnosed, oracle)
 
 
+@pytest.mark.usefixtures("no_page")
 def test_another_seed_does_not_go_on_in_the_folder(undiagnosed: Folders, oracle: Any) -> None:
     with pytest.raises(TirelabError, match="holds the trials of seed 31"):
-        prove(Series(undiagnosed, SEED + 1, 3, None, oracle), HERE, lambda line: None)
+        prove(BlindTrials(undiagnosed, SEED + 1, 3, None, oracle), HERE, lambda line: None)
 
 
+@pytest.mark.usefixtures("no_page")
 def test_a_verdict_that_breaks_the_contract_is_a_failure(undiagnosed: Folders) -> None:
     def half(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
         (out / "diagnosis.json").write_text('{"schema": 1}')
@@ -130,15 +171,16 @@ def test_a_verdict_that_breaks_the_contract_is_a_failure(undiagnosed: Folders) -
     assert "is no diagnosis" in str(proof.failures[0].error)
 
 
-def test_the_suggested_test_is_run_and_diagnosed_along(
+@pytest.mark.usefixtures("no_page")
+def test_the_recommended_test_is_run_and_diagnosed_with_the_others(
     undiagnosed: Folders, diagnosis: Callable[..., None]
 ) -> None:
-    handed: list[list[str]] = []
+    got: list[list[str]] = []
 
     def in_doubt(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
-        handed.append([path.name for path in recordings])
+        got.append([path.name for path in recordings])
         true = json.loads((out.parents[1] / "sealed" / f"{out.name}.json").read_text())["right"][0]
-        if "test.csv" in handed[-1]:
+        if "test.csv" in got[-1]:
             diagnosis(out, true)
             return
         time = np.arange(200) * 0.01
@@ -149,16 +191,15 @@ def test_the_suggested_test_is_run_and_diagnosed_along(
         diagnosis(out, ["warm_up"], alternatives=[true], separating_test=test)
 
     (found,) = run(undiagnosed, in_doubt, trials=1).scores
-    assert handed[1] == [*handed[0], "test.csv"]
-    assert found.separation is not None
-    assert (found.separation.rivals, found.separation.outcome) == (2, "told right")
+    assert got[1] == [*got[0], "test.csv"]
+    assert found.discrimination is not None
+    assert (found.discrimination.alternatives, found.discrimination.outcome) == (2, "decided rightly")
     assert found.among
     assert not found.exact
 
 
-def test_a_test_that_the_rig_refuses_is_a_failed_separation(
-    undiagnosed: Folders, diagnosis: Callable[..., None]
-) -> None:
+@pytest.mark.usefixtures("no_page")
+def test_a_test_that_the_rig_refuses_has_failed(undiagnosed: Folders, diagnosis: Callable[..., None]) -> None:
     def uneven(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
         (out / "t.csv").write_text(
             "time [s],deflection [m],radius [m]\n" + "".join(f"{i**2},0.01,inf\n" for i in range(9))
@@ -166,8 +207,8 @@ def test_a_test_that_the_rig_refuses_is_a_failed_separation(
         diagnosis(out, ["warm_up"], alternatives=[["inertia"]], separating_test={"file": "t.csv"})
 
     (found,) = run(undiagnosed, uneven, trials=1).scores
-    assert found.separation is not None
-    assert found.separation.outcome == "failed"
+    assert found.discrimination is not None
+    assert found.discrimination.outcome == "failed"
 
 
 def test_a_test_file_may_have_its_own_units(tmp_path: Path) -> None:
@@ -204,7 +245,7 @@ class Loaded(HTMLParser):
         ]
 
 
-def test_the_page_loads_nothing_and_escapes_what_it_tells(drawn: Path) -> None:
+def test_the_page_loads_nothing_and_escapes_its_text(drawn: Path) -> None:
     text = (drawn / "proof.html").read_text(encoding="utf-8")
     loaded = Loaded()
     loaded.feed(text)
@@ -213,22 +254,31 @@ def test_the_page_loads_nothing_and_escapes_what_it_tells(drawn: Path) -> None:
     assert "&lt;script&gt;" in text
 
 
-def test_the_page_of_a_full_series_has_every_part(undiagnosed: Folders, oracle: Any) -> None:
-    text = page(run(undiagnosed, oracle))
-    assert (undiagnosed.root / "proof.png").read_bytes().startswith(b"\x89PNG")
-    for part in ("Against the bar", "What was taken for what", "honest", "Every trial"):
-        assert part in text
+def test_the_page_of_a_full_run_has_every_part(oracle_run: Run) -> None:
+    text = page(oracle_run.proof)
+    assert (oracle_run.folders.root / "proof.png").read_bytes().startswith(b"\x89PNG")
+    for part in (
+        "Acceptance criteria",
+        "Confusion matrix",
+        "Calibration of the stated confidence",
+        "Every trial",
+    ):
+        assert f"{part}</" in text
     assert text.count("<svg") == 4
+    # an oracle: three of three exact, Wilson's interval of 3/3 from its closed form n / (n + z^2)
+    assert "100.0 % (3 of 3)" in text
+    assert f"{100.0 * 3.0 / (3.0 + 1.959964**2):.1f} to 100.0 %" in text
 
 
-def test_a_trial_without_a_corrected_tire_keeps_the_believed_one(undiagnosed: Folders, oracle: Any) -> None:
-    for s in run(undiagnosed, oracle).scores:
+def test_a_trial_without_a_corrected_tire_keeps_the_baseline(oracle_run: Run) -> None:
+    for s in oracle_run.proof.scores:
         assert s.held_out is not None
         for errors in (s.held_out.alike, s.held_out.other):
             assert errors.after == errors.before
         assert s.held_out.fmu_difference is None
 
 
+@pytest.mark.usefixtures("no_page")
 def test_the_corrected_fmu_is_run_on_held_out_samples(
     undiagnosed: Folders, diagnosis: Callable[..., None]
 ) -> None:
@@ -246,3 +296,65 @@ def test_the_corrected_fmu_is_run_on_held_out_samples(
     assert found.held_out is not None
     assert found.held_out.fmu_difference is not None
     assert found.held_out.fmu_difference < 1e-9
+
+
+@pytest.mark.usefixtures("no_page")
+def test_a_corrected_tire_that_cannot_be_used_is_a_failure(
+    undiagnosed: Folders, diagnosis: Callable[..., None]
+) -> None:
+    def lost(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
+        diagnosis(out, ["none"], tire="lost.json")
+
+    (failed,) = run(undiagnosed, lost, trials=1).failures
+    assert failed.held_out is None
+    assert "its corrected tire fails on held-out recordings" in str(failed.error)
+    assert "lost.json" in str(failed.error)
+
+
+def test_a_folder_of_another_version_is_not_continued(undiagnosed: Folders, oracle: Any) -> None:
+    settings = undiagnosed.root / "settings.json"
+    settings.write_text(json.dumps({**json.loads(settings.read_text()), "schema": 2}))
+    with pytest.raises(TirelabError, match="another version of this rig; name another folder"):
+        run(undiagnosed, oracle)
+    assert oracle.recordings == []
+
+
+def test_a_trial_that_cannot_be_drawn_stops_the_proof(
+    tmp_path: Path, oracle: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def undrawable(*_: Any) -> str:
+        raise RuntimeError("no luck")
+
+    monkeypatch.setattr(blind_trials, "draw_and_commit", undrawable)
+    with pytest.raises(TirelabError, match="trial 0000 cannot be drawn: RuntimeError: no luck"):
+        run(Folders(tmp_path), oracle, trials=1)
+
+
+def test_a_trial_that_cannot_be_scored_stops_the_proof(undiagnosed: Folders, oracle: Any) -> None:
+    run_once = undiagnosed.outcome("0000")
+    run_once.parent.mkdir()
+    run_once.write_text("{")
+    with pytest.raises(TirelabError, match=r"outcomes.0000\.json: cannot be read .* remove the file"):
+        run(undiagnosed, oracle, trials=1)
+
+
+def test_an_answer_that_is_gone_is_refused(undiagnosed: Folders) -> None:
+    with pytest.raises(ChangedAnswerError, match=r"0009\.json: No such file.*start the proof again"):
+        opened(undiagnosed, "0009", "0" * 64)
+
+
+def test_a_file_that_holds_no_object_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "list.json").write_text("[1]")
+    with pytest.raises(TirelabError, match=r"list\.json: is no object"):
+        read_json(tmp_path / "list.json")
+
+
+def test_a_test_file_that_is_gone_is_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(TirelabError, match=r"gone\.csv: no test can be read"):
+        read_test(tmp_path / "gone.csv")
+
+
+def test_a_column_that_is_no_channel_of_a_test_is_ignored(tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text("time [s],deflection [m],radius [m],note\n0,0.01,inf,a\n1,0.02,inf,b\n")
+    assert read_test(path)[1].tolist() == [0.01, 0.02]

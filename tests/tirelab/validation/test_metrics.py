@@ -1,4 +1,4 @@
-"""Figures of a proof from scores made by hand; intervals from a published table."""
+"""Statistics of scores made by hand; intervals from a published table."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import pytest
 from tirelab.validation import metrics as summary
-from tirelab.validation.acceptance_criteria import against_the_bar
+from tirelab.validation.acceptance_criteria import criteria
 from tirelab.validation.held_out import Errors, HeldOut
 from tirelab.validation.metrics import NO_NAME, Mean, Rate
-from tirelab.validation.overlap import PlaceScore
-from tirelab.validation.score import Score, Separation
+from tirelab.validation.overlap import RegionScore
+from tirelab.validation.score import Discrimination, Score
 
 Make = Callable[..., Score]
 
@@ -31,13 +31,13 @@ def test_without_trials_a_rate_says_nothing() -> None:
 
 
 def test_brier_score_of_a_coin_that_says_half_is_a_quarter(score: Make) -> None:
-    scores = [score("single", "lag", said, confidence=0.5) for said in ("lag", "inertia", None)]
+    scores = [score("single", "lag", named, confidence=0.5) for named in ("lag", "inertia", None)]
     found = summary.brier(scores)
     assert found.value == pytest.approx(0.25)
     assert found.trials == 2
 
 
-def test_brier_score_of_honest_confidence_is_its_variance(score: Make) -> None:
+def test_brier_score_of_calibrated_confidence_is_its_variance(score: Make) -> None:
     # right in eight of ten and says so: p (1 - p)
     scores = [score("single", "lag", "lag" if i < 8 else "inertia", confidence=0.8) for i in range(10)]
     assert summary.brier(scores).value == pytest.approx(0.16)
@@ -63,7 +63,7 @@ def test_rates_take_the_trials_they_are_about(score: Make) -> None:
     assert summary.exact(scores) == Rate(1, 5)
 
 
-FAR = Errors(before=9.0, after=9.0, cleared=9.0, floor=1.0, read_floor=1.0)
+FAR = Errors(before=9.0, after=9.0, noise_free=9.0, noise_floor=1.0, reading_noise_floor=1.0)
 """A correction that does nothing."""
 
 
@@ -81,7 +81,7 @@ def test_near_the_floor_is_ten_percent_inside_the_catalogue(score: Make) -> None
     assert summary.near_floor(scores, 0.10, alike=False) == Rate(0, 3)
 
 
-def test_confusion_shares_a_missing_name_among_those_too_many(score: Make) -> None:
+def test_confusion_shares_a_missed_effect_among_the_wrong_names(score: Make) -> None:
     scores = [
         score("single", "lag", "lag"),
         score("single", "lag", "inertia friction"),
@@ -117,37 +117,37 @@ def test_reliability_has_every_verdict_in_one_class(score: Make) -> None:
     assert [p.rate.trials for p in points] == [2, 1, 1]
 
 
-def test_places_and_separations_are_counted(score: Make) -> None:
+def test_regions_and_recommended_tests_are_counted(score: Make) -> None:
     scores = [
         score(
             "single",
             "lag",
             "lag",
-            places=(PlaceScore("lag", "time", overlap),),
-            separation=Separation(2, overlap > 0.5, "told right"),
+            regions=(RegionScore("lag", "time", overlap),),
+            discrimination=Discrimination(2, overlap > 0.5, "decided rightly"),
         )
         for overlap in (0.2, 0.6, 1.0)
     ]
-    (place,) = summary.places(scores)
-    assert (place.median, place.half) == (0.6, Rate(2, 3))
-    assert summary.separations(scores)["truth among the rivals"] == Rate(2, 3)
-    assert summary.separations(scores)["told right, truth among the rivals"] == Rate(2, 2)
+    (region,) = summary.regions(scores)
+    assert (region.median, region.half) == (0.6, Rate(2, 3))
+    assert summary.discriminations(scores)["truth among the alternatives"] == Rate(2, 3)
+    assert summary.discriminations(scores)["of these: decided rightly"] == Rate(2, 2)
 
 
-def test_the_noise_of_the_reading_is_told_apart_from_the_error_of_the_model(score: Make) -> None:
-    noisy = Errors(before=9.0, after=2.5, cleared=1.05, floor=1.0, read_floor=2.0)
+def test_the_noise_of_the_reading_is_separated_from_the_error_of_the_model(score: Make) -> None:
+    noisy = Errors(before=9.0, after=2.5, noise_free=1.05, noise_floor=1.0, reading_noise_floor=2.0)
     found = [score("single", "lag", "lag", held_out=HeldOut(noisy, FAR, None))]
     assert summary.near_floor(found, 0.1, alike=True).hits == 0
-    assert summary.near_floor(found, 0.1, alike=True, cleared=True).hits == 1
-    as_good_as_the_truth = replace(noisy, read_floor=2.3)
+    assert summary.near_floor(found, 0.1, alike=True, noise_free=True).hits == 1
+    as_good_as_the_truth = replace(noisy, reading_noise_floor=2.3)
     found = [score("single", "lag", "lag", held_out=HeldOut(as_good_as_the_truth, FAR, None))]
     assert summary.near_floor(found, 0.1, alike=True).hits == 1
 
 
-def test_the_bar_is_met_or_not_or_not_measured(score: Make) -> None:
-    at_floor = Errors(before=2.0, after=1.0, cleared=1.0, floor=1.0, read_floor=1.0)
-    floor = HeldOut(at_floor, at_floor, None)
-    lines = against_the_bar([score("single", "lag", "lag", confidence=1.0, held_out=floor)] * 9)
-    assert [line.passes for line in lines] == [True, True, None, None, True, True, True, True, True]
-    lines = against_the_bar([score("single", "lag", "gas", confidence=1.0)] * 9)
-    assert [line.passes for line in lines] == [False, False, None, None, False, False, False, False, False]
+def test_a_criterion_passes_or_fails_or_is_not_measured(score: Make) -> None:
+    at_floor = Errors(before=2.0, after=1.0, noise_free=1.0, noise_floor=1.0, reading_noise_floor=1.0)
+    at_both = HeldOut(at_floor, at_floor, None)
+    found = criteria([score("single", "lag", "lag", confidence=1.0, held_out=at_both)] * 9)
+    assert [c.passes for c in found] == [True, True, None, None, True, True, True, True, True]
+    found = criteria([score("single", "lag", "gas", confidence=1.0)] * 9)
+    assert [c.passes for c in found] == [False, False, None, None, False, False, False, False, False]

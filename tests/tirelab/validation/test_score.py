@@ -1,4 +1,4 @@
-"""What counts as exact, as among the rivals, as a false alarm."""
+"""What counts as exact, as among the alternatives, as a false alarm."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from tirelab.diagnosis.diagnosis_file import Stated, read_stated
 from tirelab.validation.held_out import Errors, HeldOut
-from tirelab.validation.overlap import PlaceScore
-from tirelab.validation.score import Score, Separation, separation
+from tirelab.validation.overlap import RegionScore
+from tirelab.validation.score import Discrimination, Score, discrimination
 
 Make = Callable[..., Score]
 
@@ -19,8 +19,8 @@ def test_any_right_set_is_exact(score: Make) -> None:
     assert not score("single", "friction", "friction damping", also_right=["damping"]).exact
 
 
-def test_a_rival_that_is_right_counts_as_among(score: Make) -> None:
-    found = score("single", "friction", "damping", rivals=["friction"])
+def test_an_alternative_that_is_right_counts_as_among(score: Make) -> None:
+    found = score("single", "friction", "damping", alternatives=["friction"])
     assert not found.exact
     assert found.among
 
@@ -61,21 +61,24 @@ def test_a_score_is_the_same_after_a_file(score: Make) -> None:
         "single",
         "friction",
         "damping",
-        rivals=["friction lag"],
+        alternatives=["friction lag"],
         sizes={"friction": 2.5},
-        places=(PlaceScore("friction", "time", 0.5),),
+        regions=(RegionScore("friction", "time", 0.5),),
         held_out=HeldOut(Errors(3.0, 1.1, 1.0, 0.9, 1.0), Errors(4.0, 1.2, 1.1, 1.0, 1.1), 1e-12),
-        separation=Separation(2, True, "told right"),
+        discrimination=Discrimination(2, True, "decided rightly"),
     )
     assert Score.from_json(found.to_json()) == found
 
 
 @pytest.fixture
 def stated(tmp_path: Path, diagnosis: Callable[..., None]) -> Callable[..., Stated]:
-    def make(names: str, *rivals: str, test: str | None = "test.csv") -> Stated:
-        suggested = None if test is None else {"file": test}
+    def make(names: str, *alternatives: str, test: str | None = "test.csv") -> Stated:
+        recommended = None if test is None else {"file": test}
         diagnosis(
-            tmp_path, names.split(), alternatives=[r.split() for r in rivals], separating_test=suggested
+            tmp_path,
+            names.split(),
+            alternatives=[other.split() for other in alternatives],
+            separating_test=recommended,
         )
         return read_stated(tmp_path)
 
@@ -85,23 +88,23 @@ def stated(tmp_path: Path, diagnosis: Callable[..., None]) -> Callable[..., Stat
 @pytest.mark.parametrize(
     ("second", "outcome"),
     [
-        (("friction",), "told right"),
-        (("friction", "lag"), "told right"),
-        (("damping",), "told wrong"),
-        (("friction", "damping"), "still rivals"),
+        (("friction",), "decided rightly"),
+        (("friction", "lag"), "decided rightly"),
+        (("damping",), "decided wrongly"),
+        (("friction", "damping"), "undecided"),
     ],
 )
-def test_rivals_are_told_apart_when_one_is_left(
+def test_a_recommended_test_decides_where_one_set_is_left(
     stated: Callable[..., Stated], second: tuple[str, ...], outcome: str
 ) -> None:
     first = stated("damping", "friction")
-    found = separation([frozenset({"friction"})], first, stated(*second))
-    assert found == Separation(2, True, outcome)  # type: ignore[arg-type]
+    found = discrimination([frozenset({"friction"})], first, stated(*second))
+    assert found == Discrimination(2, True, outcome)  # type: ignore[arg-type]
 
 
-def test_no_second_diagnosis_tells_nothing(stated: Callable[..., Stated]) -> None:
-    untested = separation([frozenset({"lag"})], stated("damping", "lag", test=None), None)
-    assert untested == Separation(2, True, "no test")
-    assert separation([frozenset({"lag"})], stated("damping", "friction"), None) == Separation(
+def test_without_a_second_diagnosis_nothing_is_decided(stated: Callable[..., Stated]) -> None:
+    untested = discrimination([frozenset({"lag"})], stated("damping", "lag", test=None), None)
+    assert untested == Discrimination(2, True, "no test")
+    assert discrimination([frozenset({"lag"})], stated("damping", "friction"), None) == Discrimination(
         2, False, "failed"
     )

@@ -1,4 +1,4 @@
-"""Nothing that diagnoses may know the rig."""
+"""No module of the diagnosis may know the rig."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def importers(root: Path) -> set[str]:
     }
 
 
-def test_only_the_proof_imports_the_rig(repository: Path) -> None:
+def test_only_the_blind_trials_import_the_rig(repository: Path) -> None:
     root = repository / "fmu_src"
     found = {name for name in importers(root) if not name.startswith("concealed/")}
     assert found
     assert all(name.startswith("tirelab/validation/") for name in found), found
 
 
-def test_nothing_but_its_command_imports_the_proof(repository: Path) -> None:
+def test_only_their_command_imports_the_blind_trials(repository: Path) -> None:
     root = repository / "fmu_src" / "tirelab"
     found = set()
     for source in root.rglob("*.py"):

@@ -1,0 +1,46 @@
+"""The table of acceptance criteria as a terminal shows it."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+
+from rich.console import Console
+from tirelab.validation.page import Proof
+from tirelab.validation.score import Score
+from tirelab.validation.terminal import criteria_table
+
+Make = Callable[..., Score]
+
+
+def lines_of(proof: Proof) -> list[str]:
+    text = io.StringIO()
+    Console(file=text, width=150, color_system=None).print(criteria_table(proof))
+    return text.getvalue().splitlines()
+
+
+def line_with(lines: list[str], figure: str) -> str:
+    (found,) = [line for line in lines if figure in line]
+    return found
+
+
+def test_every_criterion_is_a_line_with_its_limit_and_result(score: Make) -> None:
+    nine_right = [score("single", "lag", "lag", confidence=1.0) for _ in range(9)]
+    lines = lines_of(Proof(7, (*nine_right, score("none", "none", "gas", confidence=0.5))))
+    assert "10 blind trials, seed 7" in lines[0]
+    exact = line_with(lines, "exact set named")
+    assert "90.0 % (9 of 10)" in exact
+    assert ">= 0.9" in exact
+    assert exact.rstrip(" │").endswith("pass")
+    alarms = line_with(lines, "false alarms")
+    assert "100.0 % (1 of 1)" in alarms
+    assert "<= 0.02" in alarms
+    assert alarms.rstrip(" │").endswith("fail")
+    # nine confident and right, one alarm at half confidence: 0.25 / 10
+    assert "0.025" in line_with(lines, "Brier")
+
+
+def test_what_no_trial_measured_has_neither_passed_nor_failed(score: Make) -> None:
+    unknown = line_with(lines_of(Proof(7, (score("single", "lag", "lag"),))), "unknown recognised")
+    assert "no trial" in unknown
+    assert unknown.rstrip(" │").endswith("not measured")
