@@ -1,1 +1,1 @@
-"""One diagnosis for each of many recordings, on all cores."""
+"""Batch diagnosis: one verdict for each of many recordings, on all cores."""

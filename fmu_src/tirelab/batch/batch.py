@@ -1,10 +1,10 @@
-"""A whole shelf of recordings: one verdict for every recording or folder of them, and a summary of all.
+"""Batch diagnosis: one verdict for every recording or folder of recordings, and a summary of all.
 
-    OUT/verdicts/NAME/      what `tirelab diagnose` writes for one of them (a/b as a~b)
-    OUT/outcomes/NAME.json  how that ended
+    OUT/verdicts/NAME/      what the diagnosis writes for one of them (a/b as a~b)
+    OUT/outcomes/NAME.json  how the diagnosis ended
     OUT/summary.csv, OUT/summary.html
 
-Started again, only what is new, changed or crashed is diagnosed.
+A second run diagnoses only what is new, changed or crashed.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import hashlib
 import json
 import shutil
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,63 +24,74 @@ from ..errors import TirelabError
 from ..recordings.formats import LOADERS
 from ..recordings.metadata import FOLDER_SIDECAR
 from ..recordings.reading import Reading
-from .summary import EachResult, Item, Row, in_words, summary_csv, summary_html
+from .summary import BatchResult, Item, Row, summary_csv, summary_html, verdict_text
 from .workers import Cores, work
 
-SCHEMA = 1
+OUTCOME_SCHEMA = 1
 
 
-def diagnose_each(
-    places: Sequence[Path],
-    out: Path,
-    *,
-    tire: Path | None = None,
-    cores: Cores | None = None,
-    reading: Reading = Reading(),  # noqa: B008
-    diagnoser: Diagnoser | None = None,
-    tell: Callable[[str], None] = print,
-) -> EachResult:
-    """Diagnose everything in `places` and write the summary to `out`.
+@dataclass(frozen=True)
+class Batch:
+    """What is diagnosed, and how.
 
-    places: a file gets a verdict of its own; so does every recording that lies directly in a folder given; the
+    paths: a file gets a verdict of its own; so does every recording that lies directly in a folder given; the
     recordings of each folder below are diagnosed together
-    tire: file of the baseline tire, None for the article's; reading: how the recordings are read
-    diagnoser: what stands for that command; tell: is handed one line for each item that is done
+    out: folder of all results; tire: file of the baseline tire, None for the article's; reading: how the recordings
+    are read; diagnoser: diagnoses one item, None for `run_diagnosis`
+    """
 
-    A recording that cannot be read or diagnosed is a line of the summary and stops nothing.
+    paths: tuple[Path, ...]
+    out: Path
+    tire: Path | None = None
+    reading: Reading = Reading()  # noqa: RUF009
+    diagnoser: Diagnoser | None = None
+
+
+def diagnose_batch(batch: Batch, cores: Cores, show: Callable[[str], None]) -> BatchResult:
+    """Diagnose every item of a batch that is not done yet, and write the summary of all.
+
+    show: called with one line for each item that is done
+
+    A recording that cannot be read or diagnosed becomes a line of the summary; the others go on.
     Raises TirelabError where there is nothing to diagnose or `out` cannot be written.
     """
-    items, passed_over = find_items(places, out)
-    mark = _mark(tire, reading)
+    out = batch.out
+    items, skipped = find_items(batch.paths, out)
+    settings_hash = _settings_hash(batch)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise TirelabError(f"{out}: cannot be written ({error.strerror}); name another with --out") from None
+    diagnoser = batch.diagnoser or partial(_diagnosed, batch.reading)
     tasks = {
-        item.name: (diagnoser, item.recordings, tire, _verdict(out, item), reading)
+        item.name: (diagnoser, item.recordings, batch.tire, _verdict_folder(out, item))
         for item in items
-        if not _is_done(out, item, mark)
+        if not _is_done(out, item, settings_hash)
     }
     by_name = {item.name: item for item in items}
-    for done in work(diagnose_one, tasks, cores or Cores(), "diagnosing"):
+    for done in work(diagnose_one, tasks, cores, "diagnosing"):
         outcome = done.value or {"error": done.error, "settled": False}
         item = by_name[done.key]
-        content = {"schema": SCHEMA, **outcome, "fingerprint": _fingerprint(item.recordings, mark)}
-        path = _outcome(out, item)
+        content = {
+            "schema": OUTCOME_SCHEMA,
+            **outcome,
+            "fingerprint": _fingerprint(item.recordings, settings_hash),
+        }
+        path = _outcome_file(out, item)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        tell(f"{done.key}: {outcome['error'] or in_words(read_stated(_verdict(out, item)))}")
-    result = EachResult(tuple(_row(out, item) for item in items), passed_over)
-    # with a byte order mark, or Excel takes it for another alphabet
+        show(f"{done.key}: {outcome['error'] or verdict_text(read_stated(_verdict_folder(out, item)))}")
+    result = BatchResult(tuple(_row(out, item) for item in items), skipped)
+    # with a byte order mark, or Excel reads it in another encoding
     (out / "summary.csv").write_text(summary_csv(result, out), encoding="utf-8-sig", newline="")
     (out / "summary.html").write_text(summary_html(result, out), encoding="utf-8")
     return result
 
 
-def find_items(places: Sequence[Path], out: Path) -> tuple[tuple[Item, ...], tuple[Path, ...]]:
-    """Return what gets a verdict, and the files that are no recordings by their suffix; what lies in `out` is left."""
+def find_items(paths: Sequence[Path], out: Path) -> tuple[tuple[Item, ...], tuple[Path, ...]]:
+    """Return the items that get a verdict, and the files skipped for their suffix; what lies in `out` is ignored."""
     found: dict[str, Item] = {}
-    passed_over: list[Path] = []
+    skipped: list[Path] = []
 
     def add(name: str, recordings: Sequence[Path]) -> None:
         unique, number = name, 2
@@ -86,47 +99,43 @@ def find_items(places: Sequence[Path], out: Path) -> tuple[tuple[Item, ...], tup
             unique, number = f"{name}-{number}", number + 1
         found[item.folder] = item
 
-    for place in places:
-        if not place.exists():
-            raise TirelabError(f"{place}: there is no such file or folder; check the path")
-        if place.is_file():
-            add(place.stem, [place])
+    for path in paths:
+        if not path.exists():
+            raise TirelabError(f"{path}: there is no such file or folder; check the path")
+        if path.is_file():
+            add(path.stem, [path])
             continue
-        top = place.resolve().name or "recordings"
-        for folder in sorted({place, *(p for p in place.rglob("*") if p.is_dir())}):
-            if _is_hidden(folder, place) or out.resolve() in (folder.resolve(), *folder.resolve().parents):
+        top = path.resolve().name or "recordings"
+        for folder in sorted({path, *(p for p in path.rglob("*") if p.is_dir())}):
+            if _is_hidden(folder, path) or out.resolve() in (folder.resolve(), *folder.resolve().parents):
                 continue
             files = sorted(p for p in folder.iterdir() if p.is_file() and not p.name.startswith("."))
             recordings = [p for p in files if p.suffix.lower() in LOADERS]
-            passed_over += [
+            skipped += [
                 p for p in files if p not in recordings and p.name != FOLDER_SIDECAR and p.suffix != ".toml"
             ]
-            if folder == place:
+            if folder == path:
                 for file in recordings:
                     add(f"{top}/{file.stem}", [file])
             elif recordings:
-                add(f"{top}/{folder.relative_to(place).as_posix()}", recordings)
+                add(f"{top}/{folder.relative_to(path).as_posix()}", recordings)
     if not found:
-        named = ", ".join(str(place) for place in places)
+        named = ", ".join(str(path) for path in paths)
         raise TirelabError(f"{named}: holds no recording; recordings end in {', '.join(LOADERS)}")
-    return tuple(found.values()), tuple(passed_over)
+    return tuple(found.values()), tuple(skipped)
 
 
 def diagnose_one(
-    diagnoser: Diagnoser | None,
-    recordings: Sequence[Path],
-    tire: Path | None,
-    out: Path,
-    reading: Reading,
+    diagnoser: Diagnoser, recordings: Sequence[Path], tire: Path | None, out: Path
 ) -> dict[str, Any]:
-    """Diagnose one item, and return the sentence of its error or None, and whether trying again would change it."""
+    """Diagnose one item, and return the sentence of its error or None, and whether the outcome is final.
+
+    An outcome is not final where the program itself failed: the next run tries again.
+    """
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     try:
-        if diagnoser is None:
-            run_diagnosis(recordings, out, tire=tire, reading=reading)
-        else:
-            diagnoser(recordings, tire, out)
+        diagnoser(recordings, tire, out)
         read_stated(out)
     except DiagnosisFileError as error:
         return {"error": str(error), "settled": False}
@@ -137,49 +146,55 @@ def diagnose_one(
     return {"error": None, "settled": True}
 
 
-def _is_hidden(folder: Path, place: Path) -> bool:
-    return any(part.startswith(".") for part in folder.relative_to(place).parts)
+def _diagnosed(reading: Reading, recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
+    run_diagnosis(recordings, out, tire=tire, reading=reading)
 
 
-def _mark(tire: Path | None, reading: Reading) -> str:
-    """What beside the recordings decides a verdict."""
+def _is_hidden(folder: Path, path: Path) -> bool:
+    return any(part.startswith(".") for part in folder.relative_to(path).parts)
+
+
+def _settings_hash(batch: Batch) -> str:
+    """SHA-256 of what decides a verdict beside the recordings: the baseline tire and how recordings are read."""
     try:
-        content = b"" if tire is None else tire.read_bytes()
+        content = b"" if batch.tire is None else batch.tire.read_bytes()
     except OSError as error:
-        raise TirelabError(f"{tire}: {error.strerror}; name a tire file that can be read") from None
-    return hashlib.sha256(content + "\0".join(reading.words()).encode()).hexdigest()
+        raise TirelabError(f"{batch.tire}: {error.strerror}; name a tire file that can be read") from None
+    return hashlib.sha256(content + "\0".join(batch.reading.words()).encode()).hexdigest()
 
 
-def _fingerprint(recordings: Sequence[Path], mark: str) -> list[Any]:
+def _fingerprint(recordings: Sequence[Path], settings_hash: str) -> list[Any]:
     files = []
-    settings = {
+    sidecars = {
         p for r in recordings for p in (r.with_name(FOLDER_SIDECAR), r.with_suffix(".toml")) if p.exists()
     }
-    for path in (*recordings, *sorted(settings)):
+    for path in (*recordings, *sorted(sidecars)):
         at = path.stat()
         files.append([str(path.resolve()), at.st_size, at.st_mtime_ns])
-    return [mark, files]
+    return [settings_hash, files]
 
 
-def _outcome(out: Path, item: Item) -> Path:
+def _outcome_file(out: Path, item: Item) -> Path:
     return out / "outcomes" / f"{item.folder}.json"
 
 
-def _verdict(out: Path, item: Item) -> Path:
+def _verdict_folder(out: Path, item: Item) -> Path:
     return out / "verdicts" / item.folder
 
 
-def _is_done(out: Path, item: Item, mark: str) -> bool:
+def _is_done(out: Path, item: Item, settings_hash: str) -> bool:
     try:
-        content = json.loads(_outcome(out, item).read_text(encoding="utf-8"))
-        same = bool(content["settled"] and content["fingerprint"] == _fingerprint(item.recordings, mark))
+        content = json.loads(_outcome_file(out, item).read_text(encoding="utf-8"))
+        same = bool(
+            content["settled"] and content["fingerprint"] == _fingerprint(item.recordings, settings_hash)
+        )
         if same and content["error"] is None:
-            read_stated(_verdict(out, item))
+            read_stated(_verdict_folder(out, item))
     except (OSError, ValueError, KeyError, TypeError):
         return False
     return same
 
 
 def _row(out: Path, item: Item) -> Row:
-    error = json.loads(_outcome(out, item).read_text(encoding="utf-8"))["error"]
-    return Row(item, None if error else read_stated(_verdict(out, item)), error)
+    error = json.loads(_outcome_file(out, item).read_text(encoding="utf-8"))["error"]
+    return Row(item, None if error else read_stated(_verdict_folder(out, item)), error)

@@ -1,4 +1,4 @@
-"""The summary of many verdicts: what is missing where, how often, how sure; as CSV and as a page."""
+"""The summary of many verdicts as CSV, as a page and as a table: what is missing, where, how often, how surely."""
 
 from __future__ import annotations
 
@@ -13,52 +13,52 @@ from urllib.parse import quote
 import jinja2
 from rich.table import Table
 
-from ..diagnosis.diagnosis_file import NOTHING, Names, Stated
+from ..diagnosis.diagnosis_file import NOTHING, Names, Stated, StatedPlace
 
 HEADINGS = (
     "name",
     "missing",
     "unexplained",
     "confidence",
-    "rivals",
+    "alternatives",
     "noise [N]",
     "before [N]",
     "after [N]",
-    "most of it in",
+    "largest part in",
 )
-"""What the summary tells of every verdict."""
+"""Columns of the summary for every verdict."""
 
 
 @dataclass(frozen=True)
 class Item:
-    """What gets one verdict: its name, and the recordings that are diagnosed together."""
+    """One item of a batch: its name, and the recordings that are diagnosed together."""
 
     name: str
     recordings: tuple[Path, ...]
 
     @property
     def folder(self) -> str:
-        """Name of its folder, one level deep whatever the name."""
+        """Name of its folder; a name with slashes gives one level too."""
         return self.name.replace("/", "~")
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the summary: the verdict, or the sentence why there is none."""
+    """One row of the summary: the verdict, or the sentence why there is none."""
 
     item: Item
-    stated: Stated | None
+    verdict: Stated | None
     error: str | None
 
     @property
     def names(self) -> Names:
         """What is missing; {"none"} where nothing is, empty where there is no verdict."""
-        return frozenset() if self.stated is None else self.stated.names
+        return frozenset() if self.verdict is None else self.verdict.names
 
 
 @dataclass(frozen=True)
 class Count:
-    """How often something is missing, and how sure the verdicts are that name it (mean confidence)."""
+    """How often an effect is missing, the mean confidence of the verdicts that name it, and the items."""
 
     name: str
     times: int
@@ -67,16 +67,16 @@ class Count:
 
 
 @dataclass(frozen=True)
-class EachResult:
-    """All verdicts, and the files passed over because no recording ends like that."""
+class BatchResult:
+    """All verdicts, and the files skipped because their suffix is not that of a recording."""
 
     rows: tuple[Row, ...]
-    passed_over: tuple[Path, ...]
+    skipped: tuple[Path, ...]
 
     @property
     def failures(self) -> tuple[Row, ...]:
-        """The lines without a verdict."""
-        return tuple(row for row in self.rows if row.stated is None)
+        """The rows without a verdict."""
+        return tuple(row for row in self.rows if row.verdict is None)
 
     @property
     def counts(self) -> tuple[Count, ...]:
@@ -84,42 +84,42 @@ class EachResult:
         times = Counter(name for row in self.rows for name in row.names)
         found = []
         for name, count in sorted(times.items(), key=lambda item: (-item[1], item[0])):
-            of = [row for row in self.rows if name in row.names and row.stated is not None]
-            sure = sum(row.stated.confidence for row in of if row.stated is not None) / count
-            found.append(Count(name, count, sure, tuple(row.item.name for row in of)))
+            rows = [row for row in self.rows if name in row.names]
+            confidence = sum(row.verdict.confidence for row in rows if row.verdict is not None) / count
+            found.append(Count(name, count, confidence, tuple(row.item.name for row in rows)))
         return tuple(found)
 
 
-def summary_csv(result: EachResult, out: Path) -> str:
+def summary_csv(result: BatchResult, out: Path) -> str:
     """Return the summary as CSV, one line for each item; forces in N."""
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\r\n")
     lines.writerow([*HEADINGS, "recordings", "report", "error"])
     for row in result.rows:
-        s = row.stated
+        s = row.verdict
         known: list[object] = [""] * (len(HEADINGS) - 1)
         if s is not None:
             known = [_words(s.names), "yes" if s.unexplained else "no", f"{s.confidence:.3f}"]
             known += ["; ".join(_words(names) for names in s.alternatives)]
             known += [_number(s.fit.get(name)) for name in ("noise", "before", "after")]
-            known += [_place(s)]
+            known += [_region(s)]
         files = "; ".join(str(path) for path in row.item.recordings)
         lines.writerow([_safe(v) for v in (row.item.name, *known, files, _report(row, out), row.error or "")])
     return text.getvalue()
 
 
-def summary_html(result: EachResult, out: Path) -> str:
-    """Return the summary as one page: what is missing how often and how sure, then every item; all text escaped."""
+def summary_html(result: BatchResult, out: Path) -> str:
+    """Return the summary as one page: how often each effect is missing, then every item; all text escaped."""
     source = importlib.resources.files(__package__).joinpath("summary.html.jinja").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    environment.filters |= {"names": _words, "place": _place, "number": _number}
+    environment.filters |= {"names": _words, "region": _region, "number": _number}
     return environment.from_string(source).render(
         result=result, reports={row.item.name: quote(_report(row, out)) for row in result.rows}
     )
 
 
-def summary_table(result: EachResult) -> Table:
-    """Return what is missing, how often and how sure, for a terminal."""
+def summary_table(result: BatchResult) -> Table:
+    """Return how often each effect is missing, with the mean confidence, as a table for the terminal."""
     total = len(result.rows)
     table = Table(title=f"{total} recordings or folders", title_justify="left")
     for heading in ("missing", "how often", "mean confidence"):
@@ -133,28 +133,34 @@ def summary_table(result: EachResult) -> Table:
 
 
 def _report(row: Row, out: Path) -> str:
-    """Way from `out` to the report, with forward strokes on every system."""
-    if row.stated is None or row.stated.report is None:
+    """Path of the report relative to `out`, with forward slashes on every system."""
+    if row.verdict is None or row.verdict.report is None:
         return ""
-    return row.stated.report.relative_to(out).as_posix()
+    return row.verdict.report.relative_to(out).as_posix()
 
 
-def _place(stated: Stated) -> str:
-    """The first place, in which the error is most concentrated, in words."""
-    if stated.names == NOTHING or not stated.places:
+def _region(verdict: Stated) -> str:
+    """The first region of the verdict, in which the error is most concentrated, as text."""
+    if verdict.names == NOTHING or not verdict.places:
         return ""
-    place = stated.places[0]
-    ends = [
-        end if isinstance(end, str) else "" if end is None else f"{end:.4g}"
-        for end in (place.begin, place.end)
-    ]
-    unit = "" if place.unit == "1" else f" {place.unit}"
-    told = place.label or f"{ends[0]} to {ends[1]}{unit}"
-    return f"{place.by} {told} ({100.0 * place.share:.0f} %)"
+    region = verdict.places[0]
+    span = region.label or _span(region)
+    return f"{region.by} {span} ({100.0 * region.share:.0f} %)"
 
 
-def in_words(stated: Stated) -> str:
-    return f"{_words(stated.names)}, confidence {100.0 * stated.confidence:.0f} %"
+def _span(region: StatedPlace) -> str:
+    unit = "" if region.unit == "1" else f" {region.unit}"
+    begin, end = (f"{end:.4g}" if isinstance(end, float) else end for end in (region.begin, region.end))
+    if begin is None and end is None:
+        return "everywhere"
+    if begin is None:
+        return f"up to {end}{unit}"
+    return f"from {begin}{unit}" if end is None else f"{begin} to {end}{unit}"
+
+
+def verdict_text(verdict: Stated) -> str:
+    """Return a verdict in one line."""
+    return f"{_words(verdict.names)}, confidence {100.0 * verdict.confidence:.0f} %"
 
 
 def _words(names: Names) -> str:
@@ -168,6 +174,6 @@ def _number(value: float | None) -> str:
 
 
 def _safe(value: object) -> str:
-    """Text that a spreadsheet does not take for a formula."""
+    """Text that a spreadsheet does not read as a formula."""
     text = str(value)
     return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text

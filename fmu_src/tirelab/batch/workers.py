@@ -1,4 +1,4 @@
-"""Many pieces of work on all cores or on a Dask cluster; one that fails, or kills its process, stops no other.
+"""Many tasks on all cores or on a Dask cluster; one that fails, or kills its process, stops no other.
 
 Reference: joblib, `Parallel` with `return_as="generator_unordered"`; its Dask backend, distributed.Client.
 """
@@ -19,15 +19,15 @@ from ..errors import TirelabError
 
 Value = TypeVar("Value")
 
-AHEAD = 2
-"""Pieces of work handed out for each process, one under way and the others waiting."""
+TASKS_PER_PROCESS = 2
+"""Tasks dispatched for each process: one is running, the others wait."""
 
 
 @dataclass(frozen=True)
 class Cores:
-    """Where work is done: in `jobs` processes of this machine (1: in this one), or on the Dask cluster at `dask`.
+    """Where tasks run: in `jobs` processes of this machine (1: in this one), or on the Dask cluster at `dask`.
 
-    A cluster's workers must see the same folders under the same names as this machine.
+    The workers of a cluster must see the same folders under the same names as this machine.
     """
 
     jobs: int | None = None
@@ -37,17 +37,17 @@ class Cores:
         if self.jobs is not None and self.jobs < 1:
             raise TirelabError(f"--jobs {self.jobs} is not allowed; give 1 or more processes")
         if self.jobs is not None and self.dask is not None:
-            raise TirelabError("--jobs and --dask both say where to work; give one of them")
+            raise TirelabError("--jobs and --dask exclude each other; give one of them")
 
     @property
     def processes(self) -> int:
-        """How many pieces of work are under way at once on this machine."""
+        """Number of tasks that run at once on this machine."""
         return self.jobs or joblib.cpu_count()
 
 
 @dataclass(frozen=True)
 class Done(Generic[Value]):
-    """A piece of work that ended: its key, and its value or the error that ended it."""
+    """A task that ended: its key, and its value or the error that ended it."""
 
     key: str
     value: Value | None
@@ -59,8 +59,8 @@ def work(
 ) -> Iterator[Done[Value]]:
     """Yield what `function(*arguments)` gives for every key of `tasks`, in the order in which they end.
 
-    Shows a progress bar named `title` on a terminal. An exception ends its own piece of work only. Where a process
-    dies, the pieces that it may have held are done again one by one, and only those that die again fail.
+    Shows a progress bar named `title` on a terminal. An exception ends its own task only. Where a process dies, the
+    tasks that it may have held are run again one by one, and only those whose process dies again fail.
     Raises TirelabError where the Dask cluster cannot be reached.
     """
     deaths = _deaths(cores)
@@ -74,7 +74,7 @@ def work(
                     bar.advance(row)
                     yield done
             except deaths:
-                suspects = list(left)[: AHEAD * cores.processes]
+                suspects = list(left)[: TASKS_PER_PROCESS * cores.processes]
                 for key in suspects:
                     yield _alone(function, key, left.pop(key), parallel, deaths)
                     bar.advance(row)
@@ -99,15 +99,17 @@ def _alone(
 
 
 def _deaths(cores: Cores) -> tuple[type[Exception], ...]:
-    """What is raised where a process dies."""
+    """Exceptions that are raised where a process dies."""
     from joblib.externals.loky.process_executor import BrokenProcessPool
 
     if cores.dask is None:
         return (BrokenProcessPool,)
     try:
-        from distributed import KilledWorker  # here, since it takes half a second to load
+        from distributed import KilledWorker  # here: the import takes half a second
     except ImportError:
-        raise TirelabError("--dask needs Dask; install it: pip install 'tirelab[dask]'") from None
+        raise TirelabError(
+            "--dask needs Dask; install it in the clone of tirelab: pip install -e '.[dask]'"
+        ) from None
     return (BrokenProcessPool, KilledWorker)
 
 
@@ -116,7 +118,7 @@ def _backend(cores: Cores) -> Iterator[_Parallel]:
     if cores.dask is None and cores.processes == 1:
         yield _in_this_process
         return
-    # a process that grew large is replaced by a fresh one, and joblib warns of it; nothing is lost
+    # joblib replaces a process that grew large and warns of it; no task is lost
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs", category=UserWarning)
     with _client(cores.dask) if cores.dask else joblib.parallel_config("loky", inner_max_num_threads=1):
 
@@ -126,7 +128,7 @@ def _backend(cores: Cores) -> Iterator[_Parallel]:
             pool = joblib.Parallel(
                 n_jobs=-1 if cores.dask else max(cores.processes, 2),
                 batch_size=1,
-                pre_dispatch=f"{AHEAD}*n_jobs",
+                pre_dispatch=f"{TASKS_PER_PROCESS}*n_jobs",
                 return_as="generator_unordered",
             )
             return iter(pool(joblib.delayed(_guarded)(function, key, a) for key, a in tasks.items()))

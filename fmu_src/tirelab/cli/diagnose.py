@@ -14,7 +14,7 @@ import click
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from ..batch.batch import diagnose_each
+from ..batch.batch import Batch, diagnose_batch
 from ..batch.summary import summary_table
 from ..batch.workers import Cores
 from ..diagnosis.diagnosis_run import DiagnosisRun, run_diagnosis
@@ -61,10 +61,9 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
         raise TirelabError("--each goes with neither --held-out nor --json; read its summary.csv instead")
     folder: Path = options["out"]
     cores = Cores(options["jobs"], options["dask"])
-    found = diagnose_each(
-        recordings, folder, tire=options["tire"], cores=cores, reading=options["reading"], tell=click.echo
-    )
-    Console(highlight=False).print(summary_table(found))
+    batch = Batch(recordings, folder, options["tire"], options["reading"])
+    result = diagnose_batch(batch, cores, click.echo)
+    Console(highlight=False).print(summary_table(result))
     click.echo(f"summary: {folder / 'summary.csv'}, {folder / 'summary.html'}")
 
 

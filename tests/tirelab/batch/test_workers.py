@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import warnings
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -25,18 +24,7 @@ def collected(cores: Cores, numbers: dict[str, float]) -> dict[str, Done[float]]
     }
 
 
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[Any]:
-    distributed = pytest.importorskip("distributed")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of the cluster's own sockets and event loop
-        with distributed.LocalCluster(
-            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
-        ) as local:
-            yield local
-
-
-def test_an_exception_ends_its_own_piece_only() -> None:
+def test_an_exception_ends_its_own_task_only() -> None:
     found = collected(Cores(1), {"two": 2.0, "zero": 0.0, "four": 4.0})
     assert {key: done.value for key, done in found.items()} == {"two": 0.5, "zero": None, "four": 0.25}
     assert found["zero"].error is not None
