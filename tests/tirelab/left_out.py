@@ -1,4 +1,7 @@
-"""Clear recordings of every effect of the catalogue, and what a diagnosis says with and without it in the catalogue."""
+"""Clear recordings of every effect of the catalogue, and the diagnosis with and without it in the catalogue.
+
+Run as a program it prints the table of all of them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from tirelab.diagnosis.verdict import Verdict
 from tirelab.simulation.simulate import simulate
 
 NOISE = 6.0
-"""[N]; every effect below moves the force by five to twenty times as much, root mean square."""
+"""Noise of the force [N]; every effect below changes the force by four to forty-five times as much (RMS)."""
 
 PARAMETERS: dict[str, dict[str, float]] = {
     "deflection_offset": {"offset": 8e-4},
@@ -87,6 +90,15 @@ def forces(name: str, bare: Drive) -> FloatArray:
     return simulate(left_out(name), bare)
 
 
+def size(name: str, seed: int) -> float:
+    """Return the RMS of what the effect `name` adds to the force, over the noise."""
+    added = []
+    for radius, time, deflection in motions(seed):
+        bare = Drive("", time, deflection, np.full(time.size, radius), np.zeros(time.size))
+        added.append(forces(name, bare) - simulate(TireModel(), bare))
+    return float(np.sqrt(np.mean(np.concatenate(added) ** 2))) / NOISE
+
+
 def recordings(name: str, seed: int) -> list[Drive]:
     """Return two recordings of the tire with the effect `name`."""
     rng = np.random.default_rng(seed + 1)
@@ -116,11 +128,11 @@ class Outcome:
     @property
     def row(self) -> str:
         """A line of the table."""
-        rivals = "; ".join("+".join(r.names) for r in self.without.alternatives)
+        alternatives = "; ".join("+".join(r.names) for r in self.without.alternatives)
         return (
             f"{self.name:28s} {self.without.fit.before / NOISE:6.1f}  {'+'.join(self.whole.names) or 'nothing':44s} | "
             f"{'+'.join(self.without.names) or 'nothing':60s} misfit {self.misfit:5.2f}  by "
-            f"{', '.join(self.without.unexplained_by) or '-'}  rivals {rivals or '-'}"
+            f"{', '.join(self.without.unexplained_by) or '-'}  alternatives {alternatives or '-'}"
         )
 
 
@@ -130,3 +142,7 @@ def outcome(name: str, seed: int = 1) -> Outcome:
     return Outcome(
         name, diagnose(drives), diagnose(drives, catalogue=[n for n in CATALOGUE_NAMES if n != name])
     )
+
+
+if __name__ == "__main__":
+    print("\n".join(outcome(name).row for name in CATALOGUE_NAMES))
