@@ -103,3 +103,33 @@ def test_a_localized_effect_is_where_it_says(case: tuple[Effect, Conditions]) ->
         return
     squares = added(effect, conditions) ** 2
     assert np.sum(squares[inside]) > 0.9 * np.sum(squares)
+
+
+def test_the_regions_of_a_localized_effect_hold_its_samples(case: tuple[Effect, Conditions]) -> None:
+    """Nine tenths of the samples in which it is active lie in its spans, along every coordinate that it states."""
+    effect, conditions = case
+    motion, bench = conditions.motions[0], Bench(conditions.tire, (effect,))
+    inside = effect.active(bench.contact(motion))
+    coordinates = {
+        "time": motion.time,
+        "deflection": motion.deflection,
+        "rate": motion.rate,
+        "force": bench.contact(motion).elastic,
+        "direction": np.sign(motion.rate),
+    }
+    spans: dict[str, np.ndarray] = {}
+    for region in effect.regions(motion):
+        low, high = (
+            (-1.0, -1.0)
+            if region.begin == "unloading"
+            else (
+                -math.inf if region.begin is None else float(region.begin),
+                math.inf if region.end is None else float(region.end),
+            )
+        )
+        values = coordinates[region.by]
+        spans[region.by] = spans.get(region.by, False) | ((low <= values) & (values <= high))
+    assert (inside is None) == (not spans) or effect.name == "mullins_softening"
+    for held in spans.values():
+        assert np.mean(held[inside]) > 0.9
+        assert np.mean(held) < 0.9, "a span that holds nearly everything says nothing"
