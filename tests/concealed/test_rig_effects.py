@@ -133,3 +133,5 @@ def test_the_regions_of_a_localized_effect_hold_its_samples(case: tuple[Effect, 
     for held in spans.values():
         assert np.mean(held[inside]) > 0.9
         assert np.mean(held) < 0.9, "a span that holds nearly everything says nothing"
+    if "time" in spans:
+        assert np.sum(spans["time"] & inside) > 0.9 * np.sum(spans["time"] | inside)
