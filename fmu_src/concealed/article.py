@@ -10,7 +10,7 @@ CONCAVE_A, CONCAVE_A_GROWTH = 7822.0, 0.1398
 CONCAVE_B, CONCAVE_B_GROWTH = 0.2128, 0.0289
 
 #: Radii of the article's half-rounds [m]: ten convex, the flat, three concave (inches made metric).
-SURFACES = (
+ARTICLE_SURFACES = (
     *(inch * 0.0254 for inch in (0.5, 0.75, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0, 23.0)),
     math.inf,
     *(inch * 0.0254 for inch in (-15.0, -20.0, -23.0)),

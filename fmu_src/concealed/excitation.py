@@ -11,9 +11,9 @@ from .motion import FloatArray, Motion, even_grid, rounded, stride_for
 
 #: Data acquisition rates that a rig offers [Hz].
 SAMPLE_RATES = (5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 400.0)
-FEWEST_SAMPLES, MOST_SAMPLES = 300, 16_000
+FEWEST_RIG_SAMPLES, MOST_RIG_SAMPLES = 300, 16_000
 #: Fastest motion of a servo-hydraulic actuator of this size [m/s].
-FASTEST = 0.5
+ACTUATOR_SPEED = 0.5
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def sine(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A sine at one frequency about a mean deflection."""
     frequency = float(np.exp(rng.uniform(np.log(0.1), np.log(3.0))))
     duration = rng.uniform(15.0, 40.0) / frequency if frequency > 0.5 else rng.uniform(5.0, 12.0) / frequency
-    swing = min(rng.uniform(0.25, 0.48), FASTEST / (2.0 * np.pi * frequency * limits.shallowest))
+    swing = min(rng.uniform(0.25, 0.48), ACTUATOR_SPEED / (2.0 * np.pi * frequency * limits.shallowest))
     middle = rng.uniform(swing + 0.02, 0.99 - swing)
     step = _sample_step(rng, [(np.array([0.0, duration]), np.zeros(2))], 1.0 / frequency)
 
@@ -130,7 +130,7 @@ def multisine(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     crest = _sum_of_cosines(one, harmonics, sizes, phases)
     swing = rng.uniform(0.35, 0.48) / float(np.max(np.abs(crest)))
     top = float(np.max(np.abs(np.gradient(crest, 0.002)))) * swing * limits.shallowest
-    swing *= min(1.0, FASTEST / top)
+    swing *= min(1.0, ACTUATOR_SPEED / top)
 
     def path(time: FloatArray) -> FloatArray:
         return 0.5 + swing * _sum_of_cosines(time, harmonics, sizes, phases)
@@ -143,7 +143,7 @@ def sweep(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     low, high = rng.uniform(0.05, 0.2), rng.uniform(5.0, 12.0)
     duration = rng.uniform(25.0, 60.0)
     logarithmic = bool(rng.random() < 0.5)
-    swing = min(rng.uniform(0.15, 0.4), FASTEST / (2.0 * np.pi * high * limits.shallowest))
+    swing = min(rng.uniform(0.15, 0.4), ACTUATOR_SPEED / (2.0 * np.pi * high * limits.shallowest))
     middle = rng.uniform(max(0.4, swing + 0.05), 0.98 - swing)
 
     def path(time: FloatArray) -> FloatArray:
@@ -192,7 +192,7 @@ def burst(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     cycles = int(rng.integers(2, 4))
     frequency, width = rng.uniform(4.0, 9.0), rng.uniform(0.25, 0.5)
     moment = (int(rng.integers(0, cycles)) + rng.uniform(0.4, 0.6)) * period
-    swing = min(rng.uniform(0.1, 0.2), FASTEST / (2.0 * np.pi * frequency * limits.shallowest))
+    swing = min(rng.uniform(0.1, 0.2), ACTUATOR_SPEED / (2.0 * np.pi * frequency * limits.shallowest))
 
     def path(time: FloatArray) -> FloatArray:
         slow = 0.5 - 0.5 * np.cos(2.0 * np.pi * time / period)
@@ -260,11 +260,11 @@ def _sample_step(
     fits = [
         rate
         for rate in SAMPLE_RATES
-        if FEWEST_SAMPLES <= rate * duration <= MOST_SAMPLES and rate * quickest >= 16.0
+        if FEWEST_RIG_SAMPLES <= rate * duration <= MOST_RIG_SAMPLES and rate * quickest >= 16.0
     ]
     if not fits:
-        needed = max(FEWEST_SAMPLES / duration, 16.0 / quickest)
-        return 1.0 / min(needed, MOST_SAMPLES / duration)
+        needed = max(FEWEST_RIG_SAMPLES / duration, 16.0 / quickest)
+        return 1.0 / min(needed, MOST_RIG_SAMPLES / duration)
     return 1.0 / float(rng.choice(fits[:3]))
 
 
@@ -272,9 +272,9 @@ def _dynamic_step(rng: np.random.Generator, highest: float, duration: float) -> 
     fits = [
         rate
         for rate in SAMPLE_RATES
-        if rate >= 12.0 * highest and FEWEST_SAMPLES <= rate * duration <= MOST_SAMPLES
+        if rate >= 12.0 * highest and FEWEST_RIG_SAMPLES <= rate * duration <= MOST_RIG_SAMPLES
     ]
-    return 1.0 / (float(rng.choice(fits)) if fits else MOST_SAMPLES / duration)
+    return 1.0 / (float(rng.choice(fits)) if fits else MOST_RIG_SAMPLES / duration)
 
 
 def _polyline(
@@ -291,7 +291,7 @@ def _polyline(
         values.append(x)
         start += float(t[-1])
         ends.append(start)
-    samples = min(int(start / sample_step + 1e-6) + 1, MOST_SAMPLES)
+    samples = min(int(start / sample_step + 1e-6) + 1, MOST_RIG_SAMPLES)
     stride = stride_for(sample_step, samples)
     step = sample_step / stride
     time = even_grid((samples - 1) * stride + 1, step)
@@ -309,7 +309,7 @@ def _sampled(
     span: tuple[float, float] | None = None,
 ) -> Motion:
     """A path given as a share of the allowed depth; the surfaces change at even times, at speed."""
-    samples = min(int(duration / sample_step), MOST_SAMPLES)
+    samples = min(int(duration / sample_step), MOST_RIG_SAMPLES)
     stride = stride_for(sample_step, samples)
     time = even_grid((samples - 1) * stride + 1, sample_step / stride)
     mounted = np.minimum(time * len(limits.surfaces) // (time[-1] + sample_step), len(limits.surfaces) - 1)

@@ -145,7 +145,7 @@ def drawn_setup(rng: np.random.Generator, plan: Plan) -> Setup:
         return Setup(tire, article_tire(), source, limits)
     if isinstance(tire, PowerTire):
         return Setup(tire, tire, source, limits)
-    listed = article.SURFACES
+    listed = article.ARTICLE_SURFACES
     depths = [_depth(tire, r, ceiling, deepest) for r in listed]
     return Setup(tire, fitted_table(tire, depths, listed), source, limits)
 
@@ -177,9 +177,9 @@ def drawn_alike(rng: np.random.Generator, train: tuple[Motion, ...], limits: Dep
 def _surfaces(rng: np.random.Generator, poorly_excited: bool) -> tuple[float, ...]:
     """One surface, mostly the flat, or two to four mounted in turn."""
     if poorly_excited or rng.random() < 0.5:
-        return (math.inf,) if rng.random() < 0.7 else (float(rng.choice(article.SURFACES)),)
-    chosen = rng.choice(len(article.SURFACES), int(rng.integers(2, 5)), replace=False)
-    return tuple(article.SURFACES[int(i)] for i in chosen)
+        return (math.inf,) if rng.random() < 0.7 else (float(rng.choice(article.ARTICLE_SURFACES)),)
+    chosen = rng.choice(len(article.ARTICLE_SURFACES), int(rng.integers(2, 5)), replace=False)
+    return tuple(article.ARTICLE_SURFACES[int(i)] for i in chosen)
 
 
 def _depth(tire: Tire, radius: float, ceiling: float, deepest: float) -> float:

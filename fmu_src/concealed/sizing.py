@@ -10,7 +10,7 @@ from .motion import BoolArray, FloatArray, Motion
 
 #: Relative error of a size that the search accepts.
 CLOSE_ENOUGH = 0.01
-MOST_STEPS = 12
+SECANT_STEPS = 12
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def resized(bench: Bench, effect: Effect, motions: tuple[Motion, ...], noise: fl
     sign = 1.0 if effect.strength >= 0.0 else -1.0
     strength, slope = min(abs(effect.strength), effect.limit), 1.0
     last: tuple[float, float] | None = None
-    for _ in range(MOST_STEPS):
+    for _ in range(SECANT_STEPS):
         found = size(sign * strength)
         if found > 0.0 and abs(found / wanted - 1.0) < CLOSE_ENOUGH:
             break

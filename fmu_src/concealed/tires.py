@@ -15,7 +15,7 @@ from .motion import FloatArray
 INFLATION = 344.7e3
 AMBIENT = 101.3e3
 #: Deepest deflection for which a tire is tabulated [m].
-DEEPEST = 0.045
+TABULATED_DEPTH = 0.045
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class ContactPatchTire:
     def force(self, deflection: FloatArray, radius: FloatArray, pressure_ratio: FloatArray) -> FloatArray:
         """Elastic radial force [N]; the pressure acts on the pneumatic part alone."""
         result = np.zeros_like(deflection)
-        root = np.sqrt(np.clip(deflection, 0.0, DEEPEST))
+        root = np.sqrt(np.clip(deflection, 0.0, TABULATED_DEPTH))
         for r in distinct(radius):
             here = radius == r
             pneumatic, casing = _tables(self, r)
@@ -125,7 +125,7 @@ def distinct(radius: FloatArray) -> set[float]:
 @lru_cache(maxsize=256)
 def _tables(tire: ContactPatchTire, radius: float) -> tuple[PPoly, PPoly]:
     """Both parts as splines over sqrt(x), in which they are smooth down to x = 0."""
-    root = np.linspace(0.0, math.sqrt(DEEPEST), 161)
+    root = np.linspace(0.0, math.sqrt(TABULATED_DEPTH), 161)
     return tuple(
         PPoly.from_spline(make_interp_spline(root, part, k=3)) for part in tire.parts(root**2, radius)
     )
@@ -133,7 +133,7 @@ def _tables(tire: ContactPatchTire, radius: float) -> tuple[PPoly, PPoly]:
 
 def article_tire() -> PowerTire:
     """The article's tire on the article's surfaces."""
-    return PowerTire(tuple(Surface(r, *article.coefficients(r)) for r in article.SURFACES))
+    return PowerTire(tuple(Surface(r, *article.coefficients(r)) for r in article.ARTICLE_SURFACES))
 
 
 def deviating_tire(rng: np.random.Generator) -> PowerTire:
@@ -145,7 +145,7 @@ def deviating_tire(rng: np.random.Generator) -> PowerTire:
     common_a, common_b = rng.uniform(0.03, 0.10) * rng.choice((-1.0, 1.0)), rng.normal(0.0, 0.012)
     spread_a, spread_b = rng.uniform(0.01, 0.04), rng.uniform(0.003, 0.015)
     surfaces = []
-    for radius in article.SURFACES:
+    for radius in article.ARTICLE_SURFACES:
         a, b = article.coefficients(radius)
         a *= 1.0 + common_a + rng.normal(0.0, spread_a)
         b *= 1.0 + common_b + rng.normal(0.0, spread_b)

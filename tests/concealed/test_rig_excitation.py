@@ -5,7 +5,13 @@ import math
 import numpy as np
 import pytest
 from concealed.alternatives import one_constant_rate
-from concealed.excitation import EXCITATIONS, FASTEST, FEWEST_SAMPLES, MOST_SAMPLES, DepthLimits
+from concealed.excitation import (
+    ACTUATOR_SPEED,
+    EXCITATIONS,
+    FEWEST_RIG_SAMPLES,
+    MOST_RIG_SAMPLES,
+    DepthLimits,
+)
 from concealed.motion import rounded
 
 FLAT = DepthLimits((math.inf,), (0.025,))
@@ -18,15 +24,15 @@ def test_every_test_stays_within_the_rig(name: str, reach: DepthLimits) -> None:
     for seed in range(6):
         motion = EXCITATIONS[name](np.random.default_rng(seed), reach)
         samples = motion.recorded(motion.time).size
-        assert 0.9 * FEWEST_SAMPLES <= samples <= MOST_SAMPLES + 1
-        assert motion.time.size <= MOST_SAMPLES * 1.2
+        assert 0.9 * FEWEST_RIG_SAMPLES <= samples <= MOST_RIG_SAMPLES + 1
+        assert motion.time.size <= MOST_RIG_SAMPLES * 1.2
         assert np.all(np.diff(motion.time) > 0.0)
         assert 0.0024 < motion.sample_step <= 0.5
         assert set(motion.surfaces) == set(reach.surfaces)
         assert np.min(motion.deflection) >= -1e-12
         for radius, deepest in zip(reach.surfaces, reach.deepest, strict=True):
             assert np.max(motion.deflection[motion.radius == radius]) <= deepest * (1.0 + 1e-9)
-        assert np.max(np.abs(motion.rate)) < 1.2 * FASTEST
+        assert np.max(np.abs(motion.rate)) < 1.2 * ACTUATOR_SPEED
 
 
 def test_the_articles_test() -> None:

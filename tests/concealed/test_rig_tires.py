@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from concealed.article import SURFACES, coefficients
+from concealed.article import ARTICLE_SURFACES, coefficients
 from concealed.tires import (
     INFLATION,
     ContactPatchTire,
@@ -31,8 +31,8 @@ def test_the_articles_equations() -> None:
 
 def test_the_articles_surfaces() -> None:
     """Ten convex from 1.27 to 58.4 cm, the flat, three concave of -38.1, -50.8 and -58.4 cm."""
-    convex = [r for r in SURFACES if 0.0 < r < math.inf]
-    concave = [r for r in SURFACES if r < 0.0]
+    convex = [r for r in ARTICLE_SURFACES if 0.0 < r < math.inf]
+    concave = [r for r in ARTICLE_SURFACES if r < 0.0]
     assert (len(convex), min(convex), max(convex)) == (10, pytest.approx(0.0127), pytest.approx(0.5842))
     assert sorted(concave, reverse=True) == pytest.approx([-0.381, -0.508, -0.5842])
 
@@ -63,11 +63,11 @@ def test_pressure_acts_on_the_pneumatic_part_alone() -> None:
 def test_contact_patch_tires_are_like_the_articles(seed: int) -> None:
     """1.2 to 2.5 kN at 2.5 cm on the flat; softer on bumps, stiffer in hollows; exponents like the law's."""
     tire = contact_patch_tire(np.random.default_rng(seed))
-    forces = {r: float(tire.force(np.array([0.025]), np.array([r]), np.ones(1))[0]) for r in SURFACES}
+    forces = {r: float(tire.force(np.array([0.025]), np.array([r]), np.ones(1))[0]) for r in ARTICLE_SURFACES}
     assert 1200.0 < forces[math.inf] < 2500.0
-    order = [forces[r] for r in sorted(SURFACES, key=lambda r: 1.0 / r, reverse=True)]
+    order = [forces[r] for r in sorted(ARTICLE_SURFACES, key=lambda r: 1.0 / r, reverse=True)]
     assert order == sorted(order)
-    assert all(1.2 < best_power_law(tire, r, 0.025).b < 1.7 for r in SURFACES)
+    assert all(1.2 < best_power_law(tire, r, 0.025).b < 1.7 for r in ARTICLE_SURFACES)
     assert 100e3 < tire.pressure < 500e3
 
 
@@ -82,7 +82,7 @@ def test_the_best_power_law_is_the_least_squares_one() -> None:
 
 def test_deviations_are_of_some_percent_and_differ_by_surface() -> None:
     own, article = deviating_tire(np.random.default_rng(0)), article_tire()
-    ratios = np.array([own.at(r).a / article.at(r).a for r in SURFACES])
+    ratios = np.array([own.at(r).a / article.at(r).a for r in ARTICLE_SURFACES])
     assert 0.005 < np.std(ratios) < 0.08
     assert np.all(np.abs(ratios - 1.0) < 0.25)
 
