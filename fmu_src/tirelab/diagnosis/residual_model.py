@@ -29,7 +29,7 @@ COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "rate and deflection": ("m/s", lambda r: r.motion.rate),
     "acceleration": ("m/s^2", lambda r: r.motion.acceleration),
     "resonance": ("m/s^2", lambda r: r.motion.acceleration),
-    "history": ("m", lambda r: r.motion.turned * r.motion.direction),
+    "history": ("m", lambda r: r.motion.since_reversal * r.motion.direction),
     "way": ("m", lambda r: np.cumsum(np.abs(np.diff(r.motion.deflection, prepend=r.motion.deflection[0])))),
 }
 """The coordinate over which each kind of residual is regressed; what is not here is regressed over time."""

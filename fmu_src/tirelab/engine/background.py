@@ -10,7 +10,7 @@ from scipy.fft import dct
 
 from ..preprocessing.coloured_noise import WHITE
 from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray, Motion
-from ..preprocessing.lines_and_segments import Outstanding, outstanding
+from ..preprocessing.lines_and_segments import LinesAndSegments, detect_lines_and_segments
 from ..preprocessing.noise_model import Noise, first_guess, noise_of
 from .beyond import worth_trying
 from .columns import Built, Layout, build, layout_of
@@ -52,10 +52,10 @@ def _look(scene: Scene, families: Sequence[Family], point: Point) -> None:
         record.standing[:] = [standing_out(record, values)]
 
 
-def standing_out(record: Record, left: FloatArray) -> Outstanding:
+def standing_out(record: Record, left: FloatArray) -> LinesAndSegments:
     """Return what stands out of what is left of a recording [N] at its thin samples, corners of the motion aside."""
     thin = record.thin
-    return outstanding(
+    return detect_lines_and_segments(
         thin.time, np.where(thin.motion.resolved, left, 0.0), thin.elastic(thin.motion.deflection)
     )
 
@@ -86,7 +86,7 @@ def _noises(
             for group, values in zip(groups, explained.coefficients, strict=True):
                 left -= own[:, group] @ values
             freedom = explained.freedom * left.size / total
-            through = b.place.stiffness * record.thin.motion.blur
+            through = b.place.stiffness * record.thin.motion.smoothed_noise
             rest.append(left)
             taken = _taken(seen, p, groups, explained.covariance)
             following.append(noise_of(left, through, freedom, told[record.number], taken, b.place.elastic))

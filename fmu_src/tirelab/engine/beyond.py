@@ -12,7 +12,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from ..preprocessing.kinematics import FloatArray
-from ..preprocessing.lines_and_segments import LOUD, SWELLINGS, waves
+from ..preprocessing.lines_and_segments import LEAST_LINE_TO_NOISE, MODULATION_ORDERS, modulated_waves
 from .families import Family, law_columns, one_each, pairs, scale_of
 from .place import Place
 from .scene import Scene
@@ -87,7 +87,7 @@ def _jump(p: Place) -> FloatArray:
 
 def _history(p: Place) -> FloatArray:
     reach = np.clip(np.maximum.accumulate(p.deflection) / p.scene.deepest, 0.0, 1.0)
-    turned = np.clip(p.record.motion.turned / p.scene.deepest, 0.0, 1.0)
+    turned = np.clip(p.record.motion.since_reversal / p.scene.deepest, 0.0, 1.0)
     return np.stack(
         [p.elastic * c for c in _cosines(reach, 1, 4)]
         + [p.record.motion.direction * c for c in _cosines(turned, 1, 5)],
@@ -123,8 +123,8 @@ def _lines(p: Place, weight: FloatArray) -> FloatArray:
     most = max(len(r.outstanding.lines) for r in p.scene.records)
     found: list[FloatArray] = []
     for line in p.record.outstanding.lines:
-        found += [np.asarray(weight * wave) for wave in waves(p.record.time, line).T]
-    return _own(p, _filled(found, most * (2 + 4 * SWELLINGS), weight))
+        found += [np.asarray(weight * wave) for wave in modulated_waves(p.record.time, line).T]
+    return _own(p, _filled(found, most * (2 + 4 * MODULATION_ORDERS), weight))
 
 
 def _filled(columns: list[FloatArray], count: int, like: FloatArray) -> list[FloatArray]:
@@ -145,7 +145,7 @@ def _periodic_way(p: Place) -> FloatArray:
     direction = p.record.motion.direction
     columns = []
     for line, loudness in p.record.kept_lines(way, direction, 3):
-        heard = direction if loudness > LOUD else 0.0 * direction
+        heard = direction if loudness > LEAST_LINE_TO_NOISE else 0.0 * direction
         columns += [heard * f(2.0 * np.pi * line * way) for f in (np.sin, np.cos)]
     return _own(p, columns)
 
@@ -155,17 +155,17 @@ def _span(p: Place) -> FloatArray:
     place = np.arange(p.elastic.size)
     columns = [
         np.where((place >= first) & (place < last), values, 0.0)
-        for first, last in p.record.outstanding.spans
+        for first, last in p.record.outstanding.segments
         for values in (p.scene.strongest, p.elastic)
     ]
-    most = max(len(r.outstanding.spans) for r in p.scene.records)
+    most = max(len(r.outstanding.segments) for r in p.scene.records)
     return _own(p, _filled(columns, 2 * most, p.elastic))
 
 
 def worth_trying(families: Sequence[Family], scene: Scene) -> tuple[Family, ...]:
     """Return the families without those of lines and spans where no line or span stands out."""
     lines = any(r.outstanding.lines for r in scene.records)
-    spans = any(r.outstanding.spans for r in scene.records)
+    spans = any(r.outstanding.segments for r in scene.records)
     gone = {*(() if lines else ("period", "period, added")), *(() if spans else ("span",))}
     return tuple(f for f in families if f.name not in gone)
 

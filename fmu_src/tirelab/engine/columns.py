@@ -236,7 +236,7 @@ def measure(
         white = noise.whitened(both)
         columns.append(white[:, :-1])
         data.append(white[:, -1])
-        constant, part = noise.wander
+        constant, part = noise.mean_drift
         along.append(constant @ columns[-1])
         along_data.append(constant @ data[-1])
         parts.append(part)

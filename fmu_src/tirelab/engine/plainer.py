@@ -21,7 +21,8 @@ from .search import Settled, settle
 
 UNASKED = ("inertia", "force_lag", "saturation", "force_offset")
 """What slow noise cannot stand for, but its measure can swallow: what is quick, or there for a moment, and a constant
-(see `noise.WANDER`). What is beyond the catalogue has to be louder than slow noise anyway (`judge.MATERIAL_SLOW`)."""
+(see `noise_model.MEAN_DRIFT`). What is beyond the catalogue has to be louder than slow noise anyway
+(`judge.MATERIAL_SLOW`)."""
 
 
 MOST = 1.0 + MATERIAL_SLOW**2
@@ -35,7 +36,7 @@ def noise_of_less(
 
     Nor is it asked where a line or a span stands out: noise that is measured across it is none.
     """
-    if any(r.outstanding.lines or r.outstanding.spans for r in scene.records):
+    if any(r.outstanding.lines or r.outstanding.segments for r in scene.records):
         return None
     by_name = {f.name: f for f in families}
     asked = [n for n in best.names if n != "shape" and n not in UNASKED and not by_name[n].agnostic]
@@ -65,7 +66,7 @@ def _wider(less: Settled, scene: Scene, noises: Sequence[Noise]) -> list[Noise]:
     found = []
     for b, record, noise in zip(built, scene.records, noises, strict=True):
         left = _left(less, b.residual, b.columns)
-        through = b.place.stiffness * record.thin.motion.blur
+        through = b.place.stiffness * record.thin.motion.smoothed_noise
         share = less.candidate.explained.freedom * left.size / less.products.samples
         own = noise_of(left, through, share, record.thin.motion.resolved, load=b.place.elastic)
         found.append(own if own.level > noise.level else noise)

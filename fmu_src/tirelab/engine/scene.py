@@ -10,7 +10,8 @@ import numpy as np
 
 from ..preprocessing.dataset import Dataset, Experiment
 from ..preprocessing.kinematics import FloatArray, Motion
-from ..preprocessing.lines_and_segments import Outstanding
+from ..preprocessing.lines_and_segments import LinesAndSegments
+from ..preprocessing.robust_scale import robust_sigma
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Record(Experiment):
 
     whole: Record | None = field(default=None, repr=False)
     memory: dict[str, FloatArray] = field(default_factory=dict, repr=False, compare=False)
-    standing: list[Outstanding] = field(default_factory=list, repr=False, compare=False)
+    standing: list[LinesAndSegments] = field(default_factory=list, repr=False, compare=False)
 
     @cached_property
     def thin(self) -> Record:
@@ -45,9 +46,9 @@ class Record(Experiment):
         )
 
     @property
-    def outstanding(self) -> Outstanding:
+    def outstanding(self) -> LinesAndSegments:
         """What stands out of the recording, once that has been looked for."""
-        return self.standing[0] if self.standing else Outstanding()
+        return self.standing[0] if self.standing else LinesAndSegments()
 
     def kept(self, name: str, compute: Callable[[Motion], Iterable[FloatArray]]) -> FloatArray:
         """Return what `compute` makes of the whole motion, one row each at this record's samples, computed once."""
@@ -99,7 +100,7 @@ def strongest_lines(course: FloatArray, weight: FloatArray, values: FloatArray, 
     spectrum = np.abs(np.fft.rfft((resampled - resampled.mean()) * np.hanning(even.size), 4 * even.size))
     frequencies = np.fft.rfftfreq(4 * even.size, float(even[1] - even[0]))
     spectrum[frequencies < 3.0 / (rising[-1] - rising[0])] = 0.0
-    sigma = 1.4826 * float(np.median(np.abs(np.diff(values, 2)))) / np.sqrt(6.0) + 1e-12
+    sigma = robust_sigma(np.diff(values, 2)) / np.sqrt(6.0) + 1e-12
     lines = []
     for _ in range(count):
         at = int(np.argmax(spectrum))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..preprocessing.kinematics import FloatArray
-from ..preprocessing.lines_and_segments import Outstanding
+from ..preprocessing.lines_and_segments import LinesAndSegments
 from ..preprocessing.noise_model import Noise
 from .background import noises_beside, standing_out
 from .families import Family
@@ -41,10 +41,10 @@ def second_look(
     return noises_beside(scene, families, point) if found else None
 
 
-def _together(first: Outstanding, second: Outstanding, time: FloatArray) -> Outstanding:
+def _together(first: LinesAndSegments, second: LinesAndSegments, time: FloatArray) -> LinesAndSegments:
     """Return both; of the second what is new, and no span at an end, where slow noise has half waves."""
     turn = SAME_LINE / float(time[-1] - time[0])
     lines = [x for x in second.lines if all(abs(x - y) > turn for y in first.lines)]
-    inside = [s for s in second.spans if s[0] > 0 and s[1] < time.size]
-    spans = [s for s in inside if not any(s[0] < end and begin < s[1] for begin, end in first.spans)]
-    return Outstanding((*first.lines, *lines), (*first.spans, *spans))
+    inside = [s for s in second.segments if s[0] > 0 and s[1] < time.size]
+    spans = [s for s in inside if not any(s[0] < end and begin < s[1] for begin, end in first.segments)]
+    return LinesAndSegments((*first.lines, *lines), (*first.segments, *spans))

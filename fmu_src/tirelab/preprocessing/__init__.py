@@ -1,1 +1,1 @@
-"""What is done to recordings before anything is fitted: motion, noise, lines and segments."""
+"""Before anything is fitted: motion from a noisy reading, noise model, spectral lines and segments."""

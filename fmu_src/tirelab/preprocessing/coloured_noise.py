@@ -1,4 +1,4 @@
-"""Slow noise: white noise beside relaxations of many correlation times, read off a spectrum and whitened exactly.
+"""Slow noise: white noise plus relaxations of many correlation times, estimated from a spectrum and whitened exactly.
 
 A first-order Markov noise of variance a and correlation time tau [samples] has, with f = exp(-1/tau), the spectrum
 
@@ -15,8 +15,8 @@ There is one e_j above each c_j and below the next. With (1 - g_j)^2 / g_j = e_j
 
 leaves white noise of variance s prod_j f_j / g_j (spectral factorisation).
 
-The variances are the likeliest ones for the periodogram I of a residual (P. Whittle, Ark. Mat. 2, 1953). Where a fitted
-model has taken the part h(w) of the noise, I / (1 - h) has the mean S, with 1 - h degrees of freedom: the residual
+The variances maximise the likelihood of the periodogram I of a residual (P. Whittle, Ark. Mat. 2, 1953). Where a fitted
+model has the leverage h(w) on the noise, I / (1 - h) has the mean S, with 1 - h degrees of freedom: the residual
 likelihood (H. D. Patterson, R. Thompson, Biometrika 58, 1971), one frequency at a time.
 """
 
@@ -31,30 +31,33 @@ from scipy.signal import sosfilt
 
 FloatArray = NDArray[np.float64]
 
-SHORTEST, APART = 2.0, 2.0
+SHORTEST_TIME, TIME_RATIO = 2.0, 2.0
 """Shortest correlation time that is tried [samples], and the factor between two of them."""
 
-LONGEST = 0.1
-"""Longest correlation time, as a part of the recording: what changes more slowly is a course of time, not noise."""
+LONGEST_TIME = 0.1
+"""Longest correlation time, as a part of the recording: what changes more slowly is a trend, not noise."""
 
-SLOW, LOUDEST = 20.0, 1.0
-"""Variance of what is slower than SLOW samples over that of all that is quicker: what is louder than that was left
-out by the model, not by the amplifier."""
+SLOW_TIME, MOST_SLOW_VARIANCE = 20.0, 1.0
+"""Largest variance of what is slower than SLOW_TIME samples over that of all that is quicker: more comes from a
+missing effect, not from the amplifier."""
 
-TAKEN = 0.7
-"""Frequencies of which a model has taken more than this part say nothing."""
+MOST_LEVERAGE = 0.7
+"""Frequencies at which a model has more leverage than this are left out."""
 
-LINE = 8.0
-"""What exceeds the spectrum by this factor is a line, and counts as much as this: one in 200 of noise does."""
+LINE_LIMIT = 8.0
+"""Power over the spectrum above which it is a line and is clipped: one value in 200 of noise is."""
 
-BINS = 60
-"""Stretches of frequencies, even over the logarithm, over which the periodogram is averaged."""
+FREQUENCY_BINS = 60
+"""Bands of frequencies, even over the logarithm, over which the periodogram is averaged."""
 
-UNSEEN = 0.02
-"""A relaxation that is nowhere more than this part of the spectrum is dropped without a test."""
+LEAST_SHARE = 0.02
+"""A relaxation that is nowhere more than this share of the spectrum is dropped without a test."""
 
-ROUNDS = 60
-PASSES = 3
+UPDATES = 60
+"""Multiplicative updates of the variances."""
+
+LINE_PASSES = 3
+"""Fits in turn with clipping of lines: the first has no spectrum to clip by."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ class SlowNoise:
     sections: FloatArray = field(default_factory=lambda: np.zeros((0, 6)))
 
     def whitened(self, values: FloatArray) -> FloatArray:
-        """Return values (n,) or (n, k) without what can be foretold of the slow noise."""
+        """Return values (n,) or (n, k) without the predictable part of the slow noise."""
         return np.asarray(sosfilt(self.sections, values, axis=0)) if self.times.size else values
 
     @property
@@ -88,48 +91,50 @@ WHITE = SlowNoise()
 """No slow noise at all."""
 
 
-def slow_noise(residual: FloatArray, taken: FloatArray | None = None) -> SlowNoise:
-    """Return the likeliest slow noise of a residual (n,), even in time.
+def slow_noise(residual: FloatArray, leverage: FloatArray | None = None) -> SlowNoise:
+    """Return the slow noise of maximum likelihood for a residual (n,), even in time.
 
-    taken (n,): the part of the noise in each cosine coefficient of the residual that a model has taken; None: nothing
+    leverage (n,): of a fitted model on each cosine coefficient of the residual, 0 to 1; None: zero
     """
     count = residual.size
-    free = np.ones(count) if taken is None else 1.0 - np.clip(taken, 0.0, 1.0)
+    free = np.ones(count) if leverage is None else 1.0 - np.clip(leverage, 0.0, 1.0)
     free[0] = 0.0
-    known = free > 1.0 - TAKEN
-    if np.sum(known) < BINS:
+    known = free > 1.0 - MOST_LEVERAGE
+    if np.sum(known) < FREQUENCY_BINS:
         return SlowNoise(float(np.mean(residual**2)))
     power = (dct(residual, norm="ortho") ** 2)[known]
     angle, free = (np.pi * np.arange(count) / count)[known], free[known]
     times = np.geomspace(
-        SHORTEST, LONGEST * count, int(np.log(LONGEST * count / SHORTEST) / np.log(APART)) + 1
+        SHORTEST_TIME,
+        LONGEST_TIME * count,
+        int(np.log(LONGEST_TIME * count / SHORTEST_TIME) / np.log(TIME_RATIO)) + 1,
     )
     decay = np.exp(-1.0 / times)
     spectra = (1.0 - decay**2) / (1.0 - 2.0 * decay * np.cos(angle[:, None]) + decay**2)
     spectra = np.concatenate([np.ones((angle.size, 1)), spectra], axis=1)
-    edges = np.unique(np.geomspace(1, power.size + 1, BINS).astype(int) - 1)[:-1]
+    edges = np.unique(np.geomspace(1, power.size + 1, FREQUENCY_BINS).astype(int) - 1)[:-1]
     weight = np.add.reduceat(free, edges)
     binned = np.add.reduceat(spectra * free[:, None], edges, axis=0) / weight[:, None]
     variances = np.zeros(times.size + 1)
-    for turn in range(PASSES):
-        most = LINE * (spectra @ variances) * free if turn else power
+    for turn in range(LINE_PASSES):
+        most = LINE_LIMIT * (spectra @ variances) * free if turn else power
         mean = np.add.reduceat(np.minimum(power, most), edges) / weight
-        variances = _paid_for(binned, mean, weight)
+        variances = _selected(binned, mean, weight)
     white, others = float(variances[0]), variances[1:]
-    slow = times > SLOW
+    slow = times > SLOW_TIME
     quick, loud = white + float(others[~slow].sum()), float(others[slow].sum())
-    others = np.where(slow, others * min(1.0, LOUDEST * quick / max(loud, 1e-300)), others)
+    others = np.where(slow, others * min(1.0, MOST_SLOW_VARIANCE * quick / max(loud, 1e-300)), others)
     return _factored(white, times[others > 0.0], others[others > 0.0])
 
 
-def _paid_for(spectra: FloatArray, mean: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return the likeliest variances, nothing for relaxations that gain less than BIC's price of one number."""
-    variances, score = _likeliest(spectra, mean, weight)
-    seen = np.max(spectra * variances / (spectra @ variances)[:, None], axis=0) > UNSEEN
+def _selected(spectra: FloatArray, mean: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the variances of maximum likelihood; zero for relaxations that gain less than the BIC penalty of one."""
+    variances, score = _most_likely(spectra, mean, weight)
+    seen = np.max(spectra * variances / (spectra @ variances)[:, None], axis=0) > LEAST_SHARE
     kept = np.flatnonzero(seen | (np.arange(seen.size) == 0))
-    variances, score = _likeliest(spectra[:, kept], mean, weight)
+    variances, score = _most_likely(spectra[:, kept], mean, weight)
     while kept.size > 1:
-        tried = [_likeliest(spectra[:, np.delete(kept, i)], mean, weight) for i in range(1, kept.size)]
+        tried = [_most_likely(spectra[:, np.delete(kept, i)], mean, weight) for i in range(1, kept.size)]
         least = int(np.argmin([s for _, s in tried]))
         if tried[least][1] - score > np.log(mean.size):
             break
@@ -140,13 +145,13 @@ def _paid_for(spectra: FloatArray, mean: FloatArray, weight: FloatArray) -> Floa
     return whole
 
 
-def _likeliest(spectra: FloatArray, mean: FloatArray, weight: FloatArray) -> tuple[FloatArray, float]:
-    """Return variances above nothing for averaged powers, and minus twice their log likelihood.
+def _most_likely(spectra: FloatArray, mean: FloatArray, weight: FloatArray) -> tuple[FloatArray, float]:
+    """Return non-negative variances for averaged powers, and minus twice their log likelihood.
 
-    Multiplied up and down until they stand still (C. Fevotte, N. Bertin, J.-L. Durrieu, Neural Comput. 21, 2009).
+    Multiplicative updates until they converge (C. Fevotte, N. Bertin, J.-L. Durrieu, Neural Comput. 21, 2009).
     """
     variances = np.full(spectra.shape[1], float(np.average(mean, weights=weight)) / spectra.shape[1])
-    for _ in range(ROUNDS):
+    for _ in range(UPDATES):
         fitted = spectra @ variances
         variances = variances * np.sqrt(
             (spectra.T @ (weight * mean / fitted**2)) / (spectra.T @ (weight / fitted))

@@ -1,4 +1,4 @@
-"""What the motion of a recording tells: smoothed deflection, rate, acceleration, direction, cycles and history."""
+"""The motion of a recording: smoothed deflection, rate, acceleration, direction, cycle and distance since reversal."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .deflection_noise import deflection_noise
 from .smoothing import smoothed
 
 FloatArray = NDArray[np.float64]
@@ -15,7 +16,7 @@ IndexArray = NDArray[np.intp]
 
 CORNER = 9.0
 """Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by a twentieth
-of a sample's travel, the motion turns within a sample."""
+of a sample's travel, the motion has a corner within a sample."""
 
 
 @dataclass(frozen=True)
@@ -23,57 +24,48 @@ class Motion:
     """The motion of one recording; every array has the shape of its samples.
 
     deflection [m], rate [m/s], acceleration [m/s^2]: smoothed as long as the noise and the motion allow
-    noise: standard deviation [m] of the deflection's reading; blur: that of the smoothed deflection [m]
+    noise: standard deviation [m] of the deflection's reading; smoothed_noise: that of the smoothed deflection [m]
     deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
-    -1 unloading, kept through holds; turned: deflection [m] travelled since the last reversal
-    resolved: False where the motion turns within a sample, so that its rate there is anybody's guess
+    -1 unloading, kept through holds; since_reversal: distance [m] from the deflection of the last reversal
+    resolved: False where the motion has a corner within a sample, so that its rate there is not known
     """
 
     deflection: FloatArray
     rate: FloatArray
     acceleration: FloatArray
     noise: float
-    blur: FloatArray
+    smoothed_noise: FloatArray
     deepest: FloatArray
     cycle: FloatArray
     direction: FloatArray
-    turned: FloatArray
+    since_reversal: FloatArray
     resolved: BoolArray
 
 
 def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]."""
     noise = deflection_noise(deflection)
-    smooth, rate, acceleration, blur, resolved = _smoothed(time, deflection, noise)
+    smooth, rate, acceleration, smoothed_noise, resolved = _smoothed(time, deflection, noise)
     # Smoothing cuts a corner short: there the reading itself is nearer.
-    smooth, blur = np.where(resolved, smooth, deflection), np.where(resolved, blur, noise)
-    direction, cycle, turned = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
+    smooth, smoothed_noise = np.where(resolved, smooth, deflection), np.where(resolved, smoothed_noise, noise)
+    direction, cycle, since_reversal = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
     deepest = np.maximum.accumulate(smooth)
-    return Motion(smooth, rate, acceleration, noise, blur, deepest, cycle, direction, turned, resolved)
-
-
-def deflection_noise(deflection: FloatArray) -> float:
-    """Return the standard deviation [m] of the reading's noise: from fifth differences, robust to corners.
-
-    The fifth difference of white noise has the variance 252 s^2; that of a smooth motion is next to nothing.
-    """
-    differences = np.diff(deflection, 5)
-    scaled = 1.4826 * float(np.median(np.abs(differences))) / np.sqrt(252.0)
-    # A quantised reading at rest has differences of nothing: then the quarter of largest ones speaks.
-    return float(max(scaled, 1e-9))
+    return Motion(
+        smooth, rate, acceleration, noise, smoothed_noise, deepest, cycle, direction, since_reversal, resolved
+    )
 
 
 def _smoothed(
     time: FloatArray, deflection: FloatArray, noise: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Return deflection, rate and acceleration, the deflection's blur, and where the motion is resolved."""
+    """Return deflection, rate and acceleration, the noise left in the deflection, and where the motion is resolved."""
     step = float(np.median(np.diff(time)))
     if np.ptp(np.diff(time)) > 1e-3 * step:
         grid = np.linspace(time[0], time[-1], deflection.size)
         read = np.interp(grid, time, deflection)
         level, *rest, resolved = _smoothed(grid, read, noise)
-        rate, acceleration, blur = (np.interp(time, grid, r) for r in rest)
-        return deflection - np.interp(time, grid, read - level), rate, acceleration, blur, resolved
+        rate, acceleration, smoothed_noise = (np.interp(time, grid, r) for r in rest)
+        return deflection - np.interp(time, grid, read - level), rate, acceleration, smoothed_noise, resolved
     smooth, rate, acceleration, leverage = smoothed(deflection, step, noise)
     travel = step * float(np.sqrt(np.mean(rate**2)))
     return smooth, rate, acceleration, noise * np.sqrt(leverage), _resolved(deflection, noise, travel)
@@ -90,23 +82,23 @@ def _resolved(deflection: FloatArray, noise: float, travel: float) -> BoolArray:
 
 
 def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return direction, cycle number and travel since the last reversal; a reversal counts beyond `threshold` [m].
+    """Return direction, cycle number and distance since the last reversal; one counts beyond `threshold` [m].
 
-    It is known late, but counts from the turning point on.
+    It is recognised late, but counts from the turning point on.
     """
-    turns, way, best = [0], 1.0, 0
-    highest = deflection[0]
+    turns, sign, best = [0], 1.0, 0
+    extreme = deflection[0]
     values = deflection.tolist()
     for i, x in enumerate(values):
-        ahead = way * (x - highest)
+        ahead = sign * (x - extreme)
         if ahead >= 0.0:
-            best, highest = i, x
+            best, extreme = i, x
         elif -ahead > threshold:
             turns.append(best + 1)
-            way, best, highest = -way, i, x
-    spans = np.diff([*turns, deflection.size])
-    number = np.arange(spans.size)
-    direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), spans)
-    cycle = np.repeat(np.floor(number / 2.0), spans)
-    start = np.repeat(deflection[np.maximum(np.array(turns) - 1, 0)], spans)
+            sign, best, extreme = -sign, i, x
+    lengths = np.diff([*turns, deflection.size])
+    number = np.arange(lengths.size)
+    direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), lengths)
+    cycle = np.repeat(np.floor(number / 2.0), lengths)
+    start = np.repeat(deflection[np.maximum(np.array(turns) - 1, 0)], lengths)
     return direction, cycle, np.abs(deflection - start)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..preprocessing.robust_scale import robust_sigma
+
 FloatArray = NDArray[np.float64]
 
 REACHES = (1, 2, 4, 8, 16, 32)
@@ -25,7 +27,7 @@ def rate_of(time: FloatArray, deflection: FloatArray) -> FloatArray:
     """
     if time.size < 8:
         return np.gradient(deflection, time)
-    noise = 1.4826 * float(np.median(np.abs(np.diff(deflection, 3)))) / np.sqrt(20.0)
+    noise = robust_sigma(np.diff(deflection, 3)) / np.sqrt(20.0)
     step = float(np.median(np.diff(time)))
     index = np.arange(time.size)
     rate = np.gradient(deflection, time)

@@ -55,7 +55,7 @@ def test_a_jump_is_seen():
     deflection = bursts()
     force = flat_force(deflection) + 12.0 * ((TIME > 8.0) & (TIME < 9.5))
     _, seen = look(read("bursts", TIME, deflection, force, 4))
-    first, last = seen.spans[0]
+    first, last = seen.segments[0]
     assert (first * STEP, last * STEP) == pytest.approx((8.0, 9.5), abs=0.15)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.fft import dct
 from scipy.signal import lfilter
-from tirelab.preprocessing.coloured_noise import LOUDEST, SLOW, slow_noise
+from tirelab.preprocessing.coloured_noise import MOST_SLOW_VARIANCE, SLOW_TIME, slow_noise
 
 COUNT = 8000
 
@@ -84,9 +84,9 @@ def test_what_a_model_has_taken_does_not_hide_the_noise():
 
 def test_what_is_louder_than_white_noise_is_not_taken_for_noise():
     found = slow_noise(white(11) + markov(12, 200.0, 20.0))
-    slow = found.times > SLOW
+    slow = found.times > SLOW_TIME
     quick = found.white + found.variances[~slow].sum()
-    assert found.variances[slow].sum() == pytest.approx(LOUDEST * quick)
+    assert found.variances[slow].sum() == pytest.approx(MOST_SLOW_VARIANCE * quick)
 
 
 def test_a_line_is_no_noise():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from tirelab.preprocessing.noise_model import WANDER, Noise, first_guess, noise_of
+from tirelab.preprocessing.noise_model import MEAN_DRIFT, Noise, first_guess, noise_of
 
 COUNT = 8000
 
@@ -57,13 +57,13 @@ def test_the_first_guess_does_not_see_a_smooth_misfit():
     assert guess.level == pytest.approx(5.0, rel=0.06)
 
 
-def test_the_mean_counts_only_as_far_as_it_does_not_wander():
+def test_the_mean_counts_only_as_far_as_it_does_not_mean_drift():
     """The likelihood of a constant is that of the covariance I + w^2 1 1', written as a matrix and solved."""
     noise = Noise(6.0, 6.0, np.ones(1), np.ones(40), np.ones(40))
     values = 6.0 * np.random.default_rng(7).standard_normal(40) + 3.0
-    covariance = 36.0 * np.eye(40) + (WANDER * 6.0) ** 2 * np.ones((40, 40))
+    covariance = 36.0 * np.eye(40) + (MEAN_DRIFT * 6.0) ** 2 * np.ones((40, 40))
     constant = np.full(40, 2.0)
-    direction, part = noise.wander
+    direction, part = noise.mean_drift
     for a, b in ((values, values), (values, constant), (constant, constant)):
         left, right = noise.whitened(a), noise.whitened(b)
         told = left @ right - part * (direction @ left) * (direction @ right)
