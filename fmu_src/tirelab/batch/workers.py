@@ -15,7 +15,7 @@ import joblib
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from ..errors import TirelabError
+from ..errors import TirelabError, missing_library
 
 Value = TypeVar("Value")
 
@@ -107,9 +107,7 @@ def _deaths(cores: Cores) -> tuple[type[Exception], ...]:
     try:
         from distributed import KilledWorker  # here: the import takes half a second
     except ImportError:
-        raise TirelabError(
-            "--dask needs Dask; install it in the clone of tirelab: pip install -e '.[dask]'"
-        ) from None
+        raise TirelabError(missing_library("--dask", "Dask", "'dask[distributed]'")) from None
     return (BrokenProcessPool, KilledWorker)
 
 

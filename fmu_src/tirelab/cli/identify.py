@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from ..errors import TirelabError
 from ..identify import LAWS, Identification, identify
 from ..identify.table import constant_table, surface_table
+from ..recordings.files import recording_files
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from .options import FILE, SentenceCommand, reading
@@ -36,15 +37,18 @@ WIDTH_LEAST = 100
 @click.option("--name", default="", help="The tire's name.")
 @reading
 def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, reading: Reading) -> None:
-    """Identify the tire that RECORDING... show, and say how sure that is.
+    """Identify the tire that RECORDING..., files or folders of them, show, and say how sure that is.
 
     Writes the tire file, and beside it FILE.identification.json with uncertainties, intervals and Table 1.
     """
     console = Console(highlight=False)
     if not console.is_terminal:
         console.width = WIDTH_LEAST
+    files, skipped = recording_files(recordings, reading.columns)
+    for file in skipped:
+        console.print(f"note: {file}", markup=False, soft_wrap=True)
     with _bars() as bars:
-        read = [reading(path) for path in bars.track(recordings, description="reading")]
+        read = [reading(path) for path in bars.track(files, description="reading")]
         tasks: dict[str, TaskID] = {}
 
         def show(what: str, done: int, total: int) -> None:

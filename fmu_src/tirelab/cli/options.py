@@ -11,6 +11,7 @@ import click
 from radialtire import InputError, ParameterError, TireFileError
 
 from ..errors import TirelabError
+from ..recordings.channels import parse_columns, parse_units
 from ..recordings.reading import Reading
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -49,7 +50,8 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
     def with_reading(
         *args: Any, columns: str | None, units: str | None, radius: str | None, **options: Any
     ) -> Any:
-        return command(*args, reading=Reading(columns, units, radius), **options)
+        how = Reading(parse_columns(columns or ""), parse_units(units or ""), radius)
+        return command(*args, reading=how, **options)
 
     return with_reading
 

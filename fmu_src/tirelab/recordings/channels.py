@@ -3,10 +3,10 @@
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from .formats import Header, RecordingError
 from .formats.table import listed, quoted
+from .origin import Origin
 from .units import measures
 
 
@@ -91,6 +91,18 @@ def parse_units(text: str) -> dict[str, str]:
     return _assignments(text, "--units", "time=ms,deflection=mm,force=kN")
 
 
+def assignments_text(values: Mapping[str, str]) -> str:
+    """The text of an option that `parse_columns` and `parse_units` read as these values, quoted where needed."""
+    return ",".join(f"{name}={_in_quotes(value)}" for name, value in values.items())
+
+
+def _in_quotes(value: str) -> str:
+    if not set(value) & set(",\"'"):
+        return value
+    # A double quote cannot stand between double quotes: it gets single ones.
+    return "'\"'".join(f'"{piece}"' if piece else "" for piece in value.split('"'))
+
+
 def _assignments(text: str, option: str, example: str) -> dict[str, str]:
     reader = shlex.shlex(text, posix=True)
     reader.whitespace, reader.whitespace_split, reader.commenters, reader.escape = ",", True, "", ""
@@ -120,48 +132,60 @@ def known_channel(name: str, where: str) -> None:
 
 
 def match_channels(
-    path: Path, headers: Sequence[Header], time_axis: int | None, columns: Mapping[str, str]
+    origin: Origin, headers: Sequence[Header], time_axis: int | None, columns: Mapping[str, str]
 ) -> dict[str, Match]:
     """Which column holds which channel.
 
     A column the user names is found by its text, by its name without the unit (both whatever the case), or by
-    its number (#1 the first); `+` or `-` before it settles its sign; an empty name leaves the channel out.
+    its number (#1 the first); `+` or `-` before it fixes its sign; an empty name leaves the channel out.
     Others are found by the words and symbols of `CHANNELS`, symbols in their own case unless a fitting unit
     follows.
 
     Errors: RecordingError when a column named is not there, a required channel has none, or several may be.
     """
     for name in columns:
-        known_channel(name, f"{path.name}, columns")
+        known_channel(name, f"{origin}, columns")
     matches: dict[str, Match] = {}
     for name, text in columns.items():
         if text.strip():
-            matches[name] = _named(path, headers, name, text.strip())
-    taken = {match.index: name for name, match in matches.items()}
-    if len(taken) < len(matches):
-        raise RecordingError(
-            f"{path.name}: one column is given for two channels; name another with --columns"
-        )
+            matches[name] = _named(origin, headers, name, text.strip())
+    assigned = {match.index: name for name, match in matches.items()}
+    if len(assigned) < len(matches):
+        raise RecordingError(f"{origin}: one column is given for two channels; name another for one of them")
     for channel in CHANNELS:
         if channel.name in columns:
             continue
         if channel.name == "time" and time_axis is not None:
             matches["time"] = Match(time_axis)
             continue
-        found = [i for i, header in enumerate(headers) if i not in taken and _may_be(header, channel)]
+        found = [i for i, header in enumerate(headers) if i not in assigned and _may_be(header, channel)]
         if len(found) > 1:
-            told = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in found)
-            unused = "" if channel.required else f", or leave it out with {channel.name}="
+            candidates = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in found)
+            which = origin.columns(**{channel.name: f"#{found[0] + 1}"})
+            without = (
+                "" if channel.required else f", or leave it out with {origin.columns(**{channel.name: ''})}"
+            )
             raise RecordingError(
-                f"{path.name}: {told} may each be the {channel.name}; "
-                f"say which with --columns {channel.name}=#{found[0] + 1}{unused}"
+                f"{origin}: {candidates} may each be the {channel.name}; say which with {which}{without}"
             )
         if found:
             matches[channel.name] = Match(found[0])
     missing = [c.name for c in CHANNELS if c.required and c.name not in matches]
     if missing:
-        raise _missing(path, headers, missing)
+        raise _missing(origin, headers, missing)
     return matches
+
+
+def recognised(headers: Sequence[Header], columns: Mapping[str, str]) -> frozenset[str]:
+    """The channels that have a column by its name: one that the user names, or one of the words and symbols."""
+    found = {channel.name for channel in CHANNELS if any(_may_be(header, channel) for header in headers)}
+    for name, text in columns.items():
+        column = text.strip()
+        if not column.lstrip("+- ").startswith("#") and (
+            _finds(headers, column) or _finds(headers, column.lstrip("+-").strip())
+        ):
+            found.add(name)
+    return frozenset(found)
 
 
 def unit_of_column(header: Header, channel: str) -> str | None:
@@ -178,7 +202,7 @@ def says_absolute(header: Header) -> bool:
     return bool({"abs", "absolute"} & set(_words(header.name).split()))
 
 
-def _named(path: Path, headers: Sequence[Header], channel: str, text: str) -> Match:
+def _named(origin: Origin, headers: Sequence[Header], channel: str, text: str) -> Match:
     exact = _finds(headers, text)
     if exact:
         sign = 0
@@ -186,14 +210,14 @@ def _named(path: Path, headers: Sequence[Header], channel: str, text: str) -> Ma
         exact, sign = _finds(headers, text[1:].strip()), 1 if text[0] == "+" else -1
     if not exact:
         raise RecordingError(
-            f"{path.name}: has no column {quoted(text)}; its columns are {_all(headers)}; "
-            f"correct --columns {channel}=NAME"
+            f"{origin}: has no column {quoted(text)}; its columns are {_all(headers)}; "
+            f"correct {origin.columns(**{channel: 'NAME'})}"
         )
     if len(exact) > 1:
-        told = " and ".join(f"#{i + 1}" for i in exact)
+        numbers = " and ".join(f"#{i + 1}" for i in exact)
         raise RecordingError(
-            f"{path.name}: columns {told} are both named {quoted(text)}; "
-            f"say which by its number: --columns {channel}=#{exact[0] + 1}"
+            f"{origin}: columns {numbers} are both named {quoted(text)}; "
+            f"say which by its number: {origin.columns(**{channel: f'#{exact[0] + 1}'})}"
         )
     return Match(exact[0], sign)
 
@@ -232,14 +256,14 @@ def _all(headers: Sequence[Header]) -> str:
     return listed([quoted(header.text) for header in headers], most=20) or "none"
 
 
-def _missing(path: Path, headers: Sequence[Header], missing: Sequence[str]) -> RecordingError:
+def _missing(origin: Origin, headers: Sequence[Header], missing: Sequence[str]) -> RecordingError:
     if headers and all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
         return RecordingError(
-            f"{path.name}: has no header row; put one above the numbers, such as time [s],deflection [mm],"
-            "force [N], or name columns by number: --columns time=#1,deflection=#2,force=#3 "
-            "--units time=s,deflection=mm,force=N"
+            f"{origin}: has no header row; put one above the numbers, such as time [s],deflection [mm],"
+            f"force [N], or name columns by number: {origin.columns(time='#1', deflection='#2', force='#3')} "
+            f"{origin.units(time='s', deflection='mm', force='N')}"
         )
     return RecordingError(
-        f"{path.name}: no column for {', '.join(missing)}; its columns are {_all(headers)}; "
-        f"name it with --columns {','.join(f'{name}=NAME' for name in missing)}"
+        f"{origin}: no column for {', '.join(missing)}; its columns are {_all(headers)}; "
+        f"name it with {origin.columns(**dict.fromkeys(missing, 'NAME'))}"
     )

@@ -1,5 +1,7 @@
 """What is known of a recording beside its numbers, in a small TOML file next to it."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -29,6 +31,35 @@ class Sidecar:
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     sources: tuple[str, ...] = ()
+
+    def overruled(
+        self,
+        columns: Mapping[str, str] | None,
+        units: Mapping[str, str] | None,
+        radius: str | float | None,
+    ) -> Settings:
+        """Return the settings where the user's go over these."""
+        return Settings(
+            {**self.columns, **(columns or {})},
+            {**self.units, **(units or {})},
+            radius,
+            self.radius,
+            self.radius_source,
+        )
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is known beside the table: columns and units by channel, and the radius.
+
+    radius: as the user gave it; radius_in_file: as `radius_source` states it, over which the former goes
+    """
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    radius: str | float | None = None
+    radius_in_file: str | None = None
+    radius_source: str = ""
 
 
 def read_sidecar(path: Path) -> Sidecar:

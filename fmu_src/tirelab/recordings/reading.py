@@ -1,32 +1,42 @@
-"""How a user wants recordings read."""
+"""How a user wants recordings to be read, as one value for all of them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 
-from .channels import parse_columns, parse_units
+from .channels import assignments_text
 from .recording import Recording, read_recording
 
 
 @dataclass(frozen=True)
 class Reading:
-    """The texts of the options --columns, --units and --radius; None where the file itself says it."""
+    """The columns, units and surface radius of recordings, where these differ from what the files say.
 
-    columns: str | None = None
-    units: str | None = None
-    radius: str | None = None
+    columns: channel -> column; units: channel -> unit; radius: "flat", "25.4cm" or a number [m], None: as in the file;
+    each as for `read_recording`. Called with a file it returns its recording.
+    """
 
-    def __call__(self, file: Path) -> Recording:
-        """Read one recording."""
-        return read_recording(
-            file,
-            columns=parse_columns(self.columns) if self.columns else None,
-            units=parse_units(self.units) if self.units else None,
-            radius=self.radius,
-        )
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    radius: str | float | None = None
+
+    def __call__(self, file: Path | str) -> Recording:
+        """Return the recording in a file. Errors: RecordingError, see `read_recording`."""
+        return read_recording(file, columns=self.columns, radius=self.radius, units=self.units)
 
     def words(self) -> list[str]:
-        """Return the options again as words of the command line."""
-        given = (("--columns", self.columns), ("--units", self.units), ("--radius", self.radius))
-        return [word for option, text in given if text is not None for word in (option, text)]
+        """Return the words of a command line that read recordings in the same way."""
+        words = []
+        for option, values in (("--columns", self.columns), ("--units", self.units)):
+            if values:
+                words += [option, assignments_text(values)]
+        if self.radius is not None:
+            words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
+        return words
+
+
+def _with_unit(radius: float) -> str:
+    return f"{float(radius)!r}m" if isfinite(radius) else "flat"

@@ -1,45 +1,38 @@
 """Recordings of a tire on a rig: what was measured, in SI, checked, and with all that reading them did."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from .channels import UNIT_OF, Match, known_channel, match_channels, says_absolute, unit_of_column
-from .formats import Header, RecordingError, Table, Wanted, open_table
+from .channels import UNIT_OF
+from .description import facts, html_table, one_line
+from .formats import RecordingError, Table, open_table
 from .formats.table import quoted
+from .frames import array_table, array_units, frame_table, is_single, single_radius
+from .interpretation import EXAMPLE_UNITS, Interpreted, interpret, plan_reading
 from .memory import memory_available, readable_size
-from .metadata import Sidecar, read_sidecar
-from .rows import Rows, complete_rows
-from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps, gap_notes
-from .sign_convention import compressive_signs
-from .units import STANDARD_ATMOSPHERE, Conversion, UnitError, conversion, parse_radius
+from .metadata import Settings, read_sidecar
+from .origin import Origin
+from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
+from .units import conversion
 
 __all__ = ["Recording", "RecordingError", "read_recording", "write_recording"]
 
 FloatArray = NDArray[np.float64]
 
-DEEPEST = 1.0
-"""A compression [m] beyond the diameter of any bicycle wheel: its unit is wrong."""
-
-_EXAMPLE_UNITS = {
-    "time": "s",
-    "deflection": "mm",
-    "radius": "cm",
-    "force": "N",
-    "pressure": "kPa",
-    "temperature": "degC",
-    "speed": "m/s",
-}
-_HOUSE_UNITS = {**_EXAMPLE_UNITS, "deflection": "cm", "temperature": "K"}
+_HOUSE_UNITS = {**EXAMPLE_UNITS, "deflection": "cm", "temperature": "K"}
 _SIGNIFICANT_DIGITS = 12
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Recording:
     """What was measured on a tire, sample by sample.
 
@@ -56,7 +49,7 @@ class Recording:
 
     All arrays have the shape (samples,), samples >= 2, and are read-only.
     Errors: RecordingError (SampleFault where one sample is at fault) for unequal lengths, fewer than two
-    samples, time that does not increase, a radius of zero, values not finite or beyond `BEYOND_BELIEF`.
+    samples, time that does not increase, a radius of zero, values not finite or beyond `LARGEST_PLAUSIBLE`.
     """
 
     name: str
@@ -90,6 +83,75 @@ class Recording:
                 check_values(name, values)
         object.__setattr__(self, "surface_radius", checked_radius(self.surface_radius))
         check_time(self.time)
+
+    @classmethod
+    def from_arrays(
+        cls,
+        time: ArrayLike,
+        deflection: ArrayLike,
+        force: ArrayLike,
+        surface_radius: ArrayLike | None = None,
+        *,
+        name: str = "recording",
+        units: Mapping[str, str] | None = None,
+    ) -> Recording:
+        """Return a recording of arrays, lists or columns, with the checks and the sign rule of a file.
+
+        Parameters
+        time, deflection, force   shape (samples,); copied; [s], [m], [N] unless `units` says otherwise
+        surface_radius            the same, or one for all samples: a number [m], inf, "flat" or "25.4 cm"
+        units                     channel -> unit: {"deflection": "mm", "force": "kN", "radius": "cm"}
+
+        Samples that lack a value (NaN) are skipped, signs that are clearly the other way round are turned;
+        `notes` says so. Errors: RecordingError, one sentence with the sample, the value and the next step.
+        """
+        origin = Origin(name, "arrays")
+        channel_units = array_units(origin, units)
+        arrays = {"time": time, "deflection": deflection, "force": force}
+        radius = None
+        if surface_radius is None or is_single(surface_radius):
+            radius = single_radius(origin, surface_radius, channel_units["radius"])
+            channel_units["radius"] = "m"
+        else:
+            arrays["radius"] = surface_radius
+        table = array_table(origin, arrays)
+        return _recording_of(origin, table, Settings(units=channel_units, radius=radius))
+
+    @classmethod
+    def from_dataframe(
+        cls,
+        frame: Any,
+        *,
+        name: str = "recording",
+        columns: Mapping[str, str] | None = None,
+        radius: str | float | None = None,
+        units: Mapping[str, str] | None = None,
+    ) -> Recording:
+        """Return a recording of a pandas, polars or Arrow table, read like a file of the same columns.
+
+        Parameters
+        frame    units stand in the column names, such as `Load [kN]`; a named or dated index is a column too
+        columns, radius, units   as for `read_recording`
+
+        Errors: RecordingError, one sentence with column, sample, value and the next step.
+        """
+        origin = Origin(name, "frame")
+        return _recording_of(origin, frame_table(origin, frame), Settings(columns or {}, units or {}, radius))
+
+    def __repr__(self) -> str:
+        return one_line(self.name, self._facts())
+
+    def _repr_html_(self) -> str:
+        extra = [
+            (name, "recorded")
+            for name in ("pressure", "temperature", "speed")
+            if getattr(self, name) is not None
+        ]
+        notes = [("note", note) for note in self.notes]
+        return html_table(self.name, [*self._facts(), *extra, *notes])
+
+    def _facts(self) -> tuple[tuple[str, str], ...]:
+        return facts(self.time, self.deflection, self.surface_radius, self.force)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -138,34 +200,31 @@ def read_recording(
     radius    of the surface, over a column of it: "flat", "25.4cm", "-50.8 cm", or a number [m]
     units     channel -> unit, over what the file says
 
-    What is not said here may stand in a sidecar (`tirelab.sidecar`). Rows that lack a value are skipped,
-    signs that are clearly the other way round are turned, gaps are left as they are; `notes` tells all of it.
+    What is not said here may stand in a sidecar (`metadata`). Rows that lack a value are skipped, signs that
+    are clearly the other way round are turned, gaps are left as they are; `notes` lists all of it.
 
     Errors: RecordingError, one sentence with file, row, column, value and the next step.
     """
     path = Path(path)
     table = open_table(path)
     sidecar = read_sidecar(path)
-    matches = match_channels(path, table.headers, table.time_axis, {**sidecar.columns, **(columns or {})})
-    single_radius, notes = _given_radius(path, table, matches, sidecar, radius)
-    if single_radius is not None:
-        matches.pop("radius", None)
-    headers = {name: table.headers[match.index] for name, match in matches.items()}
-    conversions = _conversions(path, headers, {**sidecar.units, **(units or {})})
-    _refuse_too_large(path, table, len(headers) + 1)
-    read = table.read([Wanted(match.index, name) for name, match in matches.items()])
-    rows = complete_rows(path, headers, read)
-    values = {name: _in_si(column, conversions[name]) for name, column in rows.values.items()}
-    if single_radius is not None:
-        values["radius"] = np.full(len(values["time"]), single_radius)
-    notes = [*read.notes, *rows.notes, *notes]
-    notes += [f"settings read from {source}" for source in sidecar.sources]
-    notes += _unit_notes(conversions, headers)
-    doubt = _turn_signs(values, matches, notes)
-    notes += gap_notes(values["time"])
+    settings = sidecar.overruled(columns, units, radius)
+    plan = plan_reading(Origin(path.name), table, settings)
+    _refuse_too_large(path, table, len(plan.headers) + 1)
+    return _checked(interpret(plan, table.read(plan.wanted), sidecar.sources), path.stem, path)
+
+
+def _recording_of(origin: Origin, table: Table, settings: Settings) -> Recording:
+    plan = plan_reading(origin, table, settings)
+    return _checked(interpret(plan, table.read(plan.wanted)), origin.name, None)
+
+
+def _checked(found: Interpreted, name: str, source: Path | None) -> Recording:
+    """Return the recording; a sample that cannot be is refused with its place in the file or table."""
+    values = found.values
     try:
         recording = Recording(
-            name=path.stem,
+            name=name,
             time=values["time"],
             deflection=values["deflection"],
             surface_radius=values["radius"],
@@ -173,12 +232,12 @@ def read_recording(
             pressure=values.get("pressure"),
             temperature=values.get("temperature"),
             speed=values.get("speed"),
-            source=path,
-            notes=tuple(notes),
+            source=source,
+            notes=found.notes,
         )
     except SampleFault as fault:
-        raise rows.error(fault.index, fault.channel, fault.what) from None
-    _check_loading(rows, recording, doubt)
+        raise found.rows.error(fault.index, fault.channel, fault.what) from None
+    found.check_loading()
     return recording
 
 
@@ -201,58 +260,6 @@ def write_recording(recording: Recording, path: Path | str) -> None:
         ) from None
 
 
-def _given_radius(
-    path: Path, table: Table, matches: Mapping[str, Match], sidecar: Sidecar, radius: str | float | None
-) -> tuple[float | None, list[str]]:
-    """The radius of every row and the note of where it is from; None where a column gives it."""
-    column = quoted(table.headers[matches["radius"].index].text) if "radius" in matches else ""
-    try:
-        if radius is not None:
-            over = column or (sidecar.radius and sidecar.radius_source)
-            instead = f", not taken from {over}" if over else ""
-            return parse_radius(radius), [f"surface radius {_told(parse_radius(radius))} as given{instead}"]
-        if column:
-            unused = [f"radius of {sidecar.radius_source} not used: column {column} gives it"]
-            return None, unused if sidecar.radius else []
-        if sidecar.radius:
-            length = parse_radius(sidecar.radius)
-            return length, [f"surface radius {_told(length)} from {sidecar.radius_source}"]
-    except UnitError as error:
-        place = sidecar.radius_source if radius is None else path.name
-        raise RecordingError(f"{place}: {error}") from None
-    raise RecordingError(
-        f"{path.name}: the radius of the surface is not known; add a column such as radius [cm] (inf: flat), "
-        'or give --radius flat (25.4cm, -50.8cm), or write radius = "flat" into recording.toml beside it'
-    )
-
-
-def _told(radius: float) -> str:
-    return "flat" if np.isinf(radius) else f"{radius:.6g} m"
-
-
-def _conversions(
-    path: Path, headers: Mapping[str, Header], units: Mapping[str, str]
-) -> dict[str, Conversion]:
-    found = {}
-    for name in units:
-        known_channel(name, f"{path.name}, units")
-    for name, header in headers.items():
-        place = f"{path.name}, column {quoted(header.text)}"
-        unit = units.get(name) or unit_of_column(header, name)
-        if not unit:
-            raise RecordingError(
-                f"{place}: has no unit; write it into the header, such as {name} [{_EXAMPLE_UNITS[name]}], "
-                f"or give it: --units {name}={_EXAMPLE_UNITS[name]}"
-            )
-        try:
-            found[name] = conversion(unit, UNIT_OF[name])
-            if name == "pressure" and not found[name].absolute_pressure and says_absolute(header):
-                found[name] = conversion(f"{unit} abs", UNIT_OF[name])
-        except UnitError as error:
-            raise RecordingError(f"{place}: {error} (or give it: --units {name}=UNIT)") from None
-    return found
-
-
 def _refuse_too_large(path: Path, table: Table, columns: int) -> None:
     needed, available = table.bytes_needed(columns), memory_available()
     if needed > available:
@@ -260,65 +267,6 @@ def _refuse_too_large(path: Path, table: Table, columns: int) -> None:
         raise RecordingError(
             f"{path.name}: has {size} and needs about {readable_size(needed)} of memory, of which "
             f"{readable_size(available)} are free; cut it into shorter recordings, or keep every tenth row"
-        )
-
-
-def _in_si(values: FloatArray, convert: Conversion) -> FloatArray:
-    # What overflows here is refused as beyond belief, with its place, when the recording is made.
-    with np.errstate(over="ignore"):
-        return convert.to_si(values)
-
-
-def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Header]) -> list[str]:
-    notes = []
-    for name, convert in conversions.items():
-        stated = headers[name].unit
-        if stated and stated not in (convert.unit, convert.unit.removesuffix(" abs")):
-            notes.append(f"{name} read in {convert.unit} as given, not in {stated}")
-        if convert.absolute_pressure:
-            notes.append(
-                f"pressure is absolute: the standard atmosphere, {STANDARD_ATMOSPHERE:.0f} Pa, taken off"
-            )
-    return notes
-
-
-def _turn_signs(values: dict[str, FloatArray], matches: Mapping[str, Match], notes: list[str]) -> str:
-    """Turn what counts the other way round; where that cannot be told, the words for it."""
-    for name, match in matches.items():
-        if match.sign < 0 and name in values:
-            values[name] = -values[name]
-            notes.append(f"{name} turned in sign, as asked")
-    signs = compressive_signs(values["deflection"], values["force"])
-    settled = {name for name in ("deflection", "force") if matches[name].sign}
-    turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
-    if len(settled) == 2:
-        return ""
-    if signs.doubt or turned & settled:
-        return signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned"
-    for name in sorted(turned):
-        values[name] = -values[name]
-    if turned:
-        notes.append(f"the rig counts compression negative: {' and '.join(sorted(turned))} turned in sign")
-    return ""
-
-
-def _check_loading(rows: Rows, recording: Recording, doubt: str) -> None:
-    deflection = recording.deflection
-    if deflection.min() == deflection.max():
-        raise rows.error(
-            0,
-            "deflection",
-            f"is {deflection[0]:.6g} m in every row; name the column that moves with --columns",
-        )
-    if doubt:
-        raise RecordingError(
-            f"{rows.path.name}: which way the rig counts cannot be told ({doubt}); say it with a sign before "
-            "each column, + to keep and - to turn it: --columns deflection=-NAME,force=+NAME"
-        )
-    deepest = int(np.argmax(deflection))
-    if deflection[deepest] > DEEPEST:
-        raise rows.error(
-            deepest, "deflection", f"{deflection[deepest]:.6g} m is deeper than a wheel; correct its unit"
         )
 
 

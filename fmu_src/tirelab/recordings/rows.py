@@ -1,14 +1,14 @@
-"""The rows of a file that can be used: those that lack a value are skipped and told, never filled."""
+"""The rows of a file that can be used: those that lack a value are skipped with a note, never filled."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
+from .origin import Origin
 
 FloatArray = NDArray[np.float64]
 
@@ -26,9 +26,9 @@ OPTIONAL = ("pressure", "temperature", "speed")
 class Rows:
     """The complete rows, by channel in the file's units: the sample each came from, and what was skipped."""
 
-    path: Path
+    origin: Origin
     headers: Mapping[str, Header]
-    values: dict[str, FloatArray]
+    values: Mapping[str, FloatArray]
     kept: NDArray[np.intp] | None
     columns: Columns
     notes: tuple[str, ...]
@@ -41,10 +41,10 @@ class Rows:
         """The error for one value, with its place in the file."""
         header = self.headers.get(channel)
         column = f", column {quoted(header.text)}" if header else ""
-        return RecordingError(f"{self.path.name}, {self.place(index)}{column}: {what}")
+        return RecordingError(f"{self.origin}, {self.place(index)}{column}: {what}")
 
 
-def complete_rows(path: Path, headers: Mapping[str, Header], columns: Columns) -> Rows:
+def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Columns) -> Rows:
     """The rows with a value in every required channel; an optional channel with many blanks is left out.
 
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
@@ -52,9 +52,7 @@ def complete_rows(path: Path, headers: Mapping[str, Header], columns: Columns) -
     values = dict(zip(headers, columns.values, strict=True))
     samples = len(values["time"])
     if samples == 0:
-        raise RecordingError(
-            f"{path.name}: has a header and no rows below it; record again, or export it anew"
-        )
+        raise RecordingError(f"{origin}: has a header and no rows below it; record again, or export it anew")
     # The greatest value is NaN as soon as one is: one pass, and no array of flags for a clean column.
     blank = {name: np.isnan(column) for name, column in values.items() if np.isnan(column.max())}
     notes: list[str] = []
@@ -72,7 +70,7 @@ def complete_rows(path: Path, headers: Mapping[str, Header], columns: Columns) -
         channels = " and ".join(name for name in blank if np.any(blank[name][partial]))
         if len(partial) > MOST_BLANK * samples:
             raise RecordingError(
-                f"{path.name}: {len(partial)} of {samples} rows have no value for {channels} "
+                f"{origin}: {len(partial)} of {samples} rows have no value for {channels} "
                 f"({columns.place(int(partial[0]))} the first); delete them, or record the channels together"
             )
         if len(partial):
@@ -84,10 +82,10 @@ def complete_rows(path: Path, headers: Mapping[str, Header], columns: Columns) -
     left = len(values["time"])
     if left < 2:
         raise RecordingError(
-            f"{path.name}: has {'a single row' if left else 'no row'} with a value in every column; "
+            f"{origin}: has {'a single row' if left else 'no row'} with a value in every column; "
             "a recording needs at least two"
         )
-    return Rows(path, headers, values, kept, columns, tuple(notes))
+    return Rows(origin, headers, values, kept, columns, tuple(notes))
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

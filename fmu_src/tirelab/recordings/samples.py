@@ -1,4 +1,4 @@
-"""What a sample of a recording may be, and what is said of one that may not."""
+"""Checks of single samples: finite, plausible, time that increases, no radius of zero."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ FloatArray = NDArray[np.float64]
 GAP = 1.75
 """A step in time longer than this many sampling intervals is a gap: at least one sample is missing."""
 
-BEYOND_BELIEF = {
+LARGEST_PLAUSIBLE = {
     "time": 1e12,
     "deflection": 1e3,
     "force": 1e8,
@@ -19,7 +19,7 @@ BEYOND_BELIEF = {
     "temperature": 1e4,
     "speed": 1e4,
 }
-"""Magnitudes [SI] that no rig and no ride reaches: a number beyond them is not what its unit says."""
+"""Magnitudes [SI] that no rig and no ride reaches: the unit of a larger number is wrong."""
 
 
 class SampleFault(RecordingError):
@@ -70,8 +70,8 @@ def check_time(time: FloatArray) -> None:
 
 
 def check_values(name: str, values: FloatArray) -> None:
-    """Refuse what is not finite or beyond belief, by its least and greatest value."""
-    most = BEYOND_BELIEF[name]
+    """Refuse what is not finite or not plausible, by its least and greatest value."""
+    most = LARGEST_PLAUSIBLE[name]
     least = 0.0 if name == "temperature" else -most
     if least <= float(values.min()) and float(values.max()) <= most:
         return

@@ -14,7 +14,7 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True)
 class Signs:
-    """The factors, 1 or -1, that make both channels positive in compression, or why they cannot be told."""
+    """The factors, 1 or -1, that make deflection and force positive in compression, or why they are in doubt."""
 
     deflection: int = 1
     force: int = 1
@@ -56,14 +56,14 @@ def _evidence(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tu
     xx, ff = float(np.dot(deflection, deflection)), float(np.dot(force, force))
     covariance = float(np.dot(deflection, force)) - samples * x * f
     spread_x, spread_f = xx - samples * x * x, ff - samples * f * f
-    told = spread_x > ROUNDING * xx and spread_f > ROUNDING * ff
+    varied = spread_x > ROUNDING * xx and spread_f > ROUNDING * ff
     size = np.abs(force)
     pushing = float(np.dot(force, size))
     size *= size
     compressed = float(np.dot(deflection, size))
     reached = float(np.dot(np.abs(deflection), size))
     return (
-        covariance / float(np.sqrt(spread_x * spread_f)) if told else 0.0,
+        covariance / float(np.sqrt(spread_x * spread_f)) if varied else 0.0,
         pushing / ff if ff > 0.0 else 0.0,
         compressed / reached if reached > 0.0 else 0.0,
     )

@@ -56,3 +56,18 @@ def test_the_command_tells_bad_input_in_a_sentence(
     assert done.exit_code == 2
     assert sentence in done.output
     assert not Path("tire.json").exists()
+
+
+def test_a_folder_is_read_by_the_order_of_names_and_a_stray_text_file_is_skipped(tmp_path: Path) -> None:
+    folder = tmp_path / "set"
+    folder.mkdir()
+    for name in ("b", "a"):
+        write_recording(triangle(), folder / f"{name}.csv")
+    (folder / "notes.txt").write_text("The tire was warm.\n", encoding="utf-8")
+    outs = [tmp_path / f"{name}.json" for name in ("folder", "files")]
+    done = CliRunner().invoke(command, [str(folder), "--out", str(outs[0])])
+    assert done.exit_code == 0, done.output
+    assert "note: notes.txt skipped: it is no recording" in done.output
+    files = [str(folder / f"{name}.csv") for name in ("a", "b")]
+    assert CliRunner().invoke(command, [*files, "--out", str(outs[1])]).exit_code == 0
+    assert outs[0].read_text(encoding="utf-8") == outs[1].read_text(encoding="utf-8")

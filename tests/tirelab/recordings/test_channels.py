@@ -52,7 +52,7 @@ class TestColumns:
         time, deflection, force = loading()
         header = "time [s],deflection [cm],force [N],temp [degC],temperature [degC]"
         path = write_rows(tmp_path / "a.csv", header, time, deflection, force, time, time)
-        assert "leave it out with temperature=" in refusal(path, radius="flat")
+        assert "leave it out with --columns temperature=" in refusal(path, radius="flat")
         assert read_recording(path, radius="flat", columns={"temperature": ""}).temperature is None
 
     def test_a_symbol_needs_its_own_case_or_a_fitting_unit(self, tmp_path: Path) -> None:

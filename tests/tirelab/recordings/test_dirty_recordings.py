@@ -195,7 +195,7 @@ def test_reading_by_columns_and_by_rows_agree(
         layout = find_layout(path)
         whole = careful.RowReader(path, layout, wanted)
         rows = whole.read_file()
-        whole.cells.settled_mark()
+        whole.cells.decimal_mark()
         by_rows: Any = (rows.values, [f"row {line}" for line in rows.lines])
     except RecordingError as error:
         by_rows = str(error)

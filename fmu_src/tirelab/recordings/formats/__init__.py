@@ -11,7 +11,7 @@ from .parquet import ParquetTable
 from .table import Columns, Header, RecordingError, Table, Wanted, quoted
 from .tdms import TdmsTable
 
-__all__ = ["Columns", "Header", "RecordingError", "Table", "Wanted", "open_table"]
+__all__ = ["LOADERS", "TEXT_SUFFIXES", "Columns", "Header", "RecordingError", "Table", "Wanted", "open_table"]
 
 LOADERS: dict[str, Callable[[Path], Table]] = {
     ".csv": DelimitedTable,
@@ -30,7 +30,9 @@ LOADERS: dict[str, Callable[[Path], Table]] = {
 }
 """The file suffixes that can be read, in lower case."""
 
-_TEXT_SUFFIXES = tuple(suffix for suffix, loader in LOADERS.items() if loader is DelimitedTable)
+TEXT_SUFFIXES = tuple(suffix for suffix, loader in LOADERS.items() if loader is DelimitedTable)
+"""Those of them that are text."""
+
 _SIGNATURES = (
     (b"PAR1", "Parquet", "rename it to .parquet"),
     (b"MATLAB 5.0", "MATLAB", "rename it to .mat"),
@@ -64,7 +66,7 @@ def open_table(path: Path) -> Table:
     if not start:
         raise RecordingError(f"{path.name}: is empty (0 bytes); record again, or export the file anew")
     suffix = path.suffix.lower()
-    if suffix in _TEXT_SUFFIXES:
+    if suffix in TEXT_SUFFIXES:
         for signature, kind, advice in _SIGNATURES:
             if start.startswith(signature):
                 raise RecordingError(f"{path.name}: is no text table but {kind}; {advice}")

@@ -22,7 +22,7 @@ LONGEST_LINE = 1_048_576
 class Rows:
     """The columns wanted, and row by row the line of the file each came from, counted from 1."""
 
-    values: list[FloatArray]
+    values: tuple[FloatArray, ...]
     lines: NDArray[np.int64]
     next_line: int
 
@@ -66,10 +66,10 @@ class RowReader:
                     column.append(number(row[index] if index < len(row) else "", start, header, flat))
         except csv.Error as error:
             raise RecordingError(
-                f"{self.path.name}, row {line}: {error}; a quote may be left open there: mend it"
+                f"{self.path.name}, row {line}: {error}; a quote may be left open there: close it"
             ) from None
         values = [np.frombuffer(column, dtype=np.float64) if column else np.empty(0) for column in columns]
-        return Rows(values, np.array(lines, dtype=np.int64), first_line + rows.line_num)
+        return Rows(tuple(values), np.array(lines, dtype=np.int64), first_line + rows.line_num)
 
     def read_file(self) -> Rows:
         """The rows of the whole file, whichever way its lines end."""
@@ -115,7 +115,7 @@ class _Cells:
         self.commas = layout.separator != ","
         self.mark = ""
         self.mark_line = 0
-        self.settled = layout.decimal_comma
+        self.certain = layout.decimal_comma
         self.doubtful: RecordingError | None = None
 
     def number(self, text: str, line: int, header: str, flat: bool) -> float:
@@ -136,15 +136,15 @@ class _Cells:
             return float("nan")
         if flat and word in FLAT_WORDS:
             return float("inf")
-        raise not_a_number(self.path, f"row {line}", header, text)
+        raise not_a_number(self.path.name, f"row {line}", header, text)
 
     def _with_comma(self, text: str, line: int, header: str) -> float:
         if not (self.commas and DECIMAL_COMMA.fullmatch(text)):
-            raise not_a_number(self.path, f"row {line}", header, text)
+            raise not_a_number(self.path.name, f"row {line}", header, text)
         self.hold_to(",", line, header, text)
-        if not self.settled and not MAYBE_THOUSANDS.fullmatch(text):
-            self.settled = True
-        elif not self.settled and self.doubtful is None:
+        if not self.certain and not MAYBE_THOUSANDS.fullmatch(text):
+            self.certain = True
+        elif not self.certain and self.doubtful is None:
             self.doubtful = RecordingError(
                 f"{self.path.name}, row {line}, column {quoted(header)}: {quoted(text)} may have a decimal "
                 "comma or a thousands mark, and no number here tells which; write decimal points"
@@ -161,8 +161,8 @@ class _Cells:
                 f"{mark!r} and row {self.mark_line} has {self.mark!r}; write all numbers with one mark"
             )
 
-    def settled_mark(self) -> str:
+    def decimal_mark(self) -> str:
         """The decimal mark of the file; an error if its commas might as well be thousands marks."""
-        if self.doubtful is not None and not self.settled:
+        if self.doubtful is not None and not self.certain:
             raise self.doubtful
         return self.mark

@@ -47,12 +47,12 @@ class DelimitedTable:
             reader = RowReader(self.path, self.layout, wanted)
             pieces.add_rows(reader.read_file())
         notes = list(self.layout.notes)
-        if reader.cells.settled_mark() == ",":
+        if reader.cells.decimal_mark() == ",":
             notes.append("commas read as decimal commas")
         if reader.comments:
-            told = listed([str(line) for line in reader.comments])
-            notes.append(f"comment lines (#) skipped: row {told}")
-        return Columns(pieces.joined(), pieces.place, tuple(notes))
+            lines = listed([str(line) for line in reader.comments])
+            notes.append(f"comment lines (#) skipped: row {lines}")
+        return Columns(tuple(pieces.joined()), pieces.place, tuple(notes))
 
 
 class _Pieces:

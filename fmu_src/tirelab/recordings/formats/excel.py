@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..units import FLAT_WORDS, split_header
-from .libraries import load_library, told_by
+from .libraries import load_library, reading_with
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, not_a_number, quoted
 
 MOST_ROWS = 1_048_576
@@ -27,13 +27,13 @@ class ExcelTable:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.library = load_library(path, "openpyxl", "excel")
+        self.library = load_library(path, "openpyxl", "openpyxl")
         self.notes: tuple[str, ...] = ()
         self.sheet = ""
         self.header_row = 0
         header: Sequence[Any] = ()
         first: Sequence[Any] = ()
-        with told_by(path, "an Excel workbook"), self._open() as book:
+        with reading_with(path, "an Excel workbook"), self._open() as book:
             for sheet in book.worksheets:
                 rows = enumerate(sheet.iter_rows(values_only=True), 1)
                 start = list(islice(((n, row) for n, row in rows if _holds_any(row)), 2))
@@ -74,7 +74,7 @@ class ExcelTable:
         columns = [array("d") for _ in wanted]
         lines = array("q")
         empty: list[int] = []
-        with told_by(self.path, "an Excel workbook"), self._open() as book:
+        with reading_with(self.path, "an Excel workbook"), self._open() as book:
             for line, row in enumerate(book[self.sheet].iter_rows(values_only=True), 1):
                 if line > MOST_ROWS:
                     raise RecordingError(
@@ -97,7 +97,7 @@ class ExcelTable:
         for want, seconds in zip(wanted, values, strict=True):
             if want.index in self.dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
-        return Columns(values, lambda i: f"row {lines[i]}", self.notes)
+        return Columns(tuple(values), lambda i: f"row {lines[i]}", self.notes)
 
     def _number(self, cell: object, line: int, want: Wanted) -> float:
         if cell is None:
@@ -112,7 +112,7 @@ class ExcelTable:
             return float("nan")
         if want.channel == "radius" and word in FLAT_WORDS:
             return float("inf")
-        raise not_a_number(self.path, f"row {line}", self.headers[want.index].text, cell)
+        raise not_a_number(self.path.name, f"row {line}", self.headers[want.index].text, cell)
 
 
 def _holds_any(row: Sequence[Any]) -> bool:

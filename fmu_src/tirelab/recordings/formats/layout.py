@@ -67,7 +67,7 @@ def find_layout(path: Path) -> Layout:
         body = [row for row in rows if row and not is_comment(row[0])]
     except csv.Error as error:
         raise RecordingError(
-            f"{path.name}, row {start + 1}: {error}; mend the quotes of the header"
+            f"{path.name}, row {start + 1}: {error}; correct the quotes of the header"
         ) from None
     plain = data_line == 1 and all(line.endswith("\n") for line in lines[: start + 1])
     bytes_per_row = len(raw) / max(len(lines) - start, 1)
@@ -79,7 +79,7 @@ def find_layout(path: Path) -> Layout:
             notes = (*notes, f"column names taken from the comment in row {start}")
         else:
             names = [""] * len(header)
-            notes = (*notes, "the file has no header row: its columns are told by number")
+            notes = (*notes, "the file has no header row: its columns are known by number only")
         headers = tuple(_header(cell, number) for number, cell in enumerate(names, 1))
         return Layout(encoding, separator, headers, start, decimal_comma, bytes_per_row, plain, notes)
     headers = tuple(_header(cell, number) for number, cell in enumerate(header, 1))

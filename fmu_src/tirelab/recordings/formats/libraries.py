@@ -1,4 +1,4 @@
-"""The libraries behind the rarer formats: what to install for them, and what they say while they read."""
+"""The libraries behind the rarer formats: what to install for them, and what they log while they read."""
 
 import gc
 import importlib
@@ -11,34 +11,33 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-from ...errors import TirelabError
+from ...errors import TirelabError, missing_library
 from .table import RecordingError
 
 
-def load_library(path: Path, module: str, extra: str) -> ModuleType:
-    """A library that the base installation may lack; RecordingError says which extra brings it."""
+def load_library(path: Path, module: str, package: str) -> ModuleType:
+    """A library that the base installation may lack; RecordingError says which package brings it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return importlib.import_module(module)
     except ImportError:
-        raise RecordingError(
-            f"{path.name}: reading {path.suffix} needs {module}; install it: pip install 'tirelab[{extra}]'"
-        ) from None
+        purpose = f"{path.name}: reading {path.suffix}"
+        raise RecordingError(missing_library(purpose, module, package)) from None
 
 
 @contextmanager
-def told_by(path: Path, kind: str, logger: str = "tirelab") -> Iterator[list[str]]:
-    """Read with a library: what it logs is gathered, what it raises on a damaged file is one sentence."""
-    said = _Gathered()
+def reading_with(path: Path, kind: str, logger: str = "tirelab") -> Iterator[list[str]]:
+    """Read with a library: its warnings are collected, what it raises on a damaged file becomes one sentence."""
+    warned = _Warnings()
     known = [name for name in logging.root.manager.loggerDict if name.split(".")[0] == logger]
     kept = [(log, log.handlers, log.propagate) for log in map(logging.getLogger, known)]
     for log, _, _ in kept:
-        log.handlers, log.propagate = [said], False
+        log.handlers, log.propagate = [warned], False
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            yield said.messages
+            yield warned.messages
     except TirelabError:
         raise
     except MemoryError:
@@ -47,7 +46,7 @@ def told_by(path: Path, kind: str, logger: str = "tirelab") -> Iterator[list[str
         ) from None
     except Exception as error:  # the libraries raise anything from struct.error to AttributeError
         reason = " ".join(f"{type(error).__name__}: {error}".split())[:120]
-        _let_go(error)
+        _discard(error)
         raise RecordingError(
             f"{path.name}: cannot be read as {kind} ({reason}); it may be damaged or cut short: save it anew"
         ) from None
@@ -56,7 +55,7 @@ def told_by(path: Path, kind: str, logger: str = "tirelab") -> Iterator[list[str
             log.handlers, log.propagate = handlers, propagate
 
 
-class _Gathered(logging.Handler):
+class _Warnings(logging.Handler):
     """The warnings that a library logs, as texts."""
 
     def __init__(self) -> None:
@@ -67,8 +66,8 @@ class _Gathered(logging.Handler):
         self.messages.append(" ".join(record.getMessage().split()))
 
 
-def _let_go(error: Exception) -> None:
-    """Drop what a failed library left half made, without the complaints of destructors on the terminal."""
+def _discard(error: Exception) -> None:
+    """Drop the objects of a failed library without the messages of their destructors on the terminal."""
     hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
     try:
         traceback.clear_frames(error.__traceback__)

@@ -8,7 +8,8 @@ import numpy as np
 import scipy.io
 from numpy.typing import NDArray
 
-from .libraries import told_by
+from ..origin import Origin
+from .libraries import reading_with
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, numbers, of_one_length, sample_place
 
 MOST_COLUMNS = 64
@@ -28,7 +29,7 @@ class MatlabTable:
                     f"{path.name}: is a MATLAB 7.3 (HDF5) file; in MATLAB, save it with save(..., '-v7')"
                 )
         # Variables are opened one by one: the shapes say which may be channels before anything is loaded.
-        with told_by(path, "a .mat file"):
+        with reading_with(path, "a .mat file"):
             self.shapes = [(name, shape, kind) for name, shape, kind in scipy.io.whosmat(str(path))]
             structs = [name for name, _, kind in self.shapes if kind == "struct"]
             self.structs = dict(_fields(_load(path, structs))) if structs else {}
@@ -59,7 +60,7 @@ class MatlabTable:
         """The vectors wanted; refused when their lengths differ."""
         headers = self.headers
         names = {self.columns[want.index][0] for want in wanted}
-        with told_by(self.path, "a .mat file"):
+        with reading_with(self.path, "a .mat file"):
             loaded = _load(self.path, sorted(names - self.structs.keys()))
         values: list[FloatArray] = []
         for want in wanted:
@@ -67,9 +68,9 @@ class MatlabTable:
             array = np.asarray(self.structs[name] if name in self.structs else loaded[name])
             along = array if array.shape[0] == max(array.shape) else array.T
             column = along[:, part or 0]
-            values.append(numbers(self.path, headers[want.index], column, want.channel))
-        of_one_length(self.path, [headers[want.index] for want in wanted], values)
-        return Columns(values, sample_place)
+            values.append(numbers(Origin(self.path.name), headers[want.index], column, want.channel))
+        of_one_length(Origin(self.path.name), [headers[want.index] for want in wanted], values)
+        return Columns(tuple(values), sample_place)
 
 
 def _load(path: Path, names: Sequence[str]) -> dict[str, Any]:

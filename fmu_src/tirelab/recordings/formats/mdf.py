@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .libraries import load_library, told_by
+from ..origin import Origin
+from .libraries import load_library, reading_with
 from .table import (
     Columns,
     FloatArray,
@@ -28,30 +29,30 @@ class _Stream(io.BufferedReader):
 
     def __init__(self, path: Path) -> None:
         super().__init__(io.FileIO(path))
-        self.name_told = path.name
+        self.file_name = path.name
         self.reads_left = LEAST_READS + path.stat().st_size
 
     def read(self, size: int | None = -1, /) -> bytes:
         """The next bytes, while there is patience."""
         self.reads_left -= 1
         if self.reads_left < 0:
-            raise RecordingError(f"{self.name_told}: is damaged: its blocks lead in a circle; save it anew")
+            raise RecordingError(f"{self.file_name}: is damaged: its blocks lead in a circle; save it anew")
         return super().read(size)
 
 
 class MdfTable:
-    """The channels of an MDF file; the same name in two groups is told apart as "0/Force" and "1/Force"."""
+    """The channels of an MDF file; the same name in two groups becomes "0/Force" and "1/Force"."""
 
     time_axis: int | None = 0
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.library = load_library(path, "asammdf", "mdf")
+        self.library = load_library(path, "asammdf", "asammdf")
         self.channels: list[tuple[int, int]] = [(-1, -1)]
         self.headers: list[Header] = [Header("time", "s", "time")]
         self.samples = 0
         with (
-            told_by(path, "MDF", "asammdf") as self.said,
+            reading_with(path, "MDF", "asammdf") as self.warned,
             _Stream(path) as file,
             self.library.MDF(file) as mdf,
         ):
@@ -80,7 +81,7 @@ class MdfTable:
         read: dict[int, FloatArray] = {}
         clock: FloatArray | None = None
         with (
-            told_by(self.path, "MDF", "asammdf"),
+            reading_with(self.path, "MDF", "asammdf"),
             _Stream(self.path) as file,
             self.library.MDF(file) as mdf,
         ):
@@ -90,14 +91,16 @@ class MdfTable:
                 group, index = self.channels[want.index]
                 # asammdf would leave invalid samples out, and with them the channel's step with the others.
                 signal = mdf.get(group=group, index=index, ignore_invalidation_bits=True)
-                column = numbers(self.path, self.headers[want.index], signal.samples, want.channel)
+                column = numbers(
+                    Origin(self.path.name), self.headers[want.index], signal.samples, want.channel
+                )
                 invalid = signal.invalidation_bits
                 if invalid is not None:
                     column = np.where(np.asarray(invalid, dtype=bool), np.nan, column)
                 read[want.index] = column
                 stamps = np.asarray(signal.timestamps, dtype=np.float64)
                 clock = stamps if clock is None else clock
-                of_one_length(self.path, [self.headers[i] for i in read], list(read.values()))
+                of_one_length(Origin(self.path.name), [self.headers[i] for i in read], list(read.values()))
                 if not np.array_equal(clock, stamps):
                     first, this = self.headers[next(iter(read))], self.headers[want.index]
                     raise RecordingError(
@@ -107,5 +110,5 @@ class MdfTable:
         if clock is None:
             raise RecordingError(f"{self.path.name}: holds no channel but time; name channels with --columns")
         columns = [clock if want.index == self.time_axis else read[want.index] for want in wanted]
-        notes = tuple(f"asammdf warns: {message}" for message in dict.fromkeys(self.said))
-        return Columns(columns, sample_place, notes)
+        notes = tuple(f"asammdf warns: {message}" for message in dict.fromkeys(self.warned))
+        return Columns(tuple(columns), sample_place, notes)

@@ -1,12 +1,13 @@
 """Parquet files, read with polars; units stand in the column names, as in a CSV header."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import polars as pl
 
+from ..origin import Origin
 from ..units import split_header
-from .libraries import told_by
+from .libraries import reading_with
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, numbers, sample_place
 
 
@@ -17,18 +18,14 @@ class ParquetTable:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        with told_by(path, "Parquet"):
+        with reading_with(path, "Parquet"):
             self.schema = pl.read_parquet_schema(path)
             self.rows = int(pl.scan_parquet(path).select(pl.len()).collect().item())
 
     @property
     def headers(self) -> Sequence[Header]:
-        """The columns in the order of the file; a column of dates is counted in seconds."""
-        made = []
-        for text, kind in self.schema.items():
-            name, unit = split_header(text)
-            made.append(Header(name, "s" if kind.is_temporal() else unit, text))
-        return made
+        """The columns in the order of the file."""
+        return frame_headers(self.schema)
 
     def bytes_needed(self, columns: int) -> int:
         """The columns as stored and as float64."""
@@ -40,14 +37,28 @@ class ParquetTable:
         values: list[FloatArray] = []
         for want in wanted:
             header = headers[want.index]
-            with told_by(self.path, "Parquet"):
+            with reading_with(self.path, "Parquet"):
                 series = pl.read_parquet(self.path, columns=[header.text]).to_series()
-                if series.dtype.is_numeric():
-                    series = series.cast(pl.Float64).fill_null(float("nan"))
-                elif series.dtype.is_nested():
-                    raise RecordingError(
-                        f"{self.path.name}, column {header.text!r}: holds lists, not numbers; "
-                        f"name another column with --columns {want.channel}=NAME"
-                    )
-                values.append(numbers(self.path, header, series.to_numpy(), want.channel))
-        return Columns(values, sample_place)
+                values.append(series_values(Origin(self.path.name), header, series, want.channel))
+        return Columns(tuple(values), sample_place)
+
+
+def frame_headers(schema: Mapping[str, pl.DataType]) -> tuple[Header, ...]:
+    """The columns of a frame; a column of dates is counted in seconds."""
+    made = []
+    for text, kind in schema.items():
+        name, unit = split_header(text)
+        made.append(Header(name, "s" if kind.is_temporal() else unit, text))
+    return tuple(made)
+
+
+def series_values(origin: Origin, header: Header, series: pl.Series, channel: str) -> FloatArray:
+    """A column of a frame as float64, nulls as NaN; RecordingError for lists, text and the like."""
+    if series.dtype.is_nested():
+        raise RecordingError(
+            f"{origin}, column {header.text!r}: holds lists, not numbers; "
+            f"name another column with {origin.columns(**{channel: 'NAME'})}"
+        )
+    if series.dtype.is_numeric():
+        series = series.cast(pl.Float64).fill_null(float("nan"))
+    return numbers(origin, header, series.to_numpy(), channel)

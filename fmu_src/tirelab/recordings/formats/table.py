@@ -1,15 +1,15 @@
-"""What every file format is turned into before anything is made of it: named columns of numbers."""
+"""What every file format is turned into before it is interpreted: named columns of numbers."""
 
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import TirelabError
+from ..origin import Origin
 
 FloatArray = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class Wanted:
 class Columns:
     """The columns wanted, in the file's own units and of one length; NaN where the file holds no value."""
 
-    values: list[FloatArray]
+    values: tuple[FloatArray, ...]
     place: Callable[[int], str]
     notes: tuple[str, ...] = ()
 
@@ -91,16 +91,16 @@ def sample_place(index: int) -> str:
     return f"sample {index + 1}"
 
 
-def not_a_number(path: Path, place: str, header: str, value: object) -> RecordingError:
+def not_a_number(origin: object, place: str, header: str, value: object) -> RecordingError:
     """The error for text in a column of numbers."""
     clock = re.search(r"\d:\d\d|\d{4}-\d\d-\d\d", str(value))
     advice = "write times as numbers of seconds" if clock else "correct it, or delete the row"
     return RecordingError(
-        f"{path.name}, {place}, column {quoted(header)}: {quoted(value)} is not a number; {advice}"
+        f"{origin}, {place}, column {quoted(header)}: {quoted(value)} is not a number; {advice}"
     )
 
 
-def numbers(path: Path, header: Header, values: NDArray[Any], channel: str) -> FloatArray:
+def numbers(origin: Origin, header: Header, values: NDArray[Any], channel: str) -> FloatArray:
     """A column that a library has read, as float64; date and time become seconds from the first sample.
 
     Errors: RecordingError for text, truth values, complex numbers, and dates in any channel but time.
@@ -115,17 +115,17 @@ def numbers(path: Path, header: Header, values: NDArray[Any], channel: str) -> F
     held = kinds.get(column.dtype.kind, "text")
     first = f", {quoted(column.flat[0])} the first" if column.size and held == "text" else ""
     raise RecordingError(
-        f"{path.name}, column {quoted(header.text)}: holds {held}{first}, not numbers; "
-        f"name another column with --columns {channel}=NAME"
+        f"{origin}, column {quoted(header.text)}: holds {held}{first}, not numbers; "
+        f"name another column with {origin.columns(**{channel: 'NAME'})}"
     )
 
 
-def of_one_length(path: Path, wanted: Sequence[Header], values: Sequence[FloatArray]) -> None:
+def of_one_length(origin: Origin, wanted: Sequence[Header], values: Sequence[FloatArray]) -> None:
     """Refuse columns of unequal length: they were not recorded together."""
     lengths = [len(column) for column in values]
     if len(set(lengths)) > 1:
-        told = listed([f"{quoted(h.text)} {n}" for h, n in zip(wanted, lengths, strict=True)])
+        lengths_shown = listed([f"{quoted(h.text)} {n}" for h, n in zip(wanted, lengths, strict=True)])
         raise RecordingError(
-            f"{path.name}: the columns have unequal numbers of samples ({told}); "
-            "resample them to one time, or name columns that were recorded together with --columns"
+            f"{origin}: the columns have unequal numbers of samples ({lengths_shown}); "
+            "resample them to one time, or name columns that were recorded together"
         )

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..origin import Origin
 from ..units import split_header
-from .libraries import load_library, told_by
+from .libraries import load_library, reading_with
 from .table import (
     Columns,
     FloatArray,
@@ -26,12 +27,12 @@ class TdmsTable:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.library = load_library(path, "nptdms", "tdms")
+        self.library = load_library(path, "nptdms", "npTDMS")
         self.channels: list[tuple[str, str] | None] = []
         self.headers: list[Header] = []
         self.samples = 0
         waveform = False
-        with told_by(path, "TDMS", "nptdms") as self.said, path.open("rb") as stream:
+        with reading_with(path, "TDMS", "nptdms") as self.warned, path.open("rb") as stream:
             file = self.library.TdmsFile.open(stream)
             found = [channel for group in file.groups() for channel in group.channels()]
             names = [channel.name for channel in found]
@@ -56,7 +57,7 @@ class TdmsTable:
         columns: dict[int, FloatArray] = {}
         clocks: dict[str, tuple[object, ...]] = {}
         time: FloatArray | None = None
-        with told_by(self.path, "TDMS", "nptdms"), self.path.open("rb") as stream:
+        with reading_with(self.path, "TDMS", "nptdms"), self.path.open("rb") as stream:
             file = self.library.TdmsFile.open(stream)
             for want in wanted:
                 place = self.channels[want.index]
@@ -65,23 +66,23 @@ class TdmsTable:
                 channel = file[place[0]][place[1]]
                 header = self.headers[want.index]
                 headers.append(header)
-                columns[want.index] = numbers(self.path, header, channel[:], want.channel)
+                columns[want.index] = numbers(Origin(self.path.name), header, channel[:], want.channel)
                 if want.index != self.time_axis and "wf_increment" in channel.properties:
                     clocks[header.text] = _clock(channel)
                     time = _waveform_time(channel) if time is None else time
-        of_one_length(self.path, headers, list(columns.values()))
+        of_one_length(Origin(self.path.name), headers, list(columns.values()))
         if self.time_axis in {want.index for want in wanted}:
             if time is None:
                 raise RecordingError(
                     f"{self.path.name}: no channel wanted has a waveform time; name one: time=NAME"
                 )
             if len(set(clocks.values())) > 1:
-                told = " and ".join(quoted(name) for name in list(clocks)[:2])
+                named = " and ".join(quoted(name) for name in list(clocks)[:2])
                 raise RecordingError(
-                    f"{self.path.name}: {told} start or step differently in time; resample them to one time"
+                    f"{self.path.name}: {named} start or step differently in time; resample them to one time"
                 )
             columns[self.time_axis or 0] = time
-        return Columns([columns[want.index] for want in wanted], sample_place, _notes(self.said))
+        return Columns(tuple(columns[want.index] for want in wanted), sample_place, _notes(self.warned))
 
 
 def _header(channel: Any, repeated: bool) -> Header:
@@ -97,9 +98,9 @@ def _waveform_time(channel: Any) -> FloatArray:
     return start + float(channel.properties["wf_increment"]) * np.arange(len(channel), dtype=np.float64)
 
 
-def _notes(said: Sequence[str]) -> tuple[str, ...]:
+def _notes(warned: Sequence[str]) -> tuple[str, ...]:
     # npTDMS reads a file that was cut short as far as it goes, and only logs it.
-    return tuple(f"npTDMS warns: {message}" for message in dict.fromkeys(said))
+    return tuple(f"npTDMS warns: {message}" for message in dict.fromkeys(warned))
 
 
 def _clock(channel: Any) -> tuple[object, ...]:
