@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from house_form import loading, write_rows
+from tirelab.recordings.metadata import Settings, Sidecar, read_sidecar
 from tirelab.recordings.recording import RecordingError, read_recording
 
 
@@ -47,3 +48,54 @@ class TestSidecar:
         bare.with_name("recording.toml").write_text(text, encoding="utf-8")
         with pytest.raises(RecordingError, match=rf"recording\.toml.*{said}"):
             read_recording(bare)
+
+    def test_a_radius_in_the_file_of_settings_is_not_used_beside_a_column(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(
+            tmp_path / "a.csv", "time [s],x [cm],Rb [cm],F [N]", time, deflection, [25.4] * len(time), force
+        )
+        (tmp_path / "recording.toml").write_text('radius = "flat"\n', encoding="utf-8")
+        recording = read_recording(path)
+        assert recording.surface_radius[0] == pytest.approx(0.254)
+        assert "radius of recording.toml not used: column 'Rb [cm]' gives it" in recording.notes
+
+    def test_without_a_sidecar_nothing_is_known(self, tmp_path: Path) -> None:
+        assert read_sidecar(tmp_path / "a.csv") == Sidecar()
+
+    def test_one_file_that_is_both_sidecars_is_read_once(self, tmp_path: Path) -> None:
+        (tmp_path / "recording.toml").write_text('radius = "flat"\n', encoding="utf-8")
+        assert read_sidecar(tmp_path / "recording.csv").sources == ("recording.toml",)
+
+    def test_the_own_sidecar_goes_over_the_folders_channel_by_channel(self, tmp_path: Path) -> None:
+        (tmp_path / "recording.toml").write_text(
+            'radius = "flat"\n[columns]\ntime = "a"\nforce = "b"\n', encoding="utf-8"
+        )
+        (tmp_path / "own.toml").write_text('[columns]\nforce = "c"\n', encoding="utf-8")
+        sidecar = read_sidecar(tmp_path / "own.csv")
+        assert sidecar.columns == {"time": "a", "force": "c"}
+        assert (sidecar.radius, sidecar.radius_source) == ("flat", "recording.toml")
+        assert sidecar.sources == ("recording.toml", "own.toml")
+
+    def test_the_users_settings_go_over_a_sidecars(self) -> None:
+        sidecar = Sidecar("flat", "a.toml", {"time": "a", "force": "b"}, {"force": "kN"}, ("a.toml",))
+        assert sidecar.overruled({"force": "c"}, None, 0.3) == Settings(
+            {"time": "a", "force": "c"}, {"force": "kN"}, 0.3, "flat", "a.toml"
+        )
+        assert sidecar.overruled(None, {"force": "N"}, None).units == {"force": "N"}
+
+    @pytest.mark.parametrize(
+        ("text", "advice"),
+        [
+            ('radius = ""', "radius is '', not text; write radius = \"25.4 cm\""),
+            ("[units]\nforce = 3", 'units.force is 3, not text; write units.force = "..."'),
+        ],
+    )
+    def test_what_to_write_is_said(self, tmp_path: Path, text: str, advice: str) -> None:
+        (tmp_path / "recording.toml").write_text(text, encoding="utf-8")
+        with pytest.raises(RecordingError) as caught:
+            read_sidecar(tmp_path / "a.csv")
+        assert str(caught.value) == f"recording.toml: {advice}"
+
+    def test_an_empty_column_leaves_a_channel_out(self, tmp_path: Path) -> None:
+        (tmp_path / "recording.toml").write_text('[columns]\nspeed = ""\n', encoding="utf-8")
+        assert read_sidecar(tmp_path / "a.csv").columns == {"speed": ""}

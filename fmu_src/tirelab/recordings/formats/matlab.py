@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
 from numpy.typing import NDArray
 
 from ..origin import Origin
@@ -30,7 +29,7 @@ class MatlabTable:
                 )
         # Variables are opened one by one: the shapes say which may be channels before anything is loaded.
         with reading_with(path, "a .mat file"):
-            self.shapes = [(name, shape, kind) for name, shape, kind in scipy.io.whosmat(str(path))]
+            self.shapes = [(name, shape, kind) for name, shape, kind in _scipy_io().whosmat(str(path))]
             structs = [name for name, _, kind in self.shapes if kind == "struct"]
             self.structs = dict(_fields(_load(path, structs))) if structs else {}
         self.columns: list[tuple[str, int | None]] = []
@@ -73,10 +72,17 @@ class MatlabTable:
         return Columns(tuple(values), sample_place)
 
 
+def _scipy_io() -> Any:
+    # Imported here because it takes a sixth of a second that only readers of .mat files need.
+    import scipy.io
+
+    return scipy.io
+
+
 def _load(path: Path, names: Sequence[str]) -> dict[str, Any]:
     if not names:
         return {}
-    loaded: dict[str, Any] = scipy.io.loadmat(str(path), variable_names=list(names))
+    loaded: dict[str, Any] = _scipy_io().loadmat(str(path), variable_names=list(names))
     return {name: value for name, value in loaded.items() if not name.startswith("__")}
 
 
