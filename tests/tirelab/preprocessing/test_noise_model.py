@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.fft import dct, idct
 from scipy.signal import lfilter
 from tirelab.preprocessing.noise_model import MEAN_DRIFT, Noise, first_guess, noise_of
 
@@ -47,7 +48,7 @@ def test_the_deflections_noise_widens_where_the_tire_is_stiff():
     noise = noise_of(
         rng.standard_normal(COUNT) * np.hypot(6.0, through), through, 0.0, np.ones(COUNT, dtype=bool)
     )
-    # sqrt(36 + 64) / 6, from a floor that is itself estimated.
+    # sqrt(36 + 64) / 6, from a noise of the force that is itself estimated.
     assert noise.spread[-1] / noise.spread[0] == pytest.approx(10.0 / 6.0, rel=0.25)
 
 
@@ -57,7 +58,7 @@ def test_the_first_guess_does_not_see_a_smooth_misfit():
     assert guess.level == pytest.approx(5.0, rel=0.06)
 
 
-def test_the_mean_counts_only_as_far_as_it_does_not_mean_drift():
+def test_the_mean_counts_only_as_far_as_it_does_not_drift():
     """The likelihood of a constant is that of the covariance I + w^2 1 1', written as a matrix and solved."""
     noise = Noise(6.0, 6.0, np.ones(1), np.ones(40), np.ones(40))
     values = 6.0 * np.random.default_rng(7).standard_normal(40) + 3.0
@@ -66,8 +67,8 @@ def test_the_mean_counts_only_as_far_as_it_does_not_mean_drift():
     direction, part = noise.mean_drift
     for a, b in ((values, values), (values, constant), (constant, constant)):
         left, right = noise.whitened(a), noise.whitened(b)
-        told = left @ right - part * (direction @ left) * (direction @ right)
-        assert told == pytest.approx(a @ np.linalg.solve(covariance, b), rel=1e-9)
+        likelihood = left @ right - part * (direction @ left) * (direction @ right)
+        assert likelihood == pytest.approx(a @ np.linalg.solve(covariance, b), rel=1e-9)
 
 
 @pytest.mark.parametrize("gathered", [True, False])
@@ -83,3 +84,62 @@ def test_outliers_that_gather_under_the_largest_loads_are_no_spikes(gathered):
     ones = np.ones(COUNT, dtype=bool)
     noise = noise_of(values, np.zeros(COUNT), 0.0, ones, load=load)
     assert np.all(noise.weight[out] == (1.0 if gathered else 0.0))
+
+
+def test_spikes_are_counted():
+    values = np.random.default_rng(9).standard_normal(COUNT)
+    values[[100, 2000, 5000]] += 40.0
+    assert quiet(values).spikes == 3
+
+
+def test_a_noise_without_any_weight_has_no_drift():
+    noise = Noise(6.0, 6.0, np.ones(1), np.ones(40), np.zeros(40))
+    direction, part = noise.mean_drift
+    assert part == 0.0
+    assert not np.any(direction)
+
+
+def test_columns_are_whitened_like_single_ones():
+    values = lfilter([1.0], [1.0, -0.9], np.random.default_rng(10).standard_normal((COUNT, 2)), axis=0)
+    noise = quiet(values[:, 0])
+    for i in range(2):
+        np.testing.assert_allclose(noise.whitened(values)[:, i], noise.whitened(values[:, i]), rtol=1e-12)
+
+
+def test_samples_at_corners_of_the_motion_are_left_out_unless_most_are():
+    values = np.random.default_rng(11).standard_normal(COUNT)
+    for every, left_out in ((10, True), (2, False)):
+        resolved = np.arange(COUNT) % every != 0
+        noise = noise_of(values, np.zeros(COUNT), 0.0, resolved)
+        assert np.all(noise.weight[~resolved][1:] == (0.0 if left_out else 1.0))
+
+
+def test_a_fit_of_half_as_many_coefficients_has_taken_half_of_the_variance():
+    # A projection onto COUNT / 2 columns leaves sigma^2 / 2: the cosines of every second frequency.
+    values = 6.0 * np.random.default_rng(12).standard_normal(COUNT)
+    spectrum = dct(values, norm="ortho")
+    spectrum[::2] = 0.0
+    left = idct(spectrum, norm="ortho")
+    noise = noise_of(left, np.zeros(COUNT), COUNT / 2, np.ones(COUNT, dtype=bool))
+    assert np.std(left) == pytest.approx(6.0 / np.sqrt(2.0), rel=0.03)
+    assert noise.innovation == pytest.approx(6.0, rel=0.05)
+
+
+def test_slow_noise_that_a_model_has_fitted_counts_in_the_level():
+    # White noise of 1 N beside a relaxation of 1 N; the model has fitted the lowest frequencies.
+    rng = np.random.default_rng(13)
+    decay = np.exp(-1.0 / 100.0)
+    slow = lfilter([np.sqrt(1.0 - decay**2)], [1.0, -decay], rng.standard_normal(COUNT))
+    spectrum = dct(rng.standard_normal(COUNT) + slow, norm="ortho")
+    leverage = np.where(np.arange(COUNT) < 60, 1.0, 0.0)
+    left = idct(np.where(leverage > 0.0, 0.0, spectrum), norm="ortho")
+    ones = np.ones(COUNT, dtype=bool)
+    level = noise_of(left, np.zeros(COUNT), 60.0, ones, leverage).level
+    assert np.std(left) < 1.15
+    assert level == pytest.approx(np.sqrt(2.0), rel=0.1)
+
+
+def test_most_samples_are_never_left_out():
+    values = np.random.default_rng(14).standard_normal(200)
+    # Three samples of four at a corner would leave a quarter; they are taken as resolved then.
+    assert np.all(noise_of(values, np.zeros(200), 0.0, np.arange(200) % 4 == 0).weight == 1.0)

@@ -1,0 +1,92 @@
+"""Recordings that cannot be diagnosed are refused with the reason; the least that can is not."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from radialtire import TireModel
+from tirelab.preprocessing.data_checks import (
+    FEWEST_SAMPLES,
+    FEWEST_STEPS,
+    PoorRecording,
+    check_recordings,
+    check_signal,
+)
+from tirelab.preprocessing.dataset import dataset_of
+from tirelab.preprocessing.noise_model import first_guess
+from tirelab.recordings.recording import Recording
+
+TIME = np.arange(2000) * 0.01
+DEFLECTION = 10e-3 * (1.0 - np.cos(2.0 * np.pi * 0.25 * TIME))
+FORCE = 1e5 * DEFLECTION
+
+
+def recording(**channels: np.ndarray) -> Recording:
+    given: dict[str, Any] = {"time": TIME, "deflection": DEFLECTION, "force": FORCE, **channels}
+    return Recording("a", surface_radius=np.full(len(given["time"]), np.inf), **given)
+
+
+def refused(*recordings: Recording) -> str:
+    with pytest.raises(PoorRecording) as caught:
+        check_recordings(recordings)
+    return str(caught.value)
+
+
+def checked(**channels: np.ndarray) -> None:
+    dataset = dataset_of([recording(**channels)], TireModel())
+    residual = dataset.experiments[0].force - dataset.experiments[0].elastic(
+        dataset.experiments[0].motion.deflection
+    )
+    check_signal(dataset, [first_guess(residual)])
+
+
+def first(samples: int) -> dict[str, np.ndarray]:
+    return {"time": TIME[:samples], "deflection": DEFLECTION[:samples], "force": FORCE[:samples]}
+
+
+def test_a_good_recording_passes() -> None:
+    check_recordings([recording(), recording(**first(FEWEST_SAMPLES))])
+    checked()
+
+
+def test_nothing_is_refused() -> None:
+    assert refused() == "no recording was given; name at least one to diagnose"
+
+
+@pytest.mark.parametrize(
+    ("channels", "reason"),
+    [
+        (first(FEWEST_SAMPLES - 1), "has 99 samples; at least 100"),
+        ({"deflection": np.full(2000, 0.01)}, "one constant deflection"),
+        ({"force": np.full(2000, 10.0)}, "one constant force"),
+        ({"deflection": DEFLECTION - 0.03}, "never loads the tire"),
+        (
+            {"deflection": np.where(TIME < 10.0, 0.0, 0.01)},
+            f"2 distinct deflections only; sample each cycle at {FEWEST_STEPS}",
+        ),
+    ],
+)
+def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason: str) -> None:
+    assert f"recording a {reason}" in refused(recording(), recording(**channels)).replace(
+        "holds ", ""
+    ).replace("shows ", "")
+
+
+@pytest.mark.parametrize(
+    ("channels", "reason"),
+    [
+        (
+            {"deflection": 1e-3 * np.random.default_rng(1).standard_normal(2000)},
+            "the deflection of recording 1 is noise",
+        ),
+        (
+            {"force": np.random.default_rng(2).standard_normal(2000)},
+            "does not follow its deflection (correlation",
+        ),
+        ({"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 13.0 * TIME))}, "about one sample to a cycle"),
+    ],
+)
+def test_a_signal_without_a_tire_in_it_is_refused(channels: dict[str, np.ndarray], reason: str) -> None:
+    with pytest.raises(PoorRecording) as caught:
+        checked(**channels)
+    assert reason in str(caught.value)
