@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -21,6 +21,7 @@ from typing import Any
 from ..diagnosis.diagnosis_file import DiagnosisFileError, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, run_diagnosis
 from ..errors import TirelabError
+from ..recordings.files import folder_recordings
 from ..recordings.formats import LOADERS
 from ..recordings.metadata import FOLDER_SIDECAR
 from ..recordings.reading import Reading
@@ -56,7 +57,7 @@ def diagnose_batch(batch: Batch, cores: Cores, show: Callable[[str], None]) -> B
     Raises TirelabError where there is nothing to diagnose or `out` cannot be written.
     """
     out = batch.out
-    items, skipped = find_items(batch.paths, out)
+    items, skipped = find_items(batch.paths, out, batch.reading.columns)
     settings_hash = _settings_hash(batch)
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -88,8 +89,13 @@ def diagnose_batch(batch: Batch, cores: Cores, show: Callable[[str], None]) -> B
     return result
 
 
-def find_items(paths: Sequence[Path], out: Path) -> tuple[tuple[Item, ...], tuple[Path, ...]]:
-    """Return the items that get a verdict, and the files skipped for their suffix; what lies in `out` is ignored."""
+def find_items(
+    paths: Sequence[Path], out: Path, columns: Mapping[str, str] | None = None
+) -> tuple[tuple[Item, ...], tuple[Path, ...]]:
+    """Return the items that get a verdict, and the files that are no recordings; what lies in `out` is ignored.
+
+    columns: channel -> column, as the user names them
+    """
     found: dict[str, Item] = {}
     skipped: list[Path] = []
 
@@ -110,7 +116,7 @@ def find_items(paths: Sequence[Path], out: Path) -> tuple[tuple[Item, ...], tupl
             if _is_hidden(folder, path) or out.resolve() in (folder.resolve(), *folder.resolve().parents):
                 continue
             files = sorted(p for p in folder.iterdir() if p.is_file() and not p.name.startswith("."))
-            recordings = [p for p in files if p.suffix.lower() in LOADERS]
+            recordings = folder_recordings(folder, columns)[0]
             skipped += [
                 p for p in files if p not in recordings and p.name != FOLDER_SIDECAR and p.suffix != ".toml"
             ]

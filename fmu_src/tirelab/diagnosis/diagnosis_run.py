@@ -21,7 +21,7 @@ from radialtire import InputError, ParameterError, TireFileError, TireModel, rea
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..fmu.replay import replay
-from ..recordings.formats import LOADERS
+from ..recordings.files import recording_files
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report import write_report
@@ -44,7 +44,7 @@ Diagnoser = Callable[[Sequence[Path], "Path | None", Path], None]
 class DiagnosisRun:
     """A diagnosis that was written: the verdict, the content of diagnosis.json, and what the readers and the FMU noted.
 
-    notes: of the recordings, as they were read; warnings: that belong to the top of the report
+    notes: of the files that were skipped and of the recordings, as they were read; warnings: that belong to the top of the report
     """
 
     verdict: Verdict
@@ -71,7 +71,8 @@ def run_diagnosis(
     """
     report = progress or (lambda sentence: None)
     baseline = _baseline(tire)
-    files, kept_files = _files(recordings), _files(held_out)
+    files, skipped = recording_files(recordings, reading.columns)
+    kept_files, more_skipped = recording_files(held_out, reading.columns)
     _check_once([*files, *kept_files])
     _check_folder(out)
     fitted = [_read(file, reading, report) for file in files]
@@ -101,8 +102,9 @@ def run_diagnosis(
         on_fitted.after,
         held_out=(kept, on_kept.before, on_kept.after) if kept else None,
     )
-    notes = tuple(f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes)
-    return DiagnosisRun(verdict, content, notes, (*more, *warnings))
+    notes = [*map(str, (*skipped, *more_skipped))]
+    notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
+    return DiagnosisRun(verdict, content, tuple(notes), (*more, *warnings))
 
 
 def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
@@ -131,20 +133,6 @@ def _baseline(tire: Path | None) -> TireModel:
 def _read(file: Path, reading: Reading, progress: Progress) -> Recording:
     progress(f"reading {file.name}")
     return reading(file)
-
-
-def _files(given: Sequence[Path]) -> list[Path]:
-    """Return the recordings' files, those of a folder in the order of their names."""
-    found = []
-    for path in given:
-        if not path.is_dir():
-            found.append(path)
-            continue
-        inside = sorted(f for f in path.iterdir() if f.suffix.lower() in LOADERS and f.is_file())
-        if not inside:
-            raise TirelabError(f"{path} holds no recording; a recording ends in one of {', '.join(LOADERS)}")
-        found += inside
-    return found
 
 
 def _check_once(files: Sequence[Path]) -> None:
