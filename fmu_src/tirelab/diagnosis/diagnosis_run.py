@@ -44,7 +44,7 @@ Diagnoser = Callable[[Sequence[Path], "Path | None", Path], None]
 class DiagnosisRun:
     """A diagnosis that was written: the verdict, the content of diagnosis.json, and what the readers and the FMU noted.
 
-    notes: of the files that were skipped and of the recordings, as they were read; warnings: that belong to the top of the report
+    notes: of the files that were skipped, and of the recordings as they were read; warnings: for the top of the report
     """
 
     verdict: Verdict
