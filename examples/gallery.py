@@ -19,9 +19,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 from radialtire import Hull1996, TireModel
-from radialtire.hull1996 import CONCAVE_RADII, CONVEX_RADII, SECOND_READING
+from radialtire.hull1996 import CONCAVE_RADIUS_RANGE, CONVEX_RADIUS_RANGE, SECOND_READING
 from radialtire.power_law import force
-from tirelab.terrain import OBSTACLES, draw_ride, flat, ground_from, place, ride
+from tirelab.terrain import OBSTACLES, HubPath, draw_ride, flat, ground_from, place, ride
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "quarter_bicycle"))
 from ride_with_fmu import COUPLINGS, STEPS, outcome, reference, stepped
@@ -41,7 +41,7 @@ def law(path: Path) -> None:
     """Draw A and B over the ground's curvature, and the force over the deflection on a few surfaces."""
     figure = Figure(figsize=(10.0, 7.2), layout="constrained")
     axes = figure.subplots(2, 2)
-    curvature = np.linspace(1.0 / CONCAVE_RADII[1], 1.0 / CONVEX_RADII[0], 2001)
+    curvature = np.linspace(1.0 / CONCAVE_RADIUS_RANGE[1], 1.0 / CONVEX_RADIUS_RANGE[0], 2001)
     radius = np.divide(1.0, curvature, out=np.full(curvature.shape, np.inf), where=np.abs(curvature) > 1e-9)
     readings = {
         "E0 = 0.2519 /cm, as printed": Hull1996(),
@@ -194,8 +194,7 @@ def _draw_motion(ground: str, speed: float, path: Path) -> None:
         on_ground.ground,
         elastic_array(TIRE),
         speed=speed,
-        position=motion.position,
-        hub_height=motion.hub_height,
+        hub_path=HubPath(motion.hub_height, motion.position),
     )
     draw_ride(drawn, path, f"the quarter bicycle: {on_ground.name}")
 

@@ -1,6 +1,6 @@
-"""The FMI 2.0 face of a bicycle tire: names, units and states; the physics is in `radialtire`.
+"""The FMI 2.0 interface of a bicycle tire: names, units and states; the physics is in `radialtire`.
 
-The tire is the file tire.json in the FMU's resources, so a corrected tire differs from the baseline by data only.
+The tire is the file tire.json in the FMU's resources, so a corrected tire differs from its baseline by data only.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from radialtire import check_inputs, parameters_of, power_law, read_tire, with_p
 from radialtire.model import DEFLECTION_HIGHEST, DEFLECTION_LOWEST, ModelState
 
 DEFLECTION, SURFACE_RADIUS, RADIAL_FORCE, RADIAL_STIFFNESS, IN_TESTED_RANGE, FIRST_PARAMETER = range(6)
-"""Value references: a variable's place in the model description."""
+"""Value references: the index of a variable in the model description."""
 
 BOTH_INPUTS, FORCE_ALONE = (DEFLECTION, SURFACE_RADIUS), (RADIAL_FORCE,)
 """What most hosts set and get at every step; the Linux binary passes tuples, the Windows one lists."""
@@ -86,9 +86,9 @@ class BicycleTire(Fmi2Slave):
         self._parameters = {name: value for name, (_, value) in parameters_of(self._tire).items()}
         self._pending: dict[str, float] = {}
         self._inputs: Sequence[float] = (0.0, FLAT)
-        self._surface = math.nan  # the surface of _elastic; NaN where every step takes the long way
+        self._surface = math.nan  # the surface of _elastic; NaN where every step needs the full evaluation
         self._elastic = power_law.on_surface(0.0, 1.0)
-        self._state = self._tire.rest
+        self._state = self._tire.initial_state
         self._start_time = 0.0
         self._force = 0.0
         self._current = False
@@ -109,7 +109,7 @@ class BicycleTire(Fmi2Slave):
             Boolean,
             "in_tested_range",
             Fmi2Causality.output,
-            "Whether curvature, deflection and force are within those in which the tire was measured",
+            "Whether curvature, deflection and force are within the tested range",
         )
         self._names = list(self._parameters)
         for name, (parameter, _) in parameters_of(self._tire).items():
@@ -136,7 +136,7 @@ class BicycleTire(Fmi2Slave):
     # Values, by value reference: pythonfmu's own accessors check types at every call, ours are on the hot path.
 
     def set_real(self, vrs: Sequence[int], values: Sequence[float]) -> None:
-        """Take inputs and parameters; what is wrong with them is said by the step that would use them."""
+        """Take inputs and parameters; the step that would use a wrong value reports it."""
         self._current = False
         if vrs == BOTH_INPUTS:
             self._inputs = values
@@ -201,16 +201,16 @@ class BicycleTire(Fmi2Slave):
     def setup_experiment(
         self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
     ) -> None:
-        """Remember when the experiment starts."""
+        """Store the start time of the experiment."""
         self._start_time = start_time
 
     def exit_initialization_mode(self) -> None:
         """Begin the history with the inputs of the start."""
-        self._state = self._tire.rest._replace(time=self._start_time)
+        self._state = self._tire.initial_state._replace(time=self._start_time)
         self._state, _ = self._try(self._start_time)
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Accept the inputs at the end of the step, or discard the step with one message and leave all as it was."""
+        """Accept the inputs at the end of the step, or discard the step with one message and change nothing."""
         x, R = self._inputs
         if self._surface == R and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST and step_size >= 0.0:
             self._force = self._elastic(x)

@@ -3,8 +3,8 @@
     A(k), B(k) piecewise linear in k = 1/R between the surfaces measured, constant beyond the outermost ones
 
 R is the surface's radius: convex k > 0, flat k = 0, concave k < 0. No form is presumed between the surfaces, and
-nothing is extrapolated: two to six surfaces hardly tell more. The power law itself is equation 2 of Hull, Wang & Moore
-(1996), Cycling Science, Spring 1996; their own functions of R are the module `hull1996`.
+nothing is extrapolated: two to six surfaces hardly determine more. The power law itself is equation 2 of Hull, Wang &
+Moore (1996), Cycling Science, Spring 1996; their own functions of R are the module `hull1996`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar
 
-from .hull1996 import FLAT_RADIUS
+from .hull1996 import FLAT_COEFFICIENT, FLAT_EXPONENT, FLAT_RADIUS
 from .parameter import Parameter, ParameterError
 
 SURFACES_MAX = 6
@@ -26,13 +26,13 @@ SURFACES_MAX = 6
 def _parameters() -> tuple[Parameter, ...]:
     found: list[Parameter] = []
     for i in range(1, SURFACES_MAX + 1):
-        start = 550.9 if i == 1 else 0.0
+        start = FLAT_COEFFICIENT if i == 1 else 0.0
         unused = "" if i == 1 else "; 0 leaves the surface out"
         lowest = 1e-3 if i == 1 else 0.0
         found += [
             Parameter(f"curvature_{i}", f"k{i}", "1/m", 0.0, -1e4, 1e4, f"1/R of surface {i}, rising with i"),
             Parameter(f"coefficient_{i}", f"A{i}", "N/cm^B", start, lowest, 1e6, f"A on surface {i}{unused}"),
-            Parameter(f"exponent_{i}", f"B{i}", "1", 1.422, 0.1, 10.0, f"B on surface {i}"),
+            Parameter(f"exponent_{i}", f"B{i}", "1", FLAT_EXPONENT, 0.1, 10.0, f"B on surface {i}"),
         ]
     return tuple(found)
 
@@ -46,23 +46,23 @@ class CurvatureLaw:
     """
 
     curvature_1: float = 0.0
-    coefficient_1: float = 550.9
-    exponent_1: float = 1.422
+    coefficient_1: float = FLAT_COEFFICIENT
+    exponent_1: float = FLAT_EXPONENT
     curvature_2: float = 0.0
     coefficient_2: float = 0.0
-    exponent_2: float = 1.422
+    exponent_2: float = FLAT_EXPONENT
     curvature_3: float = 0.0
     coefficient_3: float = 0.0
-    exponent_3: float = 1.422
+    exponent_3: float = FLAT_EXPONENT
     curvature_4: float = 0.0
     coefficient_4: float = 0.0
-    exponent_4: float = 1.422
+    exponent_4: float = FLAT_EXPONENT
     curvature_5: float = 0.0
     coefficient_5: float = 0.0
-    exponent_5: float = 1.422
+    exponent_5: float = FLAT_EXPONENT
     curvature_6: float = 0.0
     coefficient_6: float = 0.0
-    exponent_6: float = 1.422
+    exponent_6: float = FLAT_EXPONENT
 
     name: ClassVar[str] = "curvature_law"
     parameters: ClassVar[tuple[Parameter, ...]] = _parameters()

@@ -1,13 +1,13 @@
-"""The contract of one piece of physics that a bare elastic law leaves out.
+"""The interface of one effect: physics that an elastic law alone leaves out.
 
-An effect is a pure response at one place of the signal's way from the deflection's reading to the force's reading:
+An effect is a pure response at one stage of the signal path from the measured deflection to the measured force:
 
-    place "deflection"  deflection read      -> deflection of wheel and tire
+    place "deflection"  measured deflection  -> deflection of wheel and tire
     place "series"      deflection           -> deflection of the tire (springs in series)
     place "scale"       factor               -> factor on the elastic force (pressure, softening)
     place "parallel"    force                -> force with what acts beside the elastic law
     place "inertia"     force                -> force with what accelerates
-    place "reading"     force                -> force read (lag, zero, ceiling)
+    place "reading"     force                -> measured force (lag, zero, ceiling)
 
 Effects of one place act in the order of the catalogue. After "parallel" a force below zero becomes zero, since the
 ground cannot pull.
@@ -27,11 +27,11 @@ State = tuple[float, ...]
 
 
 class Instant(NamedTuple):
-    """What an effect may know of one moment, all in SI except A.
+    """The quantities that an effect may use at one time, all in SI except A.
 
-    time: [s] since the first moment; interval: [s] since the last moment; first: whether this is the first moment
-    deflection: [m] at the places "deflection" and "series" the signal that the place began with, after them that of
-    the tire; rate: [m/s] of that deflection; acceleration: [m/s^2] of the deflection read
+    time: [s] since the first sample; interval: [s] since the previous sample; first: whether this is the first sample
+    deflection: [m] at the places "deflection" and "series" the input of the place, after them that of the tire
+    rate: [m/s] of that deflection; acceleration: [m/s^2] of the measured deflection
     coefficient, exponent: A [N/cm^B] and B [1] of the surface
     elastic_force: [N] at the place "scale" A x^B, after it A x^B with its factor, before it 0
     curvature: [1/m] of the surface, convex > 0
@@ -52,8 +52,8 @@ class Instant(NamedTuple):
 Response = Callable[[float, Instant, State, State], "tuple[float, State]"]
 """respond(signal, instant, state, values) -> (signal, state).
 
-Plain floats, math and tuples of fixed length only: the tool compiles it. At an interval of zero that is not the first
-moment the last moment is looked at again, perhaps with another deflection.
+Plain floats, math and tuples of fixed length only: the tool compiles it. An interval of zero after the first sample
+evaluates the last sample again, perhaps with another deflection.
 """
 
 
@@ -62,19 +62,19 @@ class Effect:
     """One piece of physics.
 
     name: as in the catalogue, tire files and verdicts; place: one of PLACES
-    parameters: in the order in which `respond` takes their values; the effect is off, exactly, when every parameter
-    that has an `off` value has it
-    rest: its state where nothing has happened yet
+    parameters: in the order in which `respond` takes their values; the effect vanishes exactly where every parameter
+    that has a neutral value has it
+    initial_state: its state before the first sample
     respond: the pure response (see Response)
-    statement: one sentence for the verdict; tell_tale: how it shows itself; imitators: what looks like it
+    statement: one sentence for the verdict; tell_tale: how it shows in a recording; imitators: what looks like it
     source: where equation and magnitudes come from
-    differentiates: whether it looks at rate or acceleration
+    differentiates: whether it uses rate or acceleration
     """
 
     name: str
     place: str
     parameters: tuple[Parameter, ...]
-    rest: State
+    initial_state: State
     respond: Response
     statement: str
     tell_tale: str
@@ -83,14 +83,14 @@ class Effect:
     differentiates: bool = False
 
     @property
-    def off(self) -> State:
-        """The values at which the effect vanishes: `off` where a parameter has it, else its start."""
-        return tuple(p.start if p.off is None else p.off for p in self.parameters)
+    def neutral(self) -> State:
+        """The values at which the effect vanishes: the neutral value of a parameter that has one, else its start."""
+        return tuple(p.start if p.neutral is None else p.neutral for p in self.parameters)
 
     @property
-    def typical(self) -> State:
-        """Everyday values, from which a search may begin; what the plain form does without stays at its start."""
-        return tuple(p.start if p.extra else p.everyday for p in self.parameters)
+    def nominal(self) -> State:
+        """Values of usual size, from which a search may begin; optional parameters stay at their start."""
+        return tuple(p.start if p.optional else p.nominal_value for p in self.parameters)
 
     def checked(self, values: State) -> State:
         """Return the values as floats, or raise ParameterError."""

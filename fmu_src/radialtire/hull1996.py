@@ -37,13 +37,13 @@ from .parameter import Parameter, ParameterError
 FLAT_RADIUS = 1e5
 """Surfaces of this radius [m] and more, of either sign, count as flat."""
 
-INFLATION_PRESSURE = 344.7e3
-"""Gauge pressure [Pa] of the tested tire: 50 psi."""
+WHEEL_RADIUS = 0.33
+"""Unloaded radius [m] of the tested wheel: 26 in with its tire."""
 
-CONVEX_RADII = (0.0127, 0.584)
+CONVEX_RADIUS_RANGE = (0.0127, 0.584)
 """Smallest and largest convex radius tested [m]."""
 
-CONCAVE_RADII = (-0.584, -0.381)
+CONCAVE_RADIUS_RANGE = (-0.584, -0.381)
 """Largest and smallest concave radius tested [m]."""
 
 DEFLECTION_MAX = 0.03175
@@ -59,16 +59,20 @@ SECOND_READING = 0.02519
 """E0 [1/cm] for which the article's own figures speak."""
 
 
+FLAT_COEFFICIENT, FLAT_EXPONENT = 550.9, 1.422
+"""C0 = C1 [N/cm^B] and C2 = C3 [1]: A and B on flat ground."""
+
+
 @dataclass(frozen=True)
 class Hull1996:
     """The article's law with its constants (5a to 6b); raises ParameterError outside their bounds."""
 
-    flat_coefficient: float = 550.9
+    flat_coefficient: float = FLAT_COEFFICIENT
     convex_coefficient_drop: float = 337.8
     convex_coefficient_decay: float = PRINTED_READING
     concave_coefficient_rise: float = 7822.0
     concave_coefficient_decay: float = 0.1398
-    flat_exponent: float = 1.422
+    flat_exponent: float = FLAT_EXPONENT
     convex_exponent_drop: float = 0.2469
     convex_exponent_decay: float = 0.1651
     concave_exponent_rise: float = 0.2128
@@ -76,49 +80,73 @@ class Hull1996:
 
     name: ClassVar[str] = "hull1996"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("flat_coefficient", "C0, C1", "N/cm^B", 550.9, 1e-3, 1e6, "A on flat ground"),
-        Parameter("convex_coefficient_drop", "D0", "N/cm^B", 337.8, 0.0, 1e6, "loss of A on a sharp edge"),
+        Parameter("flat_coefficient", "C0, C1", "N/cm^B", flat_coefficient, 1e-3, 1e6, "A on flat ground"),
+        Parameter(
+            "convex_coefficient_drop",
+            "D0",
+            "N/cm^B",
+            convex_coefficient_drop,
+            0.0,
+            1e6,
+            "loss of A on a sharp edge",
+        ),
         Parameter(
             "convex_coefficient_decay",
             "E0",
             "1/cm",
-            PRINTED_READING,
+            convex_coefficient_decay,
             0.0,
             100.0,
-            "how fast A recovers with the bump's radius; printed as -2519, 0.02519 is the second reading",
+            "rate at which A recovers with the bump's radius; printed as -2519, 0.02519 is the second reading",
         ),
         Parameter(
-            "concave_coefficient_rise", "D1", "N/cm^B", 7822.0, 0.0, 1e9, "gain of A extrapolated to Rb = 0"
+            "concave_coefficient_rise",
+            "D1",
+            "N/cm^B",
+            concave_coefficient_rise,
+            0.0,
+            1e9,
+            "gain of A extrapolated to Rb = 0",
         ),
         Parameter(
             "concave_coefficient_decay",
             "E1",
             "1/cm",
-            0.1398,
+            concave_coefficient_decay,
             0.0,
             100.0,
-            "how fast the gain of A fades with the dip's radius",
+            "rate at which the gain of A fades with the dip's radius",
         ),
-        Parameter("flat_exponent", "C2, C3", "1", 1.422, 0.1, 10.0, "B on flat ground"),
-        Parameter("convex_exponent_drop", "D2", "1", 0.2469, 0.0, 10.0, "loss of B on a sharp edge"),
+        Parameter("flat_exponent", "C2, C3", "1", flat_exponent, 0.1, 10.0, "B on flat ground"),
+        Parameter(
+            "convex_exponent_drop", "D2", "1", convex_exponent_drop, 0.0, 10.0, "loss of B on a sharp edge"
+        ),
         Parameter(
             "convex_exponent_decay",
             "E2",
             "1/cm",
-            0.1651,
+            convex_exponent_decay,
             0.0,
             100.0,
-            "how fast B recovers with the bump's radius",
+            "rate at which B recovers with the bump's radius",
         ),
-        Parameter("concave_exponent_rise", "D3", "1", 0.2128, 0.0, 10.0, "gain of B extrapolated to Rb = 0"),
+        Parameter(
+            "concave_exponent_rise",
+            "D3",
+            "1",
+            concave_exponent_rise,
+            0.0,
+            10.0,
+            "gain of B extrapolated to Rb = 0",
+        ),
         Parameter(
             "concave_exponent_decay",
             "E3",
             "1/cm",
-            0.0289,
+            concave_exponent_decay,
             0.0,
             100.0,
-            "how fast the gain of B fades with the dip's radius",
+            "rate at which the gain of B fades with the dip's radius",
         ),
     )
 

@@ -16,8 +16,8 @@ from .tracking import UNTRACKED, Track
 DEFLECTION_LOWEST = -1e3
 """Lowest deflection accepted [m]: a wheel this high above the ground is a mistake."""
 
-DEFLECTION_HIGHEST = 0.33
-"""Highest deflection accepted [m]: the radius of a 26 in wheel; with more the axle would be below the ground."""
+DEFLECTION_HIGHEST = hull1996.WHEEL_RADIUS
+"""Highest deflection accepted [m]: with more than the wheel's radius the axle would be below the ground."""
 
 READING_NOISE = Parameter(
     "reading_noise",
@@ -26,7 +26,7 @@ READING_NOISE = Parameter(
     0.0,
     0.0,
     0.01,
-    "standard deviation of the noise with which the deflection is read",
+    "standard deviation of the noise in the measured deflection",
 )
 
 TANGENT_STEP = 1e-7
@@ -52,8 +52,8 @@ class Law(Protocol):
 class TestedRange:
     """Where a tire was measured: curvatures 1/R [1/m], deflections up to [m] and forces up to [N]."""
 
-    curvature_min: float = 1.0 / hull1996.CONCAVE_RADII[1]
-    curvature_max: float = 1.0 / hull1996.CONVEX_RADII[0]
+    curvature_min: float = 1.0 / hull1996.CONCAVE_RADIUS_RANGE[1]
+    curvature_max: float = 1.0 / hull1996.CONVEX_RADIUS_RANGE[0]
     deflection_max: float = hull1996.DEFLECTION_MAX
     force_max: float = hull1996.FORCE_MAX
 
@@ -69,11 +69,11 @@ class TestedRange:
 
 
 class ModelState(NamedTuple):
-    """What a tire remembers: plain numbers and tuples of them, so that JSON can carry it.
+    """The state of a tire after a sample: plain numbers and tuples of them, so that JSON can carry it.
 
-    time: [s] of the last moment; deflection: [m] read there; rate [m/s] and acceleration [m/s^2] of the reading
-    started: whether there was a moment; effects: their states in the order of the tire's effects
-    start: [s] time of the first moment; reading, compression: tracks of the deflection read and of the tire's own
+    time: [s] of the last sample; deflection: [m] measured there; rate [m/s] and acceleration [m/s^2] of the measurement
+    started: whether there was a sample; effects: their states in the order of the tire's effects
+    start: [s] time of the first sample; reading, compression: tracks of the measured deflection and of the tire's own
     """
 
     time: float
@@ -119,12 +119,12 @@ def check_inputs(deflection: float, surface_radius: float) -> None:
 
 @dataclass(frozen=True)
 class TireModel:
-    """A law with effects.
+    """An elastic law with effects.
 
     effects: pairs of an effect and its parameters' values, at most one of each name, ordered by place
     tested_range: where the tire was measured, or None where that is not known
-    reading_noise: [m] standard deviation of the deflection's reading, which rate and acceleration must not follow (see
-    `tracking`); 0 takes the deflection as exact
+    reading_noise: [m] standard deviation of the noise in the measured deflection, which rate and acceleration must not
+    follow (see `tracking`); 0 takes the deflection as exact
     """
 
     law: Law = Hull1996()
@@ -141,9 +141,7 @@ class TireModel:
             raise ParameterError(f"an effect occurs twice in {', '.join(names)}; keep one of each")
         order = [PLACES.index(effect.place) for effect, _ in self.effects]
         if order != sorted(order):
-            raise ParameterError(
-                f"the effects {', '.join(names)} must stand in the order of the signal's way"
-            )
+            raise ParameterError(f"the effects {', '.join(names)} must stand in the order of the signal path")
         checked = tuple((effect, effect.checked(values)) for effect, values in self.effects)
         object.__setattr__(self, "effects", checked)
 
@@ -156,20 +154,22 @@ class TireModel:
 
     @cached_property
     def differentiates(self) -> bool:
-        """Whether an effect looks at rate or acceleration."""
+        """Whether an effect uses rate or acceleration."""
         return any(effect.differentiates for effect, _ in self.effects)
 
     @property
-    def rest(self) -> ModelState:
-        """The state of a tire to which nothing has happened yet."""
-        return ModelState(0.0, 0.0, 0.0, 0.0, False, tuple(effect.rest for effect, _ in self.effects))
+    def initial_state(self) -> ModelState:
+        """The state of a tire before the first sample."""
+        return ModelState(
+            0.0, 0.0, 0.0, 0.0, False, tuple(effect.initial_state for effect, _ in self.effects)
+        )
 
     def step(
         self, deflection: float, surface_radius: float, time: float, state: ModelState
     ) -> tuple[float, ModelState]:
         """Return the radial force [N] at `time` [s] and the state after it.
 
-        Pure: called again with the same state it gives the same answer, so a step may be tried and thrown away.
+        Pure: called again with the same state it gives the same answer, so a step may be tried and discarded.
         At the time of the state itself, rate and acceleration are those of the state.
         """
         A, B = self.law.coefficients(surface_radius)
@@ -219,7 +219,7 @@ class TireModel:
         return track
 
     def stiffness(self, deflection: float, surface_radius: float, state: ModelState) -> float:
-        """Return the tangent dF/dx [N/m] at a moment whose state is `state`, everything but the deflection held."""
+        """Return the tangent dF/dx [N/m] at the time of `state`, everything but the deflection held constant."""
         if not self.effects:
             return power_law.stiffness(deflection, *self.law.coefficients(surface_radius))
         above, _ = self.step(deflection + TANGENT_STEP, surface_radius, state.time, state)
@@ -227,5 +227,5 @@ class TireModel:
         return (above - below) / (2.0 * TANGENT_STEP)
 
     def in_tested_range(self, deflection: float, surface_radius: float, force: float) -> bool:
-        """Return whether this is a moment of the kind the tire was measured in; False where that is not known."""
+        """Return whether surface, deflection and force lie in the tested range; False where that is not known."""
         return self.tested_range is not None and self.tested_range.contains(deflection, surface_radius, force)

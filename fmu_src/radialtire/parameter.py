@@ -1,4 +1,4 @@
-"""One number of a law or an effect: what it is called, means, and may be."""
+"""One number of a law or an effect: its name, its meaning and its allowed values."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Parameter:
     start: the value where nothing else is said
     minimum, maximum: the closed interval of allowed values
     meaning: one line for a reader who does not know the equation
-    off: the value at which the effect it belongs to vanishes exactly, or None
-    typical: an everyday value, where the start is not one
-    extra: whether the plain form of the equation does without it; a fit keeps it at its start unless there is need
+    neutral: the value at which the effect it belongs to vanishes exactly, or None
+    nominal: a value of usual size, where the start is not one
+    optional: whether the simplest form of the equation omits it; a fit keeps it at its start unless it is needed
     """
 
     name: str
@@ -32,14 +32,14 @@ class Parameter:
     minimum: float
     maximum: float
     meaning: str
-    off: float | None = None
-    typical: float | None = None
-    extra: bool = False
+    neutral: float | None = None
+    nominal: float | None = None
+    optional: bool = False
 
     @property
-    def everyday(self) -> float:
-        """The typical value, or the start where that is one."""
-        return self.start if self.typical is None else self.typical
+    def nominal_value(self) -> float:
+        """The nominal value, or the start where none is given."""
+        return self.start if self.nominal is None else self.nominal
 
     def checked(self, value: float) -> float:
         """Return `value` as a float, or raise ParameterError if it is not a number within the bounds."""

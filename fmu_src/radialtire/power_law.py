@@ -41,7 +41,7 @@ def stiffness(deflection: float, coefficient: float, exponent: float) -> float:
 
 
 def on_surface(coefficient: float, exponent: float) -> Callable[[float], float]:
-    """Return `force` with A and B held, as a function of the deflection [m] alone: the quick way on one surface."""
+    """Return `force` with A and B held, as a function of the deflection [m] alone, which is quicker on one surface."""
 
     def force_at(deflection: float) -> float:
         return coefficient * (CM_PER_M * deflection) ** exponent if deflection > 0.0 else 0.0
@@ -61,8 +61,8 @@ class PowerLaw:
 
     name: ClassVar[str] = "power_law"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("coefficient", "A", "N/cm^B", 718.5, 1e-3, 1e6, "force at 1 cm of deflection"),
-        Parameter("exponent", "B", "1", 1.4, 0.1, 10.0, "exponent of the deflection"),
+        Parameter("coefficient", "A", "N/cm^B", coefficient, 1e-3, 1e6, "force at 1 cm of deflection"),
+        Parameter("exponent", "B", "1", exponent, 0.1, 10.0, "exponent of the deflection"),
     )
 
     def __post_init__(self) -> None:

@@ -1,10 +1,10 @@
-"""A law whose coefficients were measured anew on some surfaces, and carried over to those between.
+"""A law whose coefficients were refitted on some surfaces, and interpolated between those.
 
     A(R) = A0(R) exp(a(R)),   B(R) = B0(R) + b(R)
 
-A0 and B0 are the law's that was believed; a and b are given on the measured surfaces and interpolated in a straight
-line over the curvature 1/R between them, held beyond them. A law that is off on one surface is off in much the same
-way on the next one: Hull, Wang & Moore (1996) state errors of up to 13.5 % on convex surfaces, 4.2 % on concave.
+A0 and B0 are those of the baseline law; a and b are given on the measured surfaces, interpolated linearly over the
+curvature 1/R between them, and constant beyond them. A law that is wrong on one surface is wrong in much the same way
+on the next one: Hull, Wang & Moore (1996) state errors of up to 13.5 % on convex surfaces, 4.2 % on concave.
 """
 
 from __future__ import annotations

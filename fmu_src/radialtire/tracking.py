@@ -1,22 +1,22 @@
-"""Rate and acceleration of a deflection that is read with noise at moments of any spacing.
+"""Rate and acceleration of a deflection that is measured with noise, at any sampling intervals.
 
-Four Kalman filters, without look-ahead, each for another kind of motion, and how likely each of them is by now: an
-interacting-multiple-model estimator. Two take the jerk as white noise, of the intensities of a press and of a ride;
-they are quick to follow a corner. Two take its rate of change as white noise; they follow sweeps and hits of which a
-cycle has a few readings only. From one reading to the next the motion may become one of another kind (SWITCH). With e
-what a reading differs from what a filter expected of it, V its variance over that of the reading's noise s^2, and c how
-likely its kind was before, its kind is now likely in proportion to Student's
+An interacting-multiple-model estimator: four Kalman filters without look-ahead, each for one mode of motion, and the
+probability of each mode. Two modes take the jerk as white noise, of the intensities of a press and of a ride; they
+follow a corner quickly. Two take the rate of change of the jerk as white noise; they follow sweeps and impacts that
+have only a few samples per cycle. Between two samples the mode may change (SWITCH). With e the innovation of a filter,
+V its variance over the measurement noise s^2, and c the mode probability before, the mode probability after is
+proportional to Student's
 
     c V^(-1/2) (1 + e^2 / (n V s^2))^(-(n + 1)/2)     with n = 4
 
-and rate and acceleration are the means over the four. The noise s of the gauge is all that has to be known. Readings
-free of noise are followed by one filter of either sort with the shortest memory, likely in proportion to the power
--(n + 1) of their surprises: on smooth motions the errors then fall with d^3 (rate) and d^2 (acceleration).
+and rate and acceleration are the means over the four modes. Only the noise s of the gauge has to be known. Measurements
+free of noise are followed by one filter of each sort with the shortest memory, with mode probabilities proportional to
+the power -(n + 1) of their innovations: on smooth motions the errors then fall with d^3 (rate) and d^2 (acceleration).
 
-On a ride to 8 Hz and 5 mm, read at 400 Hz with 8e-6 m of noise, the errors are 3.0 mm/s and 0.8 m/s^2; plain
-differences leave 9 mm/s, most of it their delay of half an interval, and 3.2 m/s^2.
+On a ride to 8 Hz and 5 mm, sampled at 400 Hz with 8e-6 m of noise, the errors are 3.0 mm/s and 0.8 m/s^2; plain
+differences have 9 mm/s, most of it their delay of half an interval, and 3.2 m/s^2.
 
-Lengths of time are scaled by the last interval d: a filter holds x, d x', d^2 x''/2, d^3 x'''/6 and their covariance
+Times are scaled by the last interval d: a filter holds x, d x', d^2 x''/2, d^3 x'''/6 and their covariance
 over s^2.
 
 References: H. A. P. Blom, Y. Bar-Shalom, "The interacting multiple model algorithm for systems with Markovian switching
@@ -37,7 +37,7 @@ Moving = tuple[
 """x, d x', d^2 x''/2, d^3 x'''/6 and their covariance P00 P01 P02 P03 P11 P12 P13 P22 P23 P33 over s^2."""
 
 Track = tuple[tuple[Moving, Moving, Moving, Moving], tuple[float, float, float, float], float]
-"""The motion as each kind has it, how likely each kind is, and the last interval d [s]."""
+"""The motion in each mode, the mode probabilities, and the last interval d [s]."""
 
 PRESS, RIDE = 1e-4, 10.0
 """Intensities [m^2/s^5] of the white noise that is the jerk."""
@@ -46,25 +46,25 @@ SMOOTH, SHARP = 1e2, 1e7
 """Intensities [m^2/s^7] of the white noise that is the rate of change of the jerk."""
 
 SWITCH = 0.02
-"""Probability that the next reading belongs to a motion of another kind."""
+"""Probability that the mode changes before the next sample."""
 
 FINEST = 1e-6
-"""Noise [m] below which a reading is taken as exact."""
+"""Noise [m] below which a measurement is taken as exact."""
 
 TAIL = 4.0
-"""Degrees of freedom of a reading's surprise: few, so that one that surprises every filter decides little."""
+"""Degrees of freedom n of the innovations: few, so that an outlier for every filter decides little."""
 
 EXACT = 1e-12
-"""Surprise [m] of an exact reading below which it does not matter."""
+"""Innovation [m] of an exact measurement below which it has no influence."""
 
 UNKNOWN = 1e4
-"""Variance over s^2 of the scaled acceleration and jerk at the second reading: large, so the next ones decide."""
+"""Variance over s^2 of the scaled acceleration and jerk at the second sample: large, so the next samples decide."""
 
 APART = 1e6
-"""Largest squared difference over s^2 between two kinds that counts when they are mixed: more is lost in rounding."""
+"""Largest squared difference over s^2 between two modes that counts when they are mixed: more is lost in rounding."""
 
 PAUSE = 10.0
-"""An interval so many times the last one tells nothing of how the motion went on: the track begins anew."""
+"""After an interval this many times the last one the earlier motion is no guide: the track restarts."""
 
 JERK_MAX, SNAP_MAX = 32.0, 128.0
 """Largest scaled intensities: a memory (s^2/q)^(1/5 or 1/7) below d/2 counts as d/2. Shorter, it would overshoot."""
@@ -72,49 +72,49 @@ JERK_MAX, SNAP_MAX = 32.0, 128.0
 _NOWHERE: Moving = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 UNTRACKED: Track = ((_NOWHERE, _NOWHERE, _NOWHERE, _NOWHERE), (0.25, 0.25, 0.25, 0.25), 0.0)
-"""The track before the first reading."""
+"""The track before the first sample."""
 
 
 def begin(deflection: float) -> Track:
-    """Return the track after the first reading [m]."""
+    """Return the track after the first measurement [m]."""
     at = (deflection, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     return (at, at, at, at), (0.25, 0.25, 0.25, 0.25), 0.0
 
 
 def restored(values: Sequence[Any]) -> Track:
     """Return the track whose values went through JSON, which has lists in place of tuples."""
-    kinds, likely, last = values
-    return tuple(tuple(kind) for kind in kinds), tuple(likely), last  # type: ignore[return-value]
+    modes, probability, last = values
+    return tuple(tuple(mode) for mode in modes), tuple(probability), last  # type: ignore[return-value]
 
 
 def follow(track: Track, interval: float, deflection: float, noise: float) -> Track:
-    """Return the track after a reading `deflection` [m], `interval` > 0 [s] after the last one.
+    """Return the track after a measurement `deflection` [m], `interval` > 0 [s] after the last one.
 
-    noise: standard deviation s >= 0 [m] of a reading.
+    noise: standard deviation s >= 0 [m] of a measurement.
     """
-    kinds, likely, last = track
-    # The difference, taken as free of acceleration until more readings are there.
+    modes, probability, last = track
+    # The difference, taken as free of acceleration until there are more samples.
     if last <= 0.0 or interval > PAUSE * last:
-        return _second(deflection, deflection - kinds[0][0], interval), likely, interval
+        return _second(deflection, deflection - modes[0][0]), probability, interval
     ratio = interval / last
     if noise < FINEST:
-        return _exactly(kinds[1], kinds[3], likely[1], likely[3], ratio, deflection, interval)
+        return _exactly(modes, probability, ratio, deflection, interval)
     certainty = 1.0 / (noise * noise)
     fifth = interval * interval * interval * interval * interval * certainty
     seventh = fifth * interval * interval
-    whole = _mean(kinds, likely, certainty)
+    whole = _mean(modes, probability, certainty)
     other = SWITCH / 3.0
     same = 1.0 - SWITCH - other
     c0, c1, c2, c3 = (
-        other + same * likely[0],
-        other + same * likely[1],
-        other + same * likely[2],
-        other + same * likely[3],
+        other + same * probability[0],
+        other + same * probability[1],
+        other + same * probability[2],
+        other + same * probability[3],
     )
-    press = _jerked(_on(_mixed(kinds[0], whole, other / c0, certainty), ratio), PRESS * fifth)
-    ride = _jerked(_on(_mixed(kinds[1], whole, other / c1, certainty), ratio), RIDE * fifth)
-    smooth = _snapped(_on(_mixed(kinds[2], whole, other / c2, certainty), ratio), SMOOTH * seventh)
-    sharp = _snapped(_on(_mixed(kinds[3], whole, other / c3, certainty), ratio), SHARP * seventh)
+    press = _jerked(_predicted(_mixed(modes[0], whole, other / c0, certainty), ratio), PRESS * fifth)
+    ride = _jerked(_predicted(_mixed(modes[1], whole, other / c1, certainty), ratio), RIDE * fifth)
+    smooth = _snapped(_predicted(_mixed(modes[2], whole, other / c2, certainty), ratio), SMOOTH * seventh)
+    sharp = _snapped(_predicted(_mixed(modes[3], whole, other / c3, certainty), ratio), SHARP * seventh)
     l0 = math.log(c0) + _log_likelihood(press, deflection, certainty)
     l1 = math.log(c1) + _log_likelihood(ride, deflection, certainty)
     l2 = math.log(c2) + _log_likelihood(smooth, deflection, certainty)
@@ -124,10 +124,10 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
     total = w0 + w1 + w2 + w3
     return (
         (
-            _read(press, deflection),
-            _read(ride, deflection),
-            _read(smooth, deflection),
-            _read(sharp, deflection),
+            _updated(press, deflection),
+            _updated(ride, deflection),
+            _updated(smooth, deflection),
+            _updated(sharp, deflection),
         ),
         (w0 / total, w1 / total, w2 / total, w3 / total),
         interval,
@@ -135,42 +135,46 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
 
 
 def rate(track: Track) -> float:
-    """Return the rate [m/s] of the deflection at the last reading, 0 before the second one."""
-    kinds, likely, last = track
+    """Return the rate [m/s] of the deflection at the last sample, 0 before the second one."""
+    modes, probability, last = track
     if last <= 0.0:
         return 0.0
     scaled = 0.0
     for i in range(4):
-        scaled += likely[i] * kinds[i][1]
+        scaled += probability[i] * modes[i][1]
     return scaled / last
 
 
 def acceleration(track: Track) -> float:
-    """Return the acceleration [m/s^2] of the deflection at the last reading, 0 before the second one."""
-    kinds, likely, last = track
+    """Return the acceleration [m/s^2] of the deflection at the last sample, 0 before the second one."""
+    modes, probability, last = track
     if last <= 0.0:
         return 0.0
     scaled = 0.0
     for i in range(4):
-        scaled += likely[i] * kinds[i][2]
+        scaled += probability[i] * modes[i][2]
     return 2.0 * scaled / (last * last)
 
 
 def _exactly(
-    ride: Moving, sharp: Moving, w1: float, w3: float, ratio: float, deflection: float, interval: float
+    modes: tuple[Moving, Moving, Moving, Moving],
+    probability: tuple[float, float, float, float],
+    ratio: float,
+    deflection: float,
+    interval: float,
 ) -> Track:
-    """Return the track after an exact reading: two filters of the shortest memory, each for itself."""
-    ride = _jerked(_on(ride, ratio), JERK_MAX)
-    sharp = _snapped(_on(sharp, ratio), SNAP_MAX)
-    before = SWITCH + (1.0 - 2.0 * SWITCH) * w3 / (w1 + w3)
+    """Return the track after an exact measurement: two filters of the shortest memory, each for itself."""
+    ride = _jerked(_predicted(modes[1], ratio), JERK_MAX)
+    sharp = _snapped(_predicted(modes[3], ratio), SNAP_MAX)
+    before = SWITCH + (1.0 - 2.0 * SWITCH) * probability[3] / (probability[1] + probability[3])
     w1 = (1.0 - before) * _exact_likelihood(ride, deflection)
     w3 = before * _exact_likelihood(sharp, deflection)
-    ride, sharp = _read(ride, deflection), _read(sharp, deflection)
+    ride, sharp = _updated(ride, deflection), _updated(sharp, deflection)
     return (ride, ride, sharp, sharp), (0.0, w1 / (w1 + w3), 0.0, w3 / (w1 + w3)), interval
 
 
-def _second(x: float, v: float, interval: float) -> tuple[Moving, Moving, Moving, Moving]:
-    """Return the motions at the second reading, from the readings' difference v."""
+def _second(x: float, v: float) -> tuple[Moving, Moving, Moving, Moving]:
+    """Return the motion in each mode at the second sample, from the difference v of the two."""
     u = UNKNOWN
     jerked = (x, v, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 2.0 + u, u, 0.0, u, 0.0, 0.0)
     snapped = (x, v, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 2.0 + 2.0 * u, u, -u, u, 0.0, u)
@@ -178,44 +182,44 @@ def _second(x: float, v: float, interval: float) -> tuple[Moving, Moving, Moving
 
 
 def _mean(
-    kinds: tuple[Moving, Moving, Moving, Moving],
-    likely: tuple[float, float, float, float],
+    modes: tuple[Moving, Moving, Moving, Moving],
+    probability: tuple[float, float, float, float],
     certainty: float,
 ) -> Moving:
-    """Return the motion that is one of `kinds`: mean and covariance."""
-    whole, weight = kinds[0], likely[0]
+    """Return mean and covariance of the motion over all modes."""
+    whole, weight = modes[0], probability[0]
     for i in range(1, 4):
-        weight += likely[i]
-        whole = _mixed(whole, kinds[i], likely[i] / weight if weight > 0.0 else 0.0, certainty)
+        weight += probability[i]
+        whole = _mixed(whole, modes[i], probability[i] / weight if weight > 0.0 else 0.0, certainty)
     return whole
 
 
 def _mixed(a: Moving, b: Moving, share: float, certainty: float) -> Moving:
     """Return mean and covariance of a motion that is b with the probability `share`, and a otherwise."""
-    rest = 1.0 - share
+    remainder = 1.0 - share
     d0, d1, d2, d3 = b[0] - a[0], b[1] - a[1], b[2] - a[2], b[3] - a[3]
     farthest = certainty * max(d0 * d0, d1 * d1, d2 * d2, d3 * d3)
-    apart = rest * share * (certainty if farthest < APART else certainty * APART / farthest)
+    apart = remainder * share * (certainty if farthest < APART else certainty * APART / farthest)
     return (
         a[0] + share * d0,
         a[1] + share * d1,
         a[2] + share * d2,
         a[3] + share * d3,
-        rest * a[4] + share * b[4] + apart * d0 * d0,
-        rest * a[5] + share * b[5] + apart * d0 * d1,
-        rest * a[6] + share * b[6] + apart * d0 * d2,
-        rest * a[7] + share * b[7] + apart * d0 * d3,
-        rest * a[8] + share * b[8] + apart * d1 * d1,
-        rest * a[9] + share * b[9] + apart * d1 * d2,
-        rest * a[10] + share * b[10] + apart * d1 * d3,
-        rest * a[11] + share * b[11] + apart * d2 * d2,
-        rest * a[12] + share * b[12] + apart * d2 * d3,
-        rest * a[13] + share * b[13] + apart * d3 * d3,
+        remainder * a[4] + share * b[4] + apart * d0 * d0,
+        remainder * a[5] + share * b[5] + apart * d0 * d1,
+        remainder * a[6] + share * b[6] + apart * d0 * d2,
+        remainder * a[7] + share * b[7] + apart * d0 * d3,
+        remainder * a[8] + share * b[8] + apart * d1 * d1,
+        remainder * a[9] + share * b[9] + apart * d1 * d2,
+        remainder * a[10] + share * b[10] + apart * d1 * d3,
+        remainder * a[11] + share * b[11] + apart * d2 * d2,
+        remainder * a[12] + share * b[12] + apart * d2 * d3,
+        remainder * a[13] + share * b[13] + apart * d3 * d3,
     )
 
 
-def _on(moving: Moving, r: float) -> Moving:
-    """Return the motion one interval on, which is r times the last one."""
+def _predicted(moving: Moving, r: float) -> Moving:
+    """Return the motion predicted one interval ahead, which is r times the last one."""
     x, v, a, j, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33 = moving
     if r != 1.0:
         rr = r * r
@@ -252,7 +256,7 @@ def _on(moving: Moving, r: float) -> Moving:
 
 
 def _jerked(moving: Moving, intensity: float) -> Moving:
-    """Return the motion after an interval of white jerk of a scaled intensity; of its jerk nothing is known."""
+    """Return the motion after an interval of white jerk of a scaled intensity; the jerk itself is not estimated."""
     x, v, a, _, p00, p01, p02, _, p11, p12, _, p22, _, _ = moving
     q = min(intensity, JERK_MAX)
     return (
@@ -296,32 +300,34 @@ def _snapped(moving: Moving, intensity: float) -> Moving:
 
 
 def _log_likelihood(moving: Moving, deflection: float, certainty: float) -> float:
-    """Return the log likelihood of a reading [m], less what all kinds have in common."""
+    """Return the log likelihood of a measurement [m], without the terms that all modes share."""
     spread = moving[4] + 1.0
-    surprise = deflection - moving[0]
+    innovation = deflection - moving[0]
     return -0.5 * (
-        math.log(spread) + (TAIL + 1.0) * math.log1p(surprise * surprise * certainty / (TAIL * spread))
+        math.log(spread) + (TAIL + 1.0) * math.log1p(innovation * innovation * certainty / (TAIL * spread))
     )
 
 
 def _exact_likelihood(moving: Moving, deflection: float) -> float:
-    """Return the likelihood of an exact reading [m], whose surprise is all the motion's: only ratios have a meaning."""
+    """Return the likelihood of an exact measurement [m], up to a factor that all modes share."""
     spread = moving[4] + 1.0
-    surprise = deflection - moving[0]
-    return float((surprise * surprise / spread + EXACT * EXACT) ** (-0.5 * (TAIL + 1.0)) / math.sqrt(spread))
+    innovation = deflection - moving[0]
+    return float(
+        (innovation * innovation / spread + EXACT * EXACT) ** (-0.5 * (TAIL + 1.0)) / math.sqrt(spread)
+    )
 
 
-def _read(moving: Moving, deflection: float) -> Moving:
-    """Return the motion after a reading [m]."""
+def _updated(moving: Moving, deflection: float) -> Moving:
+    """Return the motion updated with a measurement [m]."""
     x, v, a, j, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33 = moving
     spread = p00 + 1.0
     k0, k1, k2, k3 = p00 / spread, p01 / spread, p02 / spread, p03 / spread
-    surprise = deflection - x
+    innovation = deflection - x
     return (
-        x + k0 * surprise,
-        v + k1 * surprise,
-        a + k2 * surprise,
-        j + k3 * surprise,
+        x + k0 * innovation,
+        v + k1 * innovation,
+        a + k2 * innovation,
+        j + k3 * innovation,
         k0,
         k1,
         k2,

@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 from radialtire import TireModel
 from tirelab.article import press as rig
-from tirelab.identify import identify
-from tirelab.identify.power_fit import inner_products
-from tirelab.identify.surfaces import surfaces_of
+from tirelab.identification.identify import identify
+from tirelab.identification.power_fit import inner_products
+from tirelab.identification.surfaces import surfaces_of
 from tirelab.recordings.recording import Recording
 
 EVALUATION_MOST = 10.0
@@ -46,12 +46,12 @@ def best_of(run: Callable[[], object], repeats: int = 7) -> float:
 
 def fourteen() -> tuple[Recording, ...]:
     """Return the rig's recordings with 1e5 samples each."""
-    return rig.record_all(noise=10.0, sampling_rate=1e5 / rig.PERIOD)
+    return rig.record_all(noise=rig.ForceNoise(10.0), sampling_rate=1e5 / rig.PERIOD)
 
 
 def one() -> tuple[Recording, ...]:
     """Return a recording of 1e6 samples on flat ground."""
-    return (rig.record(TireModel(), math.inf, noise=10.0, sampling_rate=1e6 / rig.PERIOD),)
+    return (rig.record(TireModel(), math.inf, noise=rig.ForceNoise(10.0), sampling_rate=1e6 / rig.PERIOD),)
 
 
 def size(recordings: tuple[Recording, ...]) -> int:
@@ -78,7 +78,7 @@ def memory_of(recordings: tuple[Recording, ...]) -> float:
 
 def measure_memory(path: str) -> float:
     """Return what `memory_of` asks for, in the process that it starts."""
-    identify(rig.record_all(noise=10.0))
+    identify(rig.record_all(noise=rig.ForceNoise(10.0)))
     gc.collect()
     before = peak_memory()
     with np.load(path) as arrays:

@@ -35,7 +35,7 @@ def values_of(effect: Effect, **changed: float) -> tuple[float, ...]:
     """Return the effect's values where it is off, with those of `changed` in their places."""
     names = [parameter.name for parameter in effect.parameters]
     assert changed.keys() <= set(names)
-    return tuple(changed.get(name, value) for name, value in zip(names, effect.off, strict=True))
+    return tuple(changed.get(name, value) for name, value in zip(names, effect.neutral, strict=True))
 
 
 def only(name: str, law: object = None, reading_noise: float = 0.0, **changed: float) -> TireModel:
@@ -48,7 +48,7 @@ def drive(
 ) -> FloatArray:
     """Return the force [N] at every moment, from rest."""
     t, x, R = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in (time, deflection, surface_radius)))
-    state = tire.rest
+    state = tire.initial_state
     force = np.empty(t.size)
     for i in range(t.size):
         force[i], state = tire.step(float(x[i]), float(R[i]), float(t[i]), state)

@@ -94,7 +94,7 @@ def test_it_is_described(effect: Effect) -> None:
 def test_its_parameters_are_described(effect: Effect) -> None:
     names = [parameter.name for parameter in effect.parameters]
     assert len(set(names)) == len(names)
-    assert any(parameter.off is not None for parameter in effect.parameters)
+    assert any(parameter.neutral is not None for parameter in effect.parameters)
     for parameter in effect.parameters:
         assert parameter.name.isidentifier()
         assert parameter.name.islower()
@@ -102,19 +102,19 @@ def test_its_parameters_are_described(effect: Effect) -> None:
         assert parameter.unit
         assert len(parameter.meaning) > 10
         assert parameter.minimum < parameter.maximum
-        for value in (parameter.start, parameter.everyday):
+        for value in (parameter.start, parameter.nominal_value):
             assert parameter.checked(value) == value
-        if parameter.off is not None:
-            assert parameter.start == parameter.checked(parameter.off)
-    assert effect.typical != effect.off
+        if parameter.neutral is not None:
+            assert parameter.start == parameter.checked(parameter.neutral)
+    assert effect.nominal != effect.neutral
 
 
 @EFFECTS
 def test_its_state_at_rest_is_plain_numbers_of_a_fixed_count(effect: Effect) -> None:
-    assert all(type(value) is float for value in effect.rest)
+    assert all(type(value) is float for value in effect.initial_state)
     instant = Instant(0.0, 0.0, True, 0.01, 0.1, 1.0, 550.9, 1.422, 550.9)
-    _, state = effect.respond(1.0, instant, effect.rest, effect.typical)
-    assert len(state) == len(effect.rest)
+    _, state = effect.respond(1.0, instant, effect.initial_state, effect.nominal)
+    assert len(state) == len(effect.initial_state)
     assert type(state) is tuple
 
 
@@ -125,7 +125,7 @@ def test_off_equals_the_bare_law_exactly(effect: Effect, data: st.DataObject) ->
     # whatever the parameters that have no off value are
     others = data.draw(any_values(effect))
     values = [
-        other if parameter.off is None else parameter.off
+        other if parameter.neutral is None else parameter.neutral
         for other, parameter in zip(others, effect.parameters, strict=True)
     ]
     time, x, R = data.draw(motions())
@@ -136,7 +136,7 @@ def test_off_equals_the_bare_law_exactly(effect: Effect, data: st.DataObject) ->
 def test_on_changes_the_force(effect: Effect) -> None:
     time, x = sine(0.5, 0.012, 0.015, 3.0, 300)
     bare = drive(TireModel(), time, x)
-    force = drive(tire_with((effect.name, effect.typical)), time, x)
+    force = drive(tire_with((effect.name, effect.nominal)), time, x)
     assert np.max(np.abs(force - bare)) > 1e-4 * np.max(bare)
 
 
@@ -154,7 +154,7 @@ def test_it_is_finite_over_its_bounds(effect: Effect, data: st.DataObject) -> No
 def test_finer_steps_converge(effect: Effect) -> None:
     # second order, but for the acceleration, which the filter follows to first order; less 0.3 for turning points
     # that fall between two moments; 1e-5 of the peak is what a delay's kept moments leave
-    tire = tire_with((effect.name, effect.typical))
+    tire = tire_with((effect.name, effect.nominal))
     order = 0.8 if effect.name == "inertia" else 1.7
 
     def force(count: int) -> np.ndarray:
@@ -170,7 +170,7 @@ def test_finer_steps_converge(effect: Effect) -> None:
 def test_a_saved_state_continues_identically(effect: Effect, data: st.DataObject) -> None:
     tire = tire_with((effect.name, data.draw(any_values(effect))))
     time, x, R = data.draw(motions())
-    state = tire.rest
+    state = tire.initial_state
     moments = list(zip(x.tolist(), R.tolist(), time.tolist(), strict=True))
     half = time.size // 2
     for moment in moments[:half]:
@@ -190,7 +190,7 @@ def test_a_saved_state_continues_identically(effect: Effect, data: st.DataObject
 @settings(max_examples=10, deadline=None)
 def test_the_same_question_has_the_same_answer(effect: Effect, data: st.DataObject) -> None:
     tire = tire_with((effect.name, data.draw(any_values(effect))))
-    state = tire.rest
+    state = tire.initial_state
     # plain floats, as in the FMU: numpy's warn where a denormal time constant divides
     for t, x, R in zip(*(channel.tolist() for channel in data.draw(motions())), strict=True):
         answer = tire.step(x, R, t, state)
@@ -213,11 +213,11 @@ def test_a_tire_file_keeps_it_exactly(effect: Effect, data: st.DataObject, tmp_p
 @given(data=st.data())
 @settings(max_examples=20, deadline=None)
 def test_it_looks_at_rates_only_if_it_says_so(effect: Effect, data: st.DataObject) -> None:
-    values = data.draw(any_values(effect)) if not effect.differentiates else effect.typical
+    values = data.draw(any_values(effect)) if not effect.differentiates else effect.nominal
     slow = Instant(1.0, 0.01, False, 0.02, 0.0, 0.0, 550.9, 1.422, 1400.0)
     fast = slow._replace(rate=data.draw(st.floats(0.1, 5.0)), acceleration=data.draw(st.floats(1.0, 500.0)))
     signal = data.draw(st.floats(1e-3, 2.0))
-    same = effect.respond(signal, slow, effect.rest, values) == effect.respond(
-        signal, fast, effect.rest, values
+    same = effect.respond(signal, slow, effect.initial_state, values) == effect.respond(
+        signal, fast, effect.initial_state, values
     )
     assert same is not effect.differentiates

@@ -26,20 +26,20 @@ from radialtire import (
     power_law,
 )
 
-EVERYTHING = tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), reading_noise=8e-6)
+EVERYTHING = tire_with(*((name, effect.nominal) for name, effect in CATALOGUE.items()), reading_noise=8e-6)
 
 
 @given(st.floats(-0.1, 0.3), st.sampled_from([0.0127, 0.5, math.inf, -0.4]), st.floats(0.0, 1e6))
 def test_a_bare_tire_is_its_law_and_remembers_nothing(x: float, radius: float, time: float) -> None:
     tire = TireModel()
-    force, state = tire.step(x, radius, time, tire.rest)
+    force, state = tire.step(x, radius, time, tire.initial_state)
     assert force == power_law.force(x, *Hull1996().coefficients(radius))
-    assert state == tire.rest
+    assert state == tire.initial_state
     assert tire.stiffness(x, radius, state) == power_law.stiffness(x, *Hull1996().coefficients(radius))
 
 
 def test_the_same_step_twice_gives_the_same_answer() -> None:
-    state = EVERYTHING.rest
+    state = EVERYTHING.initial_state
     for i in range(40):
         step = (0.01 + 0.005 * math.sin(i), 0.3 if i % 3 else -0.5, 0.01 * i, state)
         first, second = EVERYTHING.step(*step), EVERYTHING.step(*step)
@@ -48,7 +48,7 @@ def test_the_same_step_twice_gives_the_same_answer() -> None:
 
 
 def test_a_state_goes_through_json_without_a_trace() -> None:
-    state = EVERYTHING.rest
+    state = EVERYTHING.initial_state
     for i in range(60):
         _, state = EVERYTHING.step(0.01 + 0.005 * math.sin(0.3 * i), 0.3, 0.01 * i, state)
         again = ModelState.restored(json.loads(json.dumps(state)))
@@ -59,7 +59,7 @@ def test_a_state_goes_through_json_without_a_trace() -> None:
 def test_looking_again_at_a_moment_keeps_rate_and_force() -> None:
     # a master may ask for the output at the time of the last step
     tire = only("viscous_damping", damping=300.0)
-    state = tire.rest
+    state = tire.initial_state
     for i in range(10):
         force, state = tire.step(0.01 + 1e-4 * i, math.inf, 0.001 * i, state)
     again, after = tire.step(0.01 + 9e-4, math.inf, 0.009, state)
@@ -100,7 +100,7 @@ def test_a_reading_may_be_negative() -> None:
 def test_the_stiffness_of_a_tire_with_effects_is_its_tangent() -> None:
     # friction that turns round within 1 mm adds S / d at a moment from which it has not yet moved
     tire = only("rate_independent_hysteresis", law=LINEAR, slip_force=50.0, reach=1e-3)
-    _, state = tire.step(0.01, math.inf, 0.0, tire.rest)
+    _, state = tire.step(0.01, math.inf, 0.0, tire.initial_state)
     assert tire.stiffness(0.01, math.inf, state) == pytest.approx(STIFFNESS + 50.0 / 1e-3, rel=1e-3)
 
 

@@ -8,7 +8,7 @@ import pytest
 from radialtire import Parameter, ParameterError
 
 LENGTH = Parameter("length", "l", "m", 1.0, 0.0, 2.0, "of something")
-COUNT = Parameter("count", "n", "1", 1.0, 0.0, math.inf, "of something", off=0.0, typical=3.0)
+COUNT = Parameter("count", "n", "1", 1.0, 0.0, math.inf, "of something", neutral=0.0, nominal=3.0)
 
 
 @pytest.mark.parametrize("value", [0, 0.0, 2.0, 1])
@@ -42,5 +42,5 @@ def test_an_open_end_is_said_as_such() -> None:
 
 
 def test_an_everyday_value_is_the_start_where_none_is_typical() -> None:
-    assert LENGTH.everyday == 1.0
-    assert COUNT.everyday == 3.0
+    assert LENGTH.nominal_value == 1.0
+    assert COUNT.nominal_value == 3.0

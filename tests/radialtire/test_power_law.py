@@ -52,3 +52,13 @@ def test_values_outside_the_bounds_are_refused() -> None:
         ParameterError, match=r"^exponent = 0 is not allowed; it must lie between 0\.1 and 10$"
     ):
         PowerLaw(exponent=0.0)
+
+
+@given(st.floats(-0.01, 0.33), st.floats(1e-3, 1e4), st.floats(0.1, 5.0))
+def test_the_force_on_one_surface_is_the_same_force(x: float, A: float, B: float) -> None:
+    # ln F = ln A + B ln(x / 1 cm) again, and nothing for a tire that is not loaded
+    force = power_law.on_surface(A, B)(x)
+    if x <= 0.0:
+        assert force == 0.0
+    elif x > 1e-6:
+        assert math.log(force) == pytest.approx(math.log(A) + B * math.log(x / 0.01), rel=0, abs=1e-13)

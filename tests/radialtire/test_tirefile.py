@@ -26,7 +26,7 @@ TIRES = [
     TireModel(),
     TireModel(PowerLaw(1500.0, 1.0), tested_range=None, name="road", source="quoted"),
     TireModel(Hull1996(flat_coefficient=600.1), tested_range=TestedRange(force_max=0.1 + 0.2)),
-    tire_with(*((name, effect.typical) for name, effect in CATALOGUE.items()), reading_noise=8e-6),
+    tire_with(*((name, effect.nominal) for name, effect in CATALOGUE.items()), reading_noise=8e-6),
 ]
 
 
@@ -87,6 +87,10 @@ LAW = {"name": "hull1996"}
             "flat_exponent = '1' is not a number; it must lie between 0.1 and 10",
         ),
         ({"schema": 1, "law": LAW, "effects": {}}, "effects must be a list, not {}"),
+        (
+            {"schema": 1, "law": {"name": "recalibrated", "base": LAW, "surfaces": {}}},
+            "surfaces must be a list, not {}",
+        ),
         (
             {"schema": 1, "law": LAW, "effects": ["inertia"]},
             "an effect must be an object with name, not 'inertia'",

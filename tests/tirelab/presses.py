@@ -20,4 +20,4 @@ def on(radius: float, deflection: np.ndarray, force: np.ndarray, name: str = "pr
 def triangle(
     radius: float = math.inf, tire: TireModel = ARTICLE, noise: float = 0.0, seed: int = 0
 ) -> Recording:
-    return rig.record(tire, radius, noise=noise, seed=seed)
+    return rig.record(tire, radius, noise=rig.ForceNoise(noise, seed=(seed,)))

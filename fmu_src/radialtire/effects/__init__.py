@@ -1,4 +1,4 @@
-"""The physics that an elastic law leaves out: one file each, one line each here."""
+"""The effects that an elastic law leaves out: one file each, one line each here."""
 
 from __future__ import annotations
 

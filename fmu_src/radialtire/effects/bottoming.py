@@ -2,9 +2,9 @@
 
     F = F_elastic + K u1 (u / u1)^p,   u = s ln(1 + exp((x - xb) / s)),   u1 = 1 mm
 
-K [N/m] is the second spring's stiffness, xb where it begins, s over what deflection it sets in (u is x - xb well beyond
-xb), p = 1 for a straight spring, 3/2 for a rounded contact. s = 0 is a sharp knee. No curve of a rim strike through a
-bicycle tire was found in the open: the bounds are wide.
+K [N/m] is the second spring's stiffness, xb the deflection at which it begins, s the deflection over which it sets in
+(u is x - xb well beyond xb), p = 1 for a linear spring, 3/2 for a rounded contact. s = 0 is a sharp knee. No published
+curve of a rim strike through a bicycle tire was found: the bounds are wide.
 """
 
 from __future__ import annotations
@@ -13,12 +13,10 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from .soft_knee import FAR
 
 UNIT = 1e-3
-"""u1 [m]: deflection beyond xb at which the exponent does not matter."""
-
-FAR = 40.0
-"""Softening lengths beyond which ln(1 + exp(u)) is u, or 0, to the last digit."""
+"""u1 [m]: deflection beyond xb at which the exponent has no influence."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -38,12 +36,12 @@ BOTTOMING = Effect(
     name="bottoming",
     place="parallel",
     parameters=(
-        Parameter("stiffness", "K", "N/m", 0.0, 0.0, 1e8, "of the second spring", off=0.0, typical=2e5),
+        Parameter("stiffness", "K", "N/m", 0.0, 0.0, 1e8, "of the second spring", neutral=0.0, nominal=2e5),
         Parameter("onset", "xb", "m", 0.025, 0.0, 0.2, "deflection at which it begins"),
         Parameter("softness", "s", "m", 2e-4, 0.0, 0.01, "deflection over which it sets in"),
-        Parameter("power", "p", "1", 1.0, 1.0, 3.0, "1: straight, 1.5: rounded contact", extra=True),
+        Parameter("power", "p", "1", 1.0, 1.0, 3.0, "1: linear, 1.5: rounded contact", optional=True),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the tire bottoms on the rim",
     tell_tale="a local knee in the force at one deflection, on every surface; nothing below it",

@@ -1,13 +1,13 @@
-"""A deflection channel that reads late: the tire is ahead of its reading.
+"""A deflection channel that lags: the tire is ahead of its measured deflection.
 
     x = x_read + (tau + delta) v + delta (tau + delta / 2) a
 
-v, a: rate and acceleration of the reading. The inverse of a first-order lag tau followed by a delay delta, to the
-second order in delta: for tau alone it is exact, for a delay it leaves (2 pi f delta)^3 / 6 of the amplitude at the
-frequency f (0.5 % for 5 ms at 10 Hz). It cannot be undone better without looking ahead.
+v, a: rate and acceleration of the measured deflection. The inverse of a first-order lag tau followed by a delay delta,
+to the second order in delta: for tau alone it is exact, for a delay it leaves (2 pi f delta)^3 / 6 of the amplitude at
+the frequency f (0.5 % for 5 ms at 10 Hz). Without look-ahead it cannot be compensated better.
 
 Magnitude: anti-aliasing filters and displays of displacement gauges have 1 to 10 ms. A lag of the gauge and a lead of
-the force are one and the same; it is named after the gauge when its tau is positive.
+the force are the same; it is attributed to the gauge where tau is positive.
 """
 
 from __future__ import annotations
@@ -28,10 +28,14 @@ DEFLECTION_LAG = Effect(
     name="deflection_lag",
     place="deflection",
     parameters=(
-        Parameter("lag", "tau", "s", 0.0, 0.0, 0.05, "time constant of the channel", off=0.0, typical=0.005),
-        Parameter("delay", "delta", "s", 0.0, 0.0, 0.05, "pure delay of the channel", off=0.0, extra=True),
+        Parameter(
+            "lag", "tau", "s", 0.0, 0.0, 0.05, "time constant of the channel", neutral=0.0, nominal=0.005
+        ),
+        Parameter(
+            "delay", "delta", "s", 0.0, 0.0, 0.05, "pure delay of the channel", neutral=0.0, optional=True
+        ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the deflection is read late",
     tell_tale="a loop whose height grows with the rate and with the stiffness, so with the mean deflection",

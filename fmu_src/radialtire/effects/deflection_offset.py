@@ -1,4 +1,4 @@
-"""A wrong zero of the deflection: the tire touched before, or after, the gauge read zero.
+"""A wrong zero of the deflection: the tire touched the surface before, or after, the gauge indicated zero.
 
     x = x_read + x0
 
@@ -21,10 +21,18 @@ DEFLECTION_OFFSET = Effect(
     place="deflection",
     parameters=(
         Parameter(
-            "offset", "x0", "m", 0.0, -0.01, 0.01, "added to the deflection read", off=0.0, typical=1e-3
+            "offset",
+            "x0",
+            "m",
+            0.0,
+            -0.01,
+            0.01,
+            "added to the measured deflection",
+            neutral=0.0,
+            nominal=1e-3,
         ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the deflection's zero is shifted",
     tell_tale="misfit at small deflections, where the tangent of the force against the deflection is steepest",

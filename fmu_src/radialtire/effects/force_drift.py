@@ -2,7 +2,7 @@
 
     F_read = F + d t
 
-It adds, where a leaking or warming tire multiplies: the tire in the air tells them apart.
+It adds to the force, where a leaking or warming tire scales it: samples of the tire in the air distinguish the two.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ FORCE_DRIFT = Effect(
     name="force_drift",
     place="reading",
     parameters=(
-        Parameter("drift", "d", "N/s", 0.0, -100.0, 100.0, "added for each second", off=0.0, typical=0.05),
+        Parameter(
+            "drift", "d", "N/s", 0.0, -100.0, 100.0, "added for each second", neutral=0.0, nominal=0.05
+        ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the force's zero drifts with time",
     tell_tale="the residual grows with time by the same amount at every deflection, in the air too",

@@ -1,12 +1,12 @@
-"""A force channel that reads late: a pure delay, then a low-pass of first or second order.
+"""A force channel that lags: a pure delay, then a low-pass of first or second order.
 
     (Q tau)^2 d2F_read/dt2 + tau dF_read/dt + F_read = F(t - delta)
 
 tau is the delay of slow changes, Q the quality of the low-pass: 0 of first order, 1/sqrt(3) Bessel's, 1/sqrt(2)
-Butterworth's, as the amplifiers of load cells have. It is integrated exactly for a force that is straight between two
-moments. The delay looks the force up in the last 16 moments that are kept, at least delta/14 apart, with straight lines
-between them: its gain is that of the straight line, 1 - (w h)^2 / 12 with h the spacing (1 - 2e-3 for 10 Hz and
-2.5 ms). Before the first moment the force is taken as it was there.
+Butterworth's, as the amplifiers of load cells have. It is integrated exactly for a force that is linear between two
+samples. The delay interpolates linearly between the last 16 stored samples, at least delta/14 apart: the gain of that
+interpolation is 1 - (w h)^2 / 12 with h the spacing (1 - 2e-3 for 10 Hz and 2.5 ms). Before the first sample the force
+is taken as it was there.
 
 Magnitude: 1 to 20 ms for filters and displays of load cells.
 """
@@ -19,27 +19,31 @@ from ..effect import Effect, Instant, State
 from ..parameter import Parameter
 
 KEPT = 16
-"""Moments kept for the delay."""
+"""Samples stored for the delay."""
 
 LAST = KEPT - 1
-"""Place of the newest of them."""
+"""Index of the newest of them."""
 
 TIMES, FORCES = 3, 3 + KEPT
-"""Where times and forces begin in the state, after the reading, its slope, and what it follows."""
+"""Where times and forces begin in the state, after the output, its slope, and its last input."""
 
 NO_TIME = 1e-9
 """Q tau [s] below which a low-pass is of first order: nothing of a tire happens in a nanosecond."""
 
 NEARLY_CRITICAL = 1e-5
-"""Square of the phase between two moments up to which two terms of the cosine and the sine are exact to 1e-11."""
+"""Square of the phase between two samples up to which two terms of the cosine and the sine are exact to 1e-11."""
 
 
 def low_passed(
-    reading: float, slope: float, last: float, late: float, interval: float, tau: float, quality: float
+    before: tuple[float, float, float], late: float, interval: float, tau: float, quality: float
 ) -> tuple[float, float]:
-    """Return reading [N] and slope [N/s] after an interval [s] in which the force goes straight from last to late."""
+    """Return output [N] and slope [N/s] after an interval [s] over which the input changes linearly to `late` [N].
+
+    before: output [N], its slope [N/s] and the input [N] at the start of the interval
+    """
+    reading, slope, last = before
     rate = (late - last) / interval
-    # A straight line is followed tau late; what the reading is off from that dies away.
+    # The output follows a ramp with the delay tau; any other deviation decays.
     off, off_slope = reading - last + tau * rate, slope - rate
     if quality * tau < NO_TIME:
         return late - tau * rate + off * math.exp(-interval / tau), 0.0
@@ -55,25 +59,25 @@ def low_passed(
         short = 0.5 * (off - drive / width) * math.exp(-quick * interval)
         off, off_slope = long + short, -slow * long - quick * short
     else:
-        turned = beyond * interval * interval
-        wave, turn = 1.0 + turned / 2.0, interval * (1.0 + turned / 6.0)
-        if turned < -NEARLY_CRITICAL:
+        phase_squared = beyond * interval * interval
+        cosine, sine = 1.0 + phase_squared / 2.0, interval * (1.0 + phase_squared / 6.0)
+        if phase_squared < -NEARLY_CRITICAL:
             width = math.sqrt(-beyond)
-            wave, turn = math.cos(width * interval), math.sin(width * interval) / width
+            cosine, sine = math.cos(width * interval), math.sin(width * interval) / width
         fall = math.exp(-damping * interval)
         spring = damping * off_slope + off / square
-        off, off_slope = fall * (off * wave + drive * turn), fall * (off_slope * wave - spring * turn)
+        off, off_slope = fall * (off * cosine + drive * sine), fall * (off_slope * cosine - spring * sine)
     return late - tau * rate + off, rate + off_slope
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Return the force as read [N]; the state: the reading, its slope, what it follows, and what is kept."""
+    """Return the measured force [N]; the state: output, its slope, its last input, and the stored samples."""
     tau, delta, quality = values
     reading, slope, last = state[0], state[1], state[2]
     times, forces = state[TIMES:FORCES], state[FORCES:]
     now = instant.time
     newest, force = (now,), (signal,)
-    if instant.first:  # its time is 0, like all times of the state at rest
+    if instant.first:  # its time is 0, like all times of the initial state
         two = force + force
         four = two + two
         forces = four + four + four + four
@@ -94,7 +98,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     if tau == 0.0:
         reading = late
     elif instant.interval > 0.0:
-        reading, slope = low_passed(reading, slope, last, late, instant.interval, tau, quality)
+        reading, slope = low_passed((reading, slope, last), late, instant.interval, tau, quality)
     held = (reading, slope, late)
     return reading, held + times + forces
 
@@ -103,11 +107,15 @@ FORCE_LAG = Effect(
     name="force_lag",
     place="reading",
     parameters=(
-        Parameter("lag", "tau", "s", 0.0, 0.0, 1.0, "time constant of the channel", off=0.0, typical=0.005),
-        Parameter("delay", "delta", "s", 0.0, 0.0, 0.5, "pure delay of the channel", off=0.0, typical=0.005),
-        Parameter("quality", "Q", "1", 0.0, 0.0, 1.0, "0: first order, above: second order", extra=True),
+        Parameter(
+            "lag", "tau", "s", 0.0, 0.0, 1.0, "time constant of the channel", neutral=0.0, nominal=0.005
+        ),
+        Parameter(
+            "delay", "delta", "s", 0.0, 0.0, 0.5, "pure delay of the channel", neutral=0.0, nominal=0.005
+        ),
+        Parameter("quality", "Q", "1", 0.0, 0.0, 1.0, "0: first order, above: second order", optional=True),
     ),
-    rest=(0.0,) * (3 + 2 * KEPT),
+    initial_state=(0.0,) * (3 + 2 * KEPT),
     respond=respond,
     statement="the force is read late",
     tell_tale="the loop runs the wrong way round: unloading reads higher than loading",

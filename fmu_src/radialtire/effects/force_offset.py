@@ -2,7 +2,7 @@
 
     F_read = F + F0
 
-22 N of preload on the other rig would explain the difference to it that Hull, Wang & Moore (1996) found.
+Hull, Wang & Moore (1996) could explain the difference from an earlier rig by 22 N of preload there.
 """
 
 from __future__ import annotations
@@ -19,8 +19,10 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
 FORCE_OFFSET = Effect(
     name="force_offset",
     place="reading",
-    parameters=(Parameter("offset", "F0", "N", 0.0, -1e3, 1e3, "added to the force", off=0.0, typical=20.0),),
-    rest=(),
+    parameters=(
+        Parameter("offset", "F0", "N", 0.0, -1e3, 1e3, "added to the force", neutral=0.0, nominal=20.0),
+    ),
+    initial_state=(),
     respond=respond,
     statement="the force's zero is shifted",
     tell_tale="the residual is one constant at every deflection and time, in the air too",

@@ -2,29 +2,27 @@
 
     F = A x^B p / p0,   p / p0 = (1 + b) (1 - w)^-n - b,   w = W (x / 2.5 cm)^q (1 + r_w / R)^(-s)
 
-w is the share of the air's volume that is gone, W that at 2.5 cm; b the atmosphere over the gauge pressure, n the
+w is the fraction of the air's volume that is lost, W that at 2.5 cm; b the atmosphere over the gauge pressure, n the
 polytropic exponent (1 for slow, 1.4 for fast compression). q = 2.4, the exponent of the work A x^(B+1) / (B+1), since
 the volume lost is about the work done over the pressure. W = 1 to 3 % is an estimate from that; it was not measured.
 On a surface of radius R the patch of a wheel of radius r_w = 33 cm is shorter by (1 + r_w / R)^(-1/2) (the curvatures
-add up, as in Hertz's contact), and takes less of the volume: s = 1/2 for that alone, s = 0 for the same on every one.
+add up, as in Hertz's contact) and displaces less air: s = 1/2 for that alone, s = 0 for the same volume everywhere.
 """
 
 from __future__ import annotations
 
 from ..effect import Effect, Instant, State
+from ..hull1996 import WHEEL_RADIUS
 from ..parameter import Parameter
 
 REFERENCE = 0.025
 """Deflection [m] at which the lost volume is stated."""
 
-WHEEL_RADIUS = 0.33
-"""r_w [m]: 66 cm of wheel and tire, as in Hull, Wang & Moore 1996."""
-
 LEAST_CURVATURE = 0.05
-"""Least 1 + r_w / R: a hollow as round as the wheel takes it in at once."""
+"""Least 1 + r_w / R: a hollow of the wheel's own radius would make it 0."""
 
 LOST_MAX = 0.9
-"""Largest share of the volume lost: a rim meets the ground long before."""
+"""Largest fraction of the volume lost: the rim meets the ground long before."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -43,12 +41,22 @@ GAS_COMPRESSION = Effect(
     place="scale",
     parameters=(
         Parameter(
-            "lost_volume", "W", "1", 0.0, 0.0, 0.5, "share of the air lost at 2.5 cm", off=0.0, typical=0.02
+            "lost_volume",
+            "W",
+            "1",
+            0.0,
+            0.0,
+            0.5,
+            "fraction of the air volume lost at 2.5 cm",
+            neutral=0.0,
+            nominal=0.02,
         ),
         Parameter(
-            "power", "q", "1", 2.4, 1.0, 4.0, "growth of the lost volume with the deflection", extra=True
+            "power", "q", "1", 2.4, 1.0, 4.0, "growth of the lost volume with the deflection", optional=True
         ),
-        Parameter("polytropic_exponent", "n", "1", 1.0, 1.0, 1.4, "1 slow, 1.4 fast compression", extra=True),
+        Parameter(
+            "polytropic_exponent", "n", "1", 1.0, 1.0, 1.4, "1 slow, 1.4 fast compression", optional=True
+        ),
         Parameter(
             "surface",
             "s",
@@ -57,11 +65,11 @@ GAS_COMPRESSION = Effect(
             0.0,
             1.5,
             "0: same volume on all surfaces, 1: as their force",
-            extra=True,
+            optional=True,
         ),
-        Parameter("atmosphere", "b", "1", 0.294, 0.05, 5.0, "atmospheric over gauge pressure", extra=True),
+        Parameter("atmosphere", "b", "1", 0.294, 0.05, 5.0, "atmospheric over gauge pressure", optional=True),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the air is compressed and the pressure rises with the deflection",
     tell_tale="stiffening at large deflections in one proportion on every surface; a pressure channel shows it",

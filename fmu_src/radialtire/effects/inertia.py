@@ -1,9 +1,9 @@
-"""Mass that is moved between the tire and the load cell: force in proportion to the acceleration.
+"""Mass that moves between the tire and the load cell: force in proportion to the acceleration.
 
     F_read = F + m d2x/dt2
 
-x is the deflection read, as the actuator moves the fixture that the mass belongs to. A fixture of wood and steel has
-a few kg. It acts in the air too.
+x is the measured deflection, as the actuator moves the fixture that the mass belongs to. A fixture of wood and steel
+has a few kg. It acts in the air too.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ INERTIA = Effect(
     name="inertia",
     place="inertia",
     parameters=(
-        Parameter("mass", "m", "kg", 0.0, 0.0, 100.0, "moved with the deflection", off=0.0, typical=2.0),
+        Parameter("mass", "m", "kg", 0.0, 0.0, 100.0, "moved with the deflection", neutral=0.0, nominal=2.0),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="a mass is accelerated between the tire and the load cell",
     tell_tale="the residual is in proportion to the acceleration, so it grows with the square of the frequency",

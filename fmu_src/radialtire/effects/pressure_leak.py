@@ -3,9 +3,9 @@
     F = A x^B (1 - (1 - s) (1 - q)),   dq/dt = -l q^n,   so q = (1 - (1 - n) l t)^(1 / (1 - n)), exp(-l t) for n = 1
 
 q is the pressure over that at the start, l [1/s] the rate of leaking then, n how the flow grows with the pressure: 1
-through pores, 1/2 through a hole, 2 where the air expands in a long capillary. s is the share of the force that the air
-does not carry (casing), t the time since the start. A sound tire loses 0.3 psi of 40 to 50 a day (8e-8 /s); what shows
-within minutes is a puncture.
+through pores, 1/2 through a hole, 2 where the air expands in a long capillary. s is the fraction of the force that the
+air does not carry (casing), t the time since the start. A sound tire loses 0.3 psi of 40 to 50 a day (8e-8 /s); a loss
+that is visible within minutes is a puncture.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..parameter import Parameter
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by what is left of the pressure."""
+    """Multiply the factor by the remaining pressure."""
     rate, structural, flow = values
     lost = rate * instant.time
     # Through logarithms, so that n = 1 is no special case.
@@ -34,14 +34,24 @@ PRESSURE_LEAK = Effect(
     place="scale",
     parameters=(
         Parameter(
-            "rate", "l", "1/s", 0.0, 0.0, 1.0, "share of the pressure lost each second", off=0.0, typical=3e-4
+            "rate",
+            "l",
+            "1/s",
+            0.0,
+            0.0,
+            1.0,
+            "fraction of the pressure lost each second",
+            neutral=0.0,
+            nominal=3e-4,
         ),
         Parameter(
-            "structural", "s", "1", 0.0, 0.0, 0.95, "share of the force not carried by air", extra=True
+            "structural", "s", "1", 0.0, 0.0, 0.95, "fraction of the force not carried by air", optional=True
         ),
-        Parameter("flow", "n", "1", 1.0, 0.4, 2.5, "power of the pressure with which air flows", extra=True),
+        Parameter(
+            "flow", "n", "1", 1.0, 0.4, 2.5, "power of the pressure with which air flows", optional=True
+        ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="air leaks: the force falls with time at every deflection",
     tell_tale="the first cycle repeated last is lower, in proportion to the force",

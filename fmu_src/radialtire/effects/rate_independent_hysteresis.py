@@ -4,20 +4,23 @@
     dz/dx   = (sign(dx) - z) / d                                                  Dahl's element
     y_i     <- min(max(y_i + dx / d_i, -1), 1),   d_i = 4/3 d (1 + c (2 i - 5) / 4)   elastic-plastic elements
 
-The loop's height is 2 (S + mu F_elastic). The reach d is the deflection over which the friction turns round after a
-reversal. m says how: 0 along exponentials, which forget (Dahl), 1 by elements that slip one after the other, which
-remember the points of reversal (Maxwell, Iwan); c is how far those spread. m between them follows Bouc and Wen's
-loops too: each of these forms is met within 3 % of S on a ride, while Dahl's element alone is 10 % from Iwan's.
+The loop's height is 2 (S + mu F_elastic). The breakaway distance d (parameter `reach`) is the deflection over which
+the friction changes sign after a reversal. m selects the form: 0 follows exponentials without memory (Dahl), 1 uses
+elements that slip one after the other and remember the points of reversal (Maxwell, Iwan); c is the spread of their
+breakaway distances. Values between also follow Bouc and Wen's loops: each of these forms is met within 3 % of S on a
+ride, while Dahl's element alone is 10 % from Iwan's.
 
-Integrated exactly over travel without reversal. A deflection counts from 0 on, so in the air nothing slips and nothing
-is forgotten. At the first moment the friction is q times that of a tire that was pressed there from 0 (q = 1: it was).
+Integrated exactly over travel without reversal. Deflections below 0 count as 0, so in the air nothing slips and no
+memory is lost. The initial preload q (parameter `seat`) sets the friction at the first sample: q times that of a tire
+that was pressed there from 0 (q = 1: it was).
 
-Noise of the reading counts as travel: unchecked, it makes Dahl's element forget (10 to 15 % of S at 2 mm/s and all of
-it in a hold, read at 400 Hz with 8e-6 m of noise). So a way back counts in full only once it is longer than 2 w,
-before that by its square over 2 w; w is the `play`. Four times the noise holds the error at 1 % of S for a reach of
-1 mm, at 3 % in a hold. The elastic-plastic elements need none: noise far below d_i leaves them where they are.
+Noise in the measured deflection counts as travel: unchecked, it makes Dahl's element lose its memory (10 to 15 % of S
+at 2 mm/s and all of it in a hold, at 400 Hz with 8e-6 m of noise). So travel after a reversal counts in full only once
+it exceeds 2 w, before that by its square over 2 w; w is the dead zone (parameter `play`). Four times the noise keeps
+the error at 1 % of S for d = 1 mm, at 3 % in a hold. The elastic-plastic elements need none: noise far below d_i does
+not move them.
 
-Hull, Wang & Moore (1996) saw 100 N between loading and unloading, 6.5 % of the peak, growing with the load.
+Hull, Wang & Moore (1996) measured 100 N between loading and unloading, 6.5 % of the peak, growing with the load.
 
 References: P. R. Dahl, "A solid friction model", Aerospace Corporation TOR-0158(3107-18)-1, 1968; W. D. Iwan, "A
 distributed-element model for hysteresis and its steady-state dynamic response", J. Appl. Mech. 33 (1966) 893-900.
@@ -48,19 +51,19 @@ def slip(y: float, travel: float, reach: float) -> float:
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Add the friction force [N].
 
-    The state holds z and the deflection for which it stands, the way (1 or -1) that led there, the last deflection, and
-    y1 to y4.
+    The state: z and the deflection at which it was last updated, the direction (1 or -1) of travel there, the last
+    deflection, and y1 to y4.
     """
     slip_force, load_share, reach, memory, spread, play, seat = values
-    z, turn, way, last, y1, y2, y3, y4 = state
+    z, updated_at, direction, last, y1, y2, y3, y4 = state
     x = max(instant.deflection, 0.0)
     if instant.first:
-        turn = last = 0.0
-    travel = x - turn
-    if instant.first or travel * way > 0.0 or abs(travel) >= 2.0 * play:
+        updated_at = last = 0.0
+    travel = x - updated_at
+    if instant.first or travel * direction > 0.0 or abs(travel) >= 2.0 * play:
         z = friction = dahl(z, travel, reach) * (seat if instant.first else 1.0)
-        turn = x
-        way = 1.0 if travel >= 0.0 else -1.0
+        updated_at = x
+        direction = 1.0 if travel >= 0.0 else -1.0
     else:
         friction = dahl(z, travel * abs(travel) / (2.0 * play), reach)
     if memory != 0.0:
@@ -73,7 +76,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         if instant.first:
             y1, y2, y3, y4 = seat * y1, seat * y2, seat * y3, seat * y4
         friction += memory * (0.25 * (y1 + y2 + y3 + y4) - friction)
-    after = (z, turn, way, x, y1, y2, y3, y4)
+    after = (z, updated_at, direction, x, y1, y2, y3, y4)
     if instant.deflection <= 0.0:
         return signal, after
     return signal + (slip_force + load_share * instant.elastic_force) * friction, after
@@ -83,7 +86,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
     name="rate_independent_hysteresis",
     place="parallel",
     parameters=(
-        Parameter("slip_force", "S", "N", 0.0, 0.0, 1e4, "half the loop's height", off=0.0, typical=30.0),
+        Parameter("slip_force", "S", "N", 0.0, 0.0, 1e4, "half the loop's height", neutral=0.0, nominal=30.0),
         Parameter(
             "load_share",
             "mu",
@@ -92,20 +95,53 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             0.0,
             1.0,
             "part of it that grows with the elastic force",
-            off=0.0,
-            typical=0.02,
+            neutral=0.0,
+            nominal=0.02,
         ),
-        Parameter("reach", "d", "m", 1e-3, 1e-5, 0.1, "deflection over which the friction turns round"),
         Parameter(
-            "memory", "m", "1", 0.0, 0.0, 1.0, "0: forgets (Dahl), 1: remembers reversals (Iwan)", extra=True
+            "reach",
+            "d",
+            "m",
+            1e-3,
+            1e-5,
+            0.1,
+            "breakaway distance: deflection over which the friction changes sign",
         ),
-        Parameter("spread", "c", "1", 0.6, 0.0, 1.0, "how far the elements' reaches spread", extra=True),
-        Parameter("play", "w", "m", 0.0, 0.0, 1e-3, "half of a way back that is noise", extra=True),
         Parameter(
-            "seat", "q", "1", 1.0, -1.0, 1.0, "friction at first: 1 as pressed there, 0 none", extra=True
+            "memory",
+            "m",
+            "1",
+            0.0,
+            0.0,
+            1.0,
+            "0: no memory of reversals (Dahl), 1: full memory (Iwan)",
+            optional=True,
+        ),
+        Parameter(
+            "spread", "c", "1", 0.6, 0.0, 1.0, "spread of the elements' breakaway distances", optional=True
+        ),
+        Parameter(
+            "play",
+            "w",
+            "m",
+            0.0,
+            0.0,
+            1e-3,
+            "dead zone: half of the travel after a reversal that is noise",
+            optional=True,
+        ),
+        Parameter(
+            "seat",
+            "q",
+            "1",
+            1.0,
+            -1.0,
+            1.0,
+            "initial preload: 1 as pressed there from 0, 0 none",
+            optional=True,
         ),
     ),
-    rest=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    initial_state=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     respond=respond,
     statement="friction: loading and unloading differ by a loop that does not depend on the speed",
     tell_tale="the loop stays as the frequency goes to zero, and keeps its area at every speed",

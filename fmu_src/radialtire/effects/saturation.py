@@ -1,4 +1,4 @@
-"""A ceiling of the force channel: amplifier or load cell read no more than a limit.
+"""A ceiling of the force channel: amplifier or load cell indicate no more than a limit.
 
     F_read = F - k ln(1 + exp((F - L) / k)),   k = 0: min(F, L)
 
@@ -11,12 +11,10 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from .soft_knee import FAR
 
 NO_LIMIT = 1e9
 """L [N] of a channel without a ceiling."""
-
-FAR = 40.0
-"""Roundings away from the limit at which ln(1 + exp(u)) is u, or 0, to the last digit."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -35,11 +33,11 @@ SATURATION = Effect(
     place="reading",
     parameters=(
         Parameter(
-            "limit", "L", "N", NO_LIMIT, 1.0, NO_LIMIT, "largest force read", off=NO_LIMIT, typical=1e3
+            "limit", "L", "N", NO_LIMIT, 1.0, NO_LIMIT, "largest force read", neutral=NO_LIMIT, nominal=1e3
         ),
-        Parameter("knee", "k", "N", 0.0, 0.0, 1e3, "rounding of the knee", extra=True),
+        Parameter("knee", "k", "N", 0.0, 0.0, 1e3, "rounding of the knee", optional=True),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the force channel has a ceiling",
     tell_tale="a flat top: the residual is one-sided above one force, on every surface",

@@ -1,9 +1,9 @@
-"""Wheel, frame or machine in series with the tire: they give way too, so the tire is compressed less than was read.
+"""Wheel, frame or machine in series with the tire: they deflect too, so the tire is compressed less than measured.
 
     x_tire + d = x,    d (1 + h d) = k F(x_tire),    F(x) = A (100 x)^B,    k = 1 / stiffness
 
-F is the elastic law alone: what acts beside it (friction, damping) is a few percent of it, and its share of the wheel's
-deflection a few percent of a few percent. Hull, Wang & Moore (1996) had a wheel of 2e6 N/m in their readings (5e-7 m/N;
+F is the elastic law alone: friction and damping are a few percent of it, and their part of the wheel's deflection is a
+few percent of a few percent. Hull, Wang & Moore (1996) had a wheel of 2e6 N/m in their readings (5e-7 m/N;
 Hopkins & Principe 1990) and state up to 8.8 % of stiffness lost to it.
 
 h = 0 is a plain spring; a wheel or fixture that settles under load has h > 0.
@@ -19,21 +19,20 @@ from ..effect import Effect, Instant, State
 from ..parameter import Parameter
 
 NEAR = 1e-9
-"""Relative length of a step whose successor, its square, is below the rounding."""
+"""Relative length of a step after which the next one, its square, is below rounding."""
 
-
-ROUNDS = 60
-"""Halvings at most: they alone would take a bracket to the rounding."""
+HALVINGS_MOST = 60
+"""Iterations at most: halving alone would shrink a bracket to rounding in so many."""
 
 
 def stiffening(x: float, k: float, h: float, A: float, B: float, plain: float) -> float:
     """Return the tire's part of the deflection x [m] over a spring that stiffens; plain: over one that does not.
 
-    d (1 + h d) - k F(x - d) rises with d: at nothing it is negative, at the plain spring's d it is h d^2.
+    d (1 + h d) - k F(x - d) rises with d: it is negative at d = 0 and h d^2 at the plain spring's d.
     """
     low, high = 0.0, x - plain
-    d = high
-    for _ in range(ROUNDS):
+    d = high if high < x else 0.5 * x  # plain may be less than the rounding of x
+    for _ in range(HALVINGS_MOST):
         force = A * (100.0 * (x - d)) ** B
         miss = d * (1.0 + h * d) - k * force
         if miss > 0.0:
@@ -91,14 +90,22 @@ SERIES_COMPLIANCE = Effect(
             0.0,
             1e-4,
             "deflection of wheel and machine for each N; 1/k is their stiffness",
-            off=0.0,
-            typical=5e-7,
+            neutral=0.0,
+            nominal=5e-7,
         ),
         Parameter(
-            "stiffening", "h", "1/m", 0.0, 0.0, 1000.0, "how soon the spring stiffens", off=0.0, extra=True
+            "stiffening",
+            "h",
+            "1/m",
+            0.0,
+            0.0,
+            1000.0,
+            "stiffening of the spring with its deflection",
+            neutral=0.0,
+            optional=True,
         ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the wheel or the machine gives way in series with the tire",
     tell_tale="the force falls behind at large forces, on every surface as one function of the force",

@@ -1,15 +1,15 @@
-"""Rubber that relaxes: a fast deflection is answered by more force, which then decays (standard linear solids).
+"""Rubber that relaxes: a fast deflection produces more force, which then decays (standard linear solids).
 
     F = F_elastic (1 - r (g1 + ... + g5)) + g1 h1 + ... + g5 h5,    dh_i/dt = dF_elastic/dt - h_i / tau_i
 
-A Prony series on the elastic force (quasi-linear viscoelasticity). g_i is the share of the elastic force that term i
-adds in a sudden deflection, tau_i how long it takes to decay. r says which force the elastic law is: r = 0 the slow
-one (everything relaxed, as in a press of 30 s), r = 1 the sudden one. Integrated exactly for an elastic force that is
-straight between two moments. The tire is taken as relaxed at the first moment.
+A Prony series on the elastic force (quasi-linear viscoelasticity). g_i is the fraction of the elastic force that term
+i adds in a sudden deflection, tau_i its relaxation time. r says which force the elastic law is: r = 0 the slow one
+(fully relaxed, as in a press of 30 s), r = 1 the sudden one. Integrated exactly for an elastic force that is linear
+between two samples. The tire is taken as relaxed at the first sample.
 
-The storage share of one term is g (w tau)^2 / (1 + (w tau)^2), the loss share g w tau / (1 + (w tau)^2), greatest at
-w tau = 1. Rubber has times over several decades: about one term to a decade follows a power of the time.
-No shares of bicycle tires were found in the open: the bounds are wide.
+The storage part of one term is g (w tau)^2 / (1 + (w tau)^2), the loss part g w tau / (1 + (w tau)^2), greatest at
+w tau = 1. Rubber has relaxation times over several decades: about one term per decade follows a power of the
+time. No published values for bicycle tires were found: the bounds are wide.
 
 Reference: Y. C. Fung, "Biomechanics: Mechanical Properties of Living Tissues", Springer 1981, section 7.6.
 """
@@ -23,7 +23,7 @@ from ..parameter import Parameter
 
 
 def overstress(h: float, change: float, interval: float, tau: float) -> float:
-    """Return h after `interval` [s] in which the elastic force changed by `change` [N] in a straight line."""
+    """Return h after `interval` [s] in which the elastic force changed linearly by `change` [N]."""
     passed = interval / tau
     if passed == 0.0:
         return h + change
@@ -65,24 +65,39 @@ VISCOELASTIC_RELAXATION = Effect(
             0.0,
             0.0,
             5.0,
-            "share that decays with the first time",
-            off=0.0,
-            typical=0.05,
+            "fraction that decays with the first time",
+            neutral=0.0,
+            nominal=0.05,
         ),
         Parameter("relaxation_time_1", "tau1", "s", 1.0, 1e-4, 1e5, "first relaxation time"),
-        Parameter("share_2", "g2", "1", 0.0, 0.0, 5.0, "share of the second time", off=0.0, extra=True),
-        Parameter("relaxation_time_2", "tau2", "s", 10.0, 1e-4, 1e5, "second relaxation time", extra=True),
-        Parameter("share_3", "g3", "1", 0.0, 0.0, 5.0, "share of the third time", off=0.0, extra=True),
-        Parameter("relaxation_time_3", "tau3", "s", 0.1, 1e-4, 1e5, "third relaxation time", extra=True),
         Parameter(
-            "sudden", "r", "1", 0.0, 0.0, 1.0, "0: the law is the slow force, 1: the sudden one", extra=True
+            "share_2", "g2", "1", 0.0, 0.0, 5.0, "fraction of the second time", neutral=0.0, optional=True
         ),
-        Parameter("share_4", "g4", "1", 0.0, 0.0, 5.0, "share of the fourth time", off=0.0, extra=True),
-        Parameter("relaxation_time_4", "tau4", "s", 0.01, 1e-4, 1e5, "fourth relaxation time", extra=True),
-        Parameter("share_5", "g5", "1", 0.0, 0.0, 5.0, "share of the fifth time", off=0.0, extra=True),
-        Parameter("relaxation_time_5", "tau5", "s", 100.0, 1e-4, 1e5, "fifth relaxation time", extra=True),
+        Parameter("relaxation_time_2", "tau2", "s", 10.0, 1e-4, 1e5, "second relaxation time", optional=True),
+        Parameter(
+            "share_3", "g3", "1", 0.0, 0.0, 5.0, "fraction of the third time", neutral=0.0, optional=True
+        ),
+        Parameter("relaxation_time_3", "tau3", "s", 0.1, 1e-4, 1e5, "third relaxation time", optional=True),
+        Parameter(
+            "sudden",
+            "r",
+            "1",
+            0.0,
+            0.0,
+            1.0,
+            "0: the law is the slow force, 1: the sudden one",
+            optional=True,
+        ),
+        Parameter(
+            "share_4", "g4", "1", 0.0, 0.0, 5.0, "fraction of the fourth time", neutral=0.0, optional=True
+        ),
+        Parameter("relaxation_time_4", "tau4", "s", 0.01, 1e-4, 1e5, "fourth relaxation time", optional=True),
+        Parameter(
+            "share_5", "g5", "1", 0.0, 0.0, 5.0, "fraction of the fifth time", neutral=0.0, optional=True
+        ),
+        Parameter("relaxation_time_5", "tau5", "s", 100.0, 1e-4, 1e5, "fifth relaxation time", optional=True),
     ),
-    rest=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    initial_state=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     respond=respond,
     statement="the force relaxes: it is higher after a fast deflection and decays while it is held",
     tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",

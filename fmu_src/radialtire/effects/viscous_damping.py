@@ -1,14 +1,15 @@
-"""A dashpot beside the spring: force that grows with the speed of compression.
+"""A dashpot in parallel with the spring: force that grows with the speed of compression.
 
     F = F_elastic + c v0 (|w| / v0)^n sign(w) (x / x0)^p     while the tire is loaded (x > 0)
     w = asinh(s v) / s
 
-v = dx/dt, v0 = 0.1 m/s, x0 = 1 cm. n = 1, p = 0, s = 0 is the plain dashpot c v; p > 0 lets it grow with the contact
-patch, s > 0 grow ever less beyond the rate 1/s (flow by thermally activated steps: H. Eyring, J. Chem. Phys. 4, 1936).
+v = dx/dt, v0 = 0.1 m/s, x0 = 1 cm. n = 1, p = 0, s = 0 is the linear dashpot c v; p > 0 makes it grow with the contact
+patch, s > 0 makes it grow less beyond the rate 1/s (flow by thermally activated steps: H. Eyring, J. Chem. Phys. 4,
+1936).
 
 Wang & Hull found no dependence on the rate from 3.2 to 63.5 mm/s (quoted in Hull, Wang & Moore 1996), which bounds
-c from above for slow presses only: 300 N s/m makes a loop of 0.2 % at 0.05 Hz and of 17.9 % at 5 Hz. No damping of
-bicycle tires in this direction was found in the open: the bounds are wide.
+c from above for slow presses only: 300 N s/m makes a loop of 0.2 % at 0.05 Hz and of 17.9 % at 5 Hz. No published
+damping of bicycle tires in this direction was found: the bounds are wide.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ from ..effect import Effect, Instant, State
 from ..parameter import Parameter
 
 SPEED = 0.1
-"""v0 [m/s]: speed at which the exponent of the rate does not matter."""
+"""v0 [m/s]: speed at which the exponent of the rate has no influence."""
 
 DEPTH = 0.01
-"""x0 [m]: deflection at which the exponent of the deflection does not matter."""
+"""x0 [m]: deflection at which the exponent of the deflection has no influence."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -53,10 +54,12 @@ VISCOUS_DAMPING = Effect(
             0.0,
             1e5,
             "force for each m/s of compression",
-            off=0.0,
-            typical=300.0,
+            neutral=0.0,
+            nominal=300.0,
         ),
-        Parameter("rate_exponent", "n", "1", 1.0, 0.2, 3.0, "growth of the force with the rate", extra=True),
+        Parameter(
+            "rate_exponent", "n", "1", 1.0, 0.2, 3.0, "growth of the force with the rate", optional=True
+        ),
         Parameter(
             "deflection_exponent",
             "p",
@@ -65,13 +68,21 @@ VISCOUS_DAMPING = Effect(
             0.0,
             3.0,
             "growth of the force with the deflection",
-            extra=True,
+            optional=True,
         ),
         Parameter(
-            "thinning", "s", "s/m", 0.0, 0.0, 1e4, "1/s: rate beyond which it grows less", off=0.0, extra=True
+            "thinning",
+            "s",
+            "s/m",
+            0.0,
+            0.0,
+            1e4,
+            "1/s: rate beyond which it grows less",
+            neutral=0.0,
+            optional=True,
         ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the force grows with the speed of compression",
     tell_tale="the loop's area grows with the frequency",

@@ -2,8 +2,8 @@
 
     F = A x^B (1 + g (1 - exp(-(t / tau)^s)))
 
-t is the time since the start; s below 1 stretches the rise over more than one time, as the air, the rubber and the rim
-warm one after the other. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
+t is the time since the start; s below 1 stretches the rise over several time constants, as the air, the rubber and the
+rim warm one after the other. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
 """
 
 from __future__ import annotations
@@ -31,14 +31,23 @@ WARM_UP = Effect(
             0.0,
             0.0,
             1.0,
-            "share by which the force rises in the end",
-            off=0.0,
-            typical=0.05,
+            "final rise of the force, as a fraction of it",
+            neutral=0.0,
+            nominal=0.05,
         ),
         Parameter("time_constant", "tau", "s", 60.0, 0.1, 1e5, "time to 63 % of the rise"),
-        Parameter("stretch", "s", "1", 1.0, 0.3, 1.0, "1: one time, below: spread over several", extra=True),
+        Parameter(
+            "stretch",
+            "s",
+            "1",
+            1.0,
+            0.3,
+            1.0,
+            "1: one time constant, below 1: spread over several",
+            optional=True,
+        ),
     ),
-    rest=(),
+    initial_state=(),
     respond=respond,
     statement="the tire warms: the force rises with time to a new level at every deflection",
     tell_tale="the first cycle repeated last is higher, in proportion to the force, and the rise dies away",

@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 from radialtire import CATALOGUE, Hull1996, PowerLaw, TireModel, power_law
 
-from ..identify import identify
+from ..identification.identify import identify
 from ..recordings.recording import Recording
 from . import press as rig
 

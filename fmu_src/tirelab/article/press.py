@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +49,27 @@ WARM_UP = 12.0
 """Correlation times that the noise runs before a recording starts, so that its start is like the rest."""
 
 
+@dataclass(frozen=True)
+class ForceNoise:
+    """Gaussian noise of the force.
+
+    standard_deviation: [N]; correlation_time: [s] over which its autocorrelation falls to 1/e, 0 for white noise
+    seed: the same seed gives the same noise
+    """
+
+    standard_deviation: float = 0.0
+    correlation_time: float = 0.0
+    seed: tuple[int, ...] = (0,)
+
+    @property
+    def description(self) -> str:
+        """The noise in words."""
+        return f"noise of {self.standard_deviation:g} N correlated over {self.correlation_time:g} s"
+
+
+NO_NOISE = ForceNoise()
+
+
 def largest_deflection(tire: TireModel, surface_radius: float) -> float:
     """Return the deflection [m] to which the rig presses `tire` on a surface of radius `surface_radius` [m].
 
@@ -72,35 +94,30 @@ def record(
     surface_radius: float,
     *,
     cycles: int = 1,
-    noise: float = 0.0,
-    correlation_time: float = 0.0,
-    seed: int | Sequence[int] = 0,
+    noise: ForceNoise = NO_NOISE,
     sampling_rate: float = SAMPLING_RATE,
 ) -> Recording:
     """Return what the rig records of `tire` on one surface.
 
     surface_radius: [m] convex > 0, concave < 0, flat infinite
-    cycles: triangles of 30 s, at least 1
-    noise: standard deviation of the force's noise [N]; correlation_time: [s] over which it falls to 1/e, 0 for white
-    seed: the same seed gives the same noise
-    sampling_rate: [Hz]
+    cycles: triangles of 30 s, at least 1; noise: added to the force; sampling_rate: [Hz]
 
     Raises TirelabError where an argument makes no sense or the tire is too stiff for the rig.
     """
     if cycles < 1:
         raise TirelabError(f"{cycles} cycles make no recording; ask for one or more")
-    if not (0.0 <= noise < math.inf and 0.0 <= correlation_time < math.inf):
-        raise TirelabError(
-            f"noise of {noise:g} N correlated over {correlation_time:g} s: neither may be below 0"
-        )
+    if not (0.0 <= noise.standard_deviation < math.inf and 0.0 <= noise.correlation_time < math.inf):
+        raise TirelabError(f"{noise.description}: neither may be below 0")
     if not 2.0 <= sampling_rate * PERIOD < math.inf:
         raise TirelabError(
             f"a sampling rate of {sampling_rate:g} Hz does not see a cycle of {PERIOD:g} s; raise it"
         )
     deflection_max = largest_deflection(tire, surface_radius)
     time, deflection, force = _cycles(tire, surface_radius, deflection_max, cycles, sampling_rate)
-    if noise > 0.0:
-        force = force + noise * _noise(time.size, correlation_time * sampling_rate, seed)
+    if noise.standard_deviation > 0.0:
+        force = force + noise.standard_deviation * _noise(
+            time.size, noise.correlation_time * sampling_rate, noise.seed
+        )
     return Recording(
         name=surface_name(surface_radius),
         time=time,
@@ -109,7 +126,7 @@ def record(
         force=force,
         notes=(
             f"computed from {tire.name or 'a tire'} as the rig of Hull, Wang & Moore 1996 would record it",
-            *([f"noise of {noise:g} N added, correlated over {correlation_time:g} s"] if noise > 0.0 else []),
+            *([f"{noise.description}, added"] if noise.standard_deviation > 0.0 else []),
         ),
     )
 
@@ -118,20 +135,19 @@ def record_all(
     tire: TireModel | None = None,
     *,
     cycles: int = 1,
-    noise: float = 0.0,
-    correlation_time: float = 0.0,
-    seed: int = 0,
+    noise: ForceNoise = NO_NOISE,
     sampling_rate: float = SAMPLING_RATE,
 ) -> tuple[Recording, ...]:
-    """Return the rig's fourteen recordings of `tire` (the article's where None); arguments as in `record`."""
+    """Return the rig's fourteen recordings of `tire` (the article's where None); arguments as in `record`.
+
+    Each recording has noise of its own, drawn from the seed and the number of its surface.
+    """
     return tuple(
         record(
             tire or TireModel(),
             radius,
             cycles=cycles,
-            noise=noise,
-            correlation_time=correlation_time,
-            seed=(seed, i),
+            noise=replace(noise, seed=(*noise.seed, i)),
             sampling_rate=sampling_rate,
         )
         for i, radius in enumerate(SURFACES)
@@ -154,13 +170,13 @@ def _cycles(
     phase = time / PERIOD % 1.0
     deflection = deflection_max * (1.0 - np.abs(2.0 * phase - 1.0))
     force = np.empty(time.size)
-    state = tire.rest
+    state = tire.initial_state
     for i, (t, x) in enumerate(zip(time.tolist(), deflection.tolist(), strict=True)):
         force[i], state = tire.step(x, surface_radius, t, state)
     return time, deflection, force
 
 
-def _noise(count: int, correlation: float, seed: int | Sequence[int]) -> NDArray[np.float64]:
+def _noise(count: int, correlation: float, seed: Sequence[int]) -> NDArray[np.float64]:
     """Return `count` samples of unit variance whose correlation falls to 1/e over `correlation` samples."""
     generator = np.random.default_rng(seed)
     if correlation == 0.0:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
 
-from ..article import check_article, draw, summary, to_csv, to_json, to_table
 from ..errors import TirelabError
 from .options import SentenceCommand, out
 
@@ -22,6 +20,11 @@ def command(out: Path) -> None:
 
     Writes article.csv, article.json and figure1.png to figure3.png.
     """
+    from rich.console import Console
+
+    from ..article.figures import draw
+    from ..article.outcomes import check_article, summary, to_csv, to_json, to_table
+
     outcomes = check_article()
     try:
         out.mkdir(parents=True, exist_ok=True)

@@ -7,8 +7,6 @@ from pathlib import Path
 import click
 from radialtire import TireModel, read_tire
 
-from ..fmu.build import build_fmu
-from ..fmu.loader import NO_COMPILER
 from .options import FILE, SentenceCommand, out
 
 
@@ -17,6 +15,9 @@ from .options import FILE, SentenceCommand, out
 @out("dist")
 def command(tire: Path | None, out: Path) -> None:
     """Pack a tire as DIR/BicycleTire.fmu, an FMI 2.0 Co-Simulation unit, and validate it."""
+    from ..fmu.build import build_fmu
+    from ..fmu.loader import NO_COMPILER
+
     model = TireModel() if tire is None else read_tire(tire)
     built = build_fmu(model, out)
     click.echo(f"{built.path}: {model.name}, FMI 2.0 Co-Simulation, valid, guid {built.guid}")

@@ -9,10 +9,7 @@ import click
 from radialtire import TireModel, read_tire
 
 from ..errors import TirelabError
-from ..fmu.build import build_fmu
-from ..fmu.replay import replay
 from ..recordings.reading import Reading
-from ..report.comparison import compare, plot
 from .options import FILE, SentenceCommand, out, reading
 
 
@@ -26,6 +23,10 @@ from .options import FILE, SentenceCommand, out, reading
 @reading
 def command(recording: Path, fmu: Path | None, tire: Path | None, out: Path, reading: Reading) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
+    from ..fmu.build import build_fmu
+    from ..fmu.replay import replay
+    from ..report.comparison import compare, plot
+
     if fmu is not None and tire is not None:
         raise TirelabError("--fmu and --tire both name a tire; give one of them")
     recorded = reading(recording)

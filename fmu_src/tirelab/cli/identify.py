@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from radialtire import write_tire
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from radialtire.tirefile import LAWS
 
 from ..errors import TirelabError
-from ..identify import LAWS, Identification, identify
-from ..identify.table import constant_table, surface_table
-from ..recordings.files import recording_files
 from ..recordings.reading import Reading
-from ..recordings.recording import Recording
 from .options import FILE, SentenceCommand, reading
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress, TaskID
+
+    from ..identification.result import Identification
+    from ..recordings.recording import Recording
 
 WIDTH_LEAST = 100
 """Columns that the tables need; a narrower terminal wraps them, a file has room."""
@@ -32,7 +35,11 @@ WIDTH_LEAST = 100
     help="The tire file written.",
 )
 @click.option(
-    "--law", type=click.Choice(LAWS), default="auto", show_default=True, help="The form of A(R) and B(R)."
+    "--law",
+    type=click.Choice(["auto", *LAWS]),
+    default="auto",
+    show_default=True,
+    help="The form of A(R) and B(R).",
 )
 @click.option("--name", default="", help="The tire's name.")
 @reading
@@ -41,6 +48,11 @@ def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, readin
 
     Writes the tire file, and beside it FILE.identification.json with uncertainties, intervals and Table 1.
     """
+    from rich.console import Console
+
+    from ..identification.identify import identify
+    from ..recordings.files import recording_files
+
     console = Console(highlight=False)
     if not console.is_terminal:
         console.width = WIDTH_LEAST
@@ -69,6 +81,9 @@ def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, readin
 
 
 def _bars() -> Progress:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -80,6 +95,8 @@ def _bars() -> Progress:
 
 
 def _print(console: Console, recordings: list[Recording], found: Identification) -> None:
+    from ..identification.table import constant_table, surface_table
+
     for recording in recordings:
         for note in recording.notes:
             console.print(f"note: {recording.name}: {note}", markup=False, soft_wrap=True)

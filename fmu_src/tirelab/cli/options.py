@@ -1,4 +1,4 @@
-"""What the commands share: options, and failures told in one sentence."""
+"""What the commands share: options, and bad input reported in one sentence."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import click
 from radialtire import InputError, ParameterError, TireFileError
 
 from ..errors import TirelabError
-from ..recordings.channels import parse_columns, parse_units
 from ..recordings.reading import Reading
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -19,8 +18,8 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 FILE = click.Path(path_type=Path)
 
 
-class Told(click.ClickException):
-    """A failure told in one sentence: exit status 2, no traceback."""
+class Refusal(click.ClickException):
+    """Bad input reported in one sentence: exit status 2, no traceback."""
 
     exit_code = 2
 
@@ -33,7 +32,7 @@ class SentenceCommand(click.Command):
         try:
             return super().invoke(ctx)
         except (TirelabError, TireFileError, ParameterError, InputError) as error:
-            raise Told(str(error)) from None
+            raise Refusal(str(error)) from None
 
 
 def reading(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -50,7 +49,11 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
     def with_reading(
         *args: Any, columns: str | None, units: str | None, radius: str | None, **options: Any
     ) -> Any:
-        how = Reading(parse_columns(columns or ""), parse_units(units or ""), radius)
+        how = Reading(radius=radius)
+        if columns or units:
+            from ..recordings.channels import parse_columns, parse_units
+
+            how = Reading(parse_columns(columns or ""), parse_units(units or ""), radius)
         return command(*args, reading=how, **options)
 
     return with_reading

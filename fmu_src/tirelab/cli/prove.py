@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
 
-from ..batch.workers import Cores
 from .options import FILE, SentenceCommand
 
 TABLE_WIDTH = 110
@@ -41,6 +39,9 @@ def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | Non
     before the first diagnosis. Each trial is diagnosed from its recordings and the baseline tire alone. Then the
     answers are opened, their SHA-256 are checked, and the verdicts are scored.
     """
+    from rich.console import Console
+
+    from ..batch.workers import Cores
     from ..validation import BlindTrials, Folders, prove  # here: the rig is imported for this command only
     from ..validation.terminal import criteria_table
 

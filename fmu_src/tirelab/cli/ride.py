@@ -1,175 +1,180 @@
-"""tirelab ride: terrain and a tire in, deflection, radius and force out, with the share that is doubtful."""
+"""tirelab ride: terrain and a tire in, deflection, radius and force out, with the part that is doubtful."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 from radialtire import TireModel, read_tire
+from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
-from ..terrain import (
-    OBSTACLES,
-    WHEEL_RADIUS,
-    Profile,
-    Ride,
-    TireForce,
-    add_roughness,
-    animate_ride,
-    draw_ride,
-    flat,
-    ground_from,
-    iso8608,
-    place,
-    read_profile,
-    ride,
-)
-from ..terrain.iso8608 import GEOMETRIC_MEAN
-from ..terrain.profile import Floats
-from ..terrain.profile_file import read_columns
-from .options import FILE, SentenceCommand
+from .assignments import assignments
+from .option_group import option_group
+from .options import FILE, SentenceCommand, out
+
+if TYPE_CHECKING:
+    from ..terrain import Profile, ProfileColumns, Ride
+
+LOAD = 500.0
+"""Load [N] where neither a load nor a path of the hub is given."""
+
+
+@dataclass(frozen=True)
+class Terrain:
+    """The ground to ride over, as the user describes it beside the file of the profile."""
+
+    columns: str | None
+    units: str | None
+    iso_class: str | None
+    seed: int
+    length: float
+    obstacle: tuple[str, ...]
+    spacing: float | None
+    smoothing_length: float | None
+
+    def profile(self, path: Path | None) -> Profile:
+        """Return the profile of the file at `path`, or random or flat ground, with the obstacles placed on it."""
+        from ..terrain import Profile, add_roughness, flat, iso8608, read_profile
+
+        terrain = None if path is None else read_profile(path, self.source())
+        if terrain is not None and self.smoothing_length is not None:
+            terrain = Profile(terrain.s, terrain.z, terrain.name, self.smoothing_length, terrain.notes)
+        if self.iso_class is not None:
+            rough = iso8608(self.iso_class, self.length if terrain is None else terrain.length, self.seed)
+            terrain = rough if terrain is None else add_roughness(terrain, rough)
+        return self._with_obstacles(flat(self.length) if terrain is None else terrain)
+
+    def source(self) -> ProfileColumns:
+        """Return which columns of the file are which, and their units."""
+        from ..terrain import ProfileColumns
+
+        columns = assignments(self.columns or "", "--columns", ("s", "z"), 's=Distance,z="Height of ground"')
+        units = assignments(self.units or "", "--units", ("s", "z"), "s=m,z=mm")
+        return ProfileColumns(columns, units)
+
+    def _with_obstacles(self, terrain: Profile) -> Profile:
+        from ..terrain import OBSTACLES, place
+
+        start, span = terrain.s[0], terrain.length
+        for word in self.obstacle:
+            name, at, where = word.partition("@")
+            try:
+                shape = OBSTACLES[name]
+                position = float(where) if at else float(start + 0.5 * span)
+            except (KeyError, ValueError):
+                raise TirelabError(
+                    f"--obstacle {word}: give one of {', '.join(OBSTACLES)}, and its place as in log@12.5"
+                ) from None
+            terrain = place(terrain, shape(), position)
+        return terrain
+
+
+@dataclass(frozen=True)
+class Passage:
+    """How the wheel passes over the ground: its speed [m/s], and the load [N] it carries or the path of its hub."""
+
+    speed: float
+    load: float | None
+    hub_path: Path | None
+    wheel_radius: float
 
 
 @click.command("ride", cls=SentenceCommand)
 @click.argument("profile", required=False, type=FILE)
-@click.option(
-    "--iso-class", type=click.Choice(list(GEOMETRIC_MEAN)), help="Random ground of this ISO 8608 class."
+@option_group(
+    "terrain",
+    Terrain,
+    click.option("--columns", metavar="s=COLUMN,z=COLUMN", help="Which of PROFILE's columns are s and z."),
+    click.option("--units", metavar="s=UNIT,z=UNIT", help="Their units, over what the file says."),
+    click.option(
+        "--iso-class", type=click.Choice(list("ABCDEFGH")), help="Random ground of this ISO 8608 class."
+    ),
+    click.option("--seed", default=0, show_default=True, help="Seed of the random ground."),
+    click.option("--length", default=20.0, show_default=True, help="Length [m] of ground without a file."),
+    click.option(
+        "--obstacle",
+        multiple=True,
+        metavar="NAME[@S]",
+        help="Add an obstacle (stick, log, root, rut, whoops, kerb) at S [m].  [default place: the middle]",
+    ),
+    click.option("--spacing", type=float, help="Distance [m] between samples of the ground."),
+    click.option(
+        "--smoothing-length",
+        type=float,
+        help="Wavelength [m] at which the smoothing keeps half of the height; 0: no smoothing.",
+    ),
 )
-@click.option("--seed", default=0, show_default=True, help="Which random ground.")
-@click.option("--length", default=20.0, show_default=True, help="Length [m] of ground that no file gives.")
-@click.option(
-    "--obstacle",
-    multiple=True,
-    metavar="NAME[@S]",
-    help=f"Add {', '.join(OBSTACLES)} at S [m]; middle if not said.",
+@option_group(
+    "passage",
+    Passage,
+    click.option("--speed", default=5.0, show_default=True, help="Speed [m/s]."),
+    click.option(
+        "--load",
+        type=float,
+        help=f"Load [N] on the wheel, held constant.  [default: {LOAD:g}, or --hub-path]",
+    ),
+    click.option("--hub-path", type=FILE, help="CSV with the hub's path: s [m], h [m]."),
+    click.option(
+        "--wheel-radius", default=WHEEL_RADIUS, show_default=True, help="Unloaded radius [m] of the wheel."
+    ),
 )
-@click.option("--speed", default=5.0, show_default=True, help="Speed [m/s].")
-@click.option(
-    "--load", type=float, help="Load [N] that the wheel carries, without bouncing; 500 without --hub-path."
-)
-@click.option("--hub-path", type=FILE, help="CSV with the hub's path: s [m], h [m].")
-@click.option("--tire", type=FILE, help="Tire file (JSON); the article's tire if not given.")
-@click.option("--wheel-radius", default=WHEEL_RADIUS, show_default=True, help="Unloaded radius [m].")
-@click.option("--spacing", type=float, help="Distance [m] of samples of the ground.")
-@click.option(
-    "--smoothing-length", type=float, help="Wavelength [m] of which smoothing keeps half; 0 for none."
-)
-@click.option("--output", type=FILE, help="Write the ride as CSV.")
-@click.option("--picture", type=FILE, help="Write a picture (PNG).")
-@click.option("--animation", type=FILE, help="Write an animation (GIF).")
+@click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
+@out("ride")
+@click.option("--animation", is_flag=True, help="Write an animation too (ride.gif).")
 def command(
-    profile: Path | None,
-    iso_class: str | None,
-    seed: int,
-    length: float,
-    obstacle: tuple[str, ...],
-    speed: float,
-    load: float | None,
-    hub_path: Path | None,
-    tire: Path | None,
-    wheel_radius: float,
-    spacing: float | None,
-    smoothing_length: float | None,
-    output: Path | None,
-    picture: Path | None,
-    animation: Path | None,
+    profile: Path | None, terrain: Terrain, passage: Passage, tire: Path | None, out: Path, animation: bool
 ) -> None:
     """Ride over the terrain of PROFILE (CSV with s [m] and z [m], or GPX), or over random or flat ground.
 
-    Prints the range of deflection and force, and how much of the ride is outside of what the article's tire stands for.
+    Prints the range of deflection and force, and how much of the ride lies outside the limits of the article's tire.
+    Writes ride.csv and ride.png.
     """
-    terrain = _terrain(profile, iso_class, seed, length, obstacle, smoothing_length)
-    model = TireModel() if tire is None else read_tire(tire)
-    position, hub_height = (None, None) if hub_path is None else read_columns(hub_path, ("s", "h"))[0]
-    if load is None and hub_path is None:
-        load = 500.0
-    result = ride(
-        ground_from(terrain, spacing),
-        law_force(model),
-        speed=speed,
-        load=load,
-        position=position,
-        hub_height=hub_height,
-        wheel_radius=wheel_radius,
-    )
-    for line in _summary(result, model):
-        click.echo(line)
-    if output is not None:
-        write_ride(result, output)
-    if picture is not None:
-        draw_ride(result, picture)
-    if animation is not None:
-        animate_ride(result, animation)
+    from ..terrain import HubPath, animate_ride, draw_ride, ground_from, ride, write_ride
+    from ..terrain.profile_file import read_columns
 
-
-def law_force(tire: TireModel) -> TireForce:
-    """Return the elastic law of `tire` for arrays of deflection [m] and surface radius [m]."""
-
-    def force(deflection: Floats, surface_radius: Floats) -> Floats:
-        coefficients = np.array([tire.law.coefficients(radius) for radius in surface_radius.tolist()])
-        newtons: Floats = coefficients[:, 0] * (100.0 * deflection) ** coefficients[:, 1]
-        return newtons
-
-    return force
-
-
-def write_ride(result: Ride, path: Path) -> None:
-    """Write `result` to `path` as CSV, units in the header, `limits` as the bits of `Limit`."""
-    columns = {
-        "time [s]": result.time,
-        "position [m]": result.contact.position,
-        "hub_height [m]": result.contact.hub_height,
-        "deflection [m]": result.contact.deflection,
-        "surface_radius [m]": result.contact.surface_radius,
-        "radial_force [N]": result.radial_force,
-        "vertical_force [N]": result.vertical_force,
-        "limits": result.limits.astype(np.float64),
-    }
     try:
-        np.savetxt(
-            path, np.column_stack(list(columns.values())), "%.9g", ",", header=",".join(columns), comments=""
-        )
+        out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise TirelabError(f"{path}: {error.strerror or error}; name a file that can be written") from None
+        raise TirelabError(
+            f"{out} cannot be written ({error.strerror}); name another folder with --out"
+        ) from None
+    model = TireModel() if tire is None else read_tire(tire)
+    ground = ground_from(terrain.profile(profile), terrain.spacing)
+    load, hub_path, notes = passage.load, None, ground.notes
+    if passage.hub_path is not None:
+        table = read_columns(passage.hub_path, ("s", "h"))
+        position, height = table.values
+        hub_path, notes = HubPath(height, position), (*notes, *table.notes)
+    elif load is None:
+        load = LOAD
+    result = ride(
+        ground,
+        model,
+        speed=passage.speed,
+        load=load,
+        hub_path=hub_path,
+        wheel_radius=passage.wheel_radius,
+    )
+    for line in _summary(result, model, notes):
+        click.echo(line)
+    write_ride(result, out / "ride.csv")
+    draw_ride(result, out / "ride.png")
+    written = [out / "ride.csv", out / "ride.png"]
+    if animation:
+        animate_ride(result, out / "ride.gif")
+        written.append(out / "ride.gif")
+    click.echo("written: " + ", ".join(str(path) for path in written))
 
 
-def _terrain(
-    path: Path | None,
-    iso_class: str | None,
-    seed: int,
-    length: float,
-    obstacles: tuple[str, ...],
-    smoothing_length: float | None,
-) -> Profile:
-    terrain = None if path is None else read_profile(path)
-    if terrain is not None and smoothing_length is not None:
-        terrain = Profile(terrain.s, terrain.z, terrain.name, smoothing_length, terrain.notes)
-    if iso_class is not None:
-        rough = iso8608(iso_class, length if terrain is None else terrain.length, seed)
-        terrain = rough if terrain is None else add_roughness(terrain, rough)
-    if terrain is None:
-        terrain = flat(length)
-    start, span = terrain.s[0], terrain.length
-    for word in obstacles:
-        name, at, where = word.partition("@")
-        try:
-            shape = OBSTACLES[name]
-            position = float(where) if at else float(start + 0.5 * span)
-        except (KeyError, ValueError):
-            raise TirelabError(
-                f"--obstacle {word}: give one of {', '.join(OBSTACLES)}, and its place as in log@12.5"
-            ) from None
-        terrain = place(terrain, shape(), position)
-    return terrain
-
-
-def _summary(result: Ride, tire: TireModel) -> list[str]:
+def _summary(result: Ride, tire: TireModel, notes: tuple[str, ...]) -> list[str]:
     touch, force = result.contact, result.radial_force
     length = touch.position[-1] - touch.position[0]
     lines = [
         f"{result.ground.name}: {length:.1f} m at {result.speed:g} m/s, {touch.position.size} positions",
-        *(f"note: {note}" for note in result.ground.notes),
+        *(f"note: {note}" for note in notes),
         f"tire: {tire.name}",
         f"deflection {1000.0 * touch.deflection.min():.1f} to {1000.0 * touch.deflection.max():.1f} mm",
         f"radial force {force.min():.0f} to {force.max():.0f} N, mean {force.mean():.0f} N",

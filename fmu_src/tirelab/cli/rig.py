@@ -7,13 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import click
-import numpy as np
 from radialtire import TireModel, read_tire
 
-from ..article.press import record_all
 from ..errors import TirelabError
-from ..recordings.recording import write_recording
-from ..recordings.units import UnitError, conversion
 from .options import FILE, SentenceCommand, out
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
@@ -23,6 +19,10 @@ def quantity(unit: str) -> Callable[[click.Context, click.Parameter, str], float
     """Return the callback that turns an option such as "10N" or "2 lbf" into a number in the SI unit `unit`."""
 
     def convert(context: click.Context, parameter: click.Parameter, text: str) -> float:
+        import numpy as np
+
+        from ..recordings.units import UnitError, conversion
+
         found = NUMBER.fullmatch(text)
         if found is None or not found[2].strip():
             raise click.BadParameter(f"{text!r} is not a number with a unit; write for instance 10{unit}")
@@ -51,7 +51,7 @@ def quantity(unit: str) -> Callable[[click.Context, click.Parameter, str], float
     metavar="TIME",
     help="Time over which the noise fades to 1/e: 0.5s.",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Of the noise.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the noise.")
 @click.option(
     "--cycles", type=click.IntRange(1, 1000), default=1, show_default=True, help="Triangles of 30 s."
 )
@@ -60,8 +60,11 @@ def command(out: Path, tire: Path | None, noise: float, correlation: float, seed
 
     Ten convex surfaces, a flat one, three concave ones; a triangle wave of 30 s sampled at 5 Hz; force below 2240 N.
     """
+    from ..article.press import ForceNoise, record_all
+    from ..recordings.recording import write_recording
+
     model = TireModel() if tire is None else read_tire(tire)
-    recordings = record_all(model, cycles=cycles, noise=noise, correlation_time=correlation, seed=seed)
+    recordings = record_all(model, cycles=cycles, noise=ForceNoise(noise, correlation, (seed,)))
     try:
         out.mkdir(parents=True, exist_ok=True)
         for recording in recordings:

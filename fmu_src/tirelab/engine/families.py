@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from radialtire.effects.gas_compression import LEAST_CURVATURE, WHEEL_RADIUS
+from radialtire.effects.gas_compression import LEAST_CURVATURE
+from radialtire.hull1996 import WHEEL_RADIUS
 from scipy.signal import lfilter
 
 from ..preprocessing.kinematics import FloatArray

@@ -129,7 +129,7 @@ def _before(parameter: Parameter, reading_noise: float) -> float:
     """Return a parameter's value before it is fitted."""
     if parameter.name in OF_READING:
         return min(OF_READING[parameter.name] * reading_noise, parameter.maximum)
-    return parameter.start if parameter.extra else parameter.everyday
+    return parameter.start if parameter.optional else parameter.nominal_value
 
 
 def knobs_of(names: Sequence[str], radii: Sequence[float], extras: bool, deepest: float) -> tuple[Knob, ...]:
@@ -146,7 +146,7 @@ def knobs_of(names: Sequence[str], radii: Sequence[float], extras: bool, deepest
             continue
         effect = CATALOGUE[name]
         for index, parameter in enumerate(effect.parameters):
-            if parameter.name in OF_READING or (parameter.extra and not extras):
+            if parameter.name in OF_READING or (parameter.optional and not extras):
                 continue
             knobs.append(_knob(effect, index, _scale(parameter)))
     return tuple(knobs)
@@ -160,7 +160,7 @@ def _knob(effect: Effect, index: int, scale: float) -> Knob:
 def _scale(parameter: Parameter) -> float:
     if parameter.name == "limit":
         return 100.0
-    everyday = abs(parameter.everyday)
+    everyday = abs(parameter.nominal_value)
     return everyday if everyday > 0.0 else min(0.3, 0.1 * (parameter.maximum - parameter.minimum))
 
 
@@ -256,7 +256,7 @@ def owners_of(name: str) -> tuple[str, ...]:
 
 
 def _extra(knob: Knob) -> bool:
-    return knob.owner != "law" and CATALOGUE[knob.owner].parameters[knob.index].extra
+    return knob.owner != "law" and CATALOGUE[knob.owner].parameters[knob.index].optional
 
 
 def spare_knobs(whole: Refit, power: float, part: float = 1.0) -> tuple[Knob, ...]:

@@ -58,7 +58,7 @@ def starts_of(effect: Effect, deepest: float, highest: float) -> list[State]:
     names = [p.name for p in effect.parameters]
     found = []
     for combination in product(*grids.values()):
-        values = list(effect.typical)
+        values = list(effect.nominal)
         for name, value in zip(grids, combination, strict=True):
             values[names.index(name)] = value
         found.append(tuple(values))
@@ -70,7 +70,9 @@ def starts_of(effect: Effect, deepest: float, highest: float) -> list[State]:
 def strengths(effect: Effect) -> list[int]:
     """Return the indices of the parameters to which an effect's force is in proportion."""
     return [
-        i for i, p in enumerate(effect.parameters) if p.off is not None and not p.extra and p.name != "limit"
+        i
+        for i, p in enumerate(effect.parameters)
+        if p.neutral is not None and not p.optional and p.name != "limit"
     ]
 
 
@@ -83,7 +85,7 @@ def matched(
     highest: float,
 ) -> State:
     """Return the effect's values whose response comes nearest to its part in the search [N]."""
-    best: tuple[float, State] = (np.inf, effect.typical)
+    best: tuple[float, State] = (np.inf, effect.nominal)
     amplitudes = strengths(effect)
     wanted = np.concatenate(target)
     bare = np.concatenate([simulate(tire, c.recording)[c.rows] for c in cases])

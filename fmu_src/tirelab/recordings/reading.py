@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from .channels import assignments_text
-from .recording import Recording, read_recording
+if TYPE_CHECKING:
+    from .recording import Recording
 
 
 @dataclass(frozen=True)
@@ -25,10 +26,15 @@ class Reading:
 
     def __call__(self, file: Path | str) -> Recording:
         """Return the recording in a file. Errors: RecordingError, see `read_recording`."""
+        # here, since the command line states a reading before it loads the readers
+        from .recording import read_recording
+
         return read_recording(file, columns=self.columns, radius=self.radius, units=self.units)
 
     def words(self) -> list[str]:
         """Return the words of a command line that read recordings in the same way."""
+        from .channels import assignments_text
+
         words = []
         for option, values in (("--columns", self.columns), ("--units", self.units)):
             if values:

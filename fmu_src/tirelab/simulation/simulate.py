@@ -179,7 +179,7 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
         history.exponent,
         history.elastic_force,
         history.curvature,
-        effect.rest,
+        effect.initial_state,
         tuple(float(value) for value in values),
         answer,
     )

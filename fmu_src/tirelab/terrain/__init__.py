@@ -6,15 +6,18 @@ A profile comes from a file (`read_profile`), from ISO 8608 (`iso8608`), from fu
 `from_function`), with obstacles put on it (`place`).
 """
 
-from .contact import WHEEL_RADIUS, Contact, contact, hub_positions, reach, rolling_path
+from radialtire.hull1996 import WHEEL_RADIUS
+
+from .contact import Contact, contact, hub_positions, reach, rolling_path
 from .curvature import Ground, ground_from
 from .iso8608 import iso8608
 from .limits import DOUBTS, Limit, LimitReport
 from .obstacles import OBSTACLES, Obstacle, kerb, log, place, root, rut, stick, whoops
 from .picture import animate_ride, draw_ride
 from .profile import Profile, flat, from_function, sine
-from .profile_file import add_roughness, read_gpx, read_profile, read_profile_csv
-from .ride import Ride, TireForce, constant_load_path, ride
+from .profile_file import ProfileColumns, add_roughness, read_gpx, read_profile, read_profile_csv
+from .ride import HubPath, Ride, TireForce, constant_load_path, law_force, ride
+from .ride_file import write_ride
 
 __all__ = [
     "DOUBTS",
@@ -22,10 +25,12 @@ __all__ = [
     "WHEEL_RADIUS",
     "Contact",
     "Ground",
+    "HubPath",
     "Limit",
     "LimitReport",
     "Obstacle",
     "Profile",
+    "ProfileColumns",
     "Ride",
     "TireForce",
     "add_roughness",
@@ -39,6 +44,7 @@ __all__ = [
     "hub_positions",
     "iso8608",
     "kerb",
+    "law_force",
     "log",
     "place",
     "reach",
@@ -52,4 +58,5 @@ __all__ = [
     "sine",
     "stick",
     "whoops",
+    "write_ride",
 ]

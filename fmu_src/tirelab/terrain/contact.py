@@ -29,13 +29,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
 from .curvature import Ground, radius_of
 from .profile import Floats
-
-WHEEL_RADIUS = 0.33
-"""Unloaded radius [m] of the article's 26 in wheel."""
 
 BLOCK = 1 << 18
 """Pairs of hub and ground point that are compared at once: what fits a processor's cache."""

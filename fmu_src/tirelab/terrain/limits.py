@@ -34,9 +34,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire.hull1996 import CONCAVE_RADII, CONVEX_RADII, DEFLECTION_MAX, FORCE_MAX
+from radialtire.hull1996 import (
+    CONCAVE_RADIUS_RANGE,
+    CONVEX_RADIUS_RANGE,
+    DEFLECTION_MAX,
+    FORCE_MAX,
+    WHEEL_RADIUS,
+)
 
-from .contact import WHEEL_RADIUS, Contact
+from .contact import Contact
 from .profile import Floats
 
 EDGE_TURN = math.radians(15.0)
@@ -86,10 +92,10 @@ def limits(touch: Contact, radial_force: Floats, wheel_radius: float = WHEEL_RAD
     light_contact = 2.0 * math.sqrt(2.0 * wheel_radius * LIGHT_DEFLECTION)
     room = SPREAD_LIMIT * np.maximum(effective, 0.0)
     tests = {
-        Limit.SHARP_EDGE: (touch.curvature_max > 1.0 / CONVEX_RADII[0]) | (touch.turn > EDGE_TURN),
+        Limit.SHARP_EDGE: (touch.curvature_max > 1.0 / CONVEX_RADIUS_RANGE[0]) | (touch.turn > EDGE_TURN),
         Limit.DISCONTINUOUS_RADIUS: touch.curvature_jump > room,
         Limit.CHANGING_RADIUS: touch.curvature_max - touch.curvature_min > room,
-        Limit.TIGHT_CONCAVE: touch.curvature < 1.0 / CONCAVE_RADII[1],
+        Limit.TIGHT_CONCAVE: touch.curvature < 1.0 / CONCAVE_RADIUS_RANGE[1],
         Limit.SEVERAL_CONTACTS: touch.zones > 1,
         Limit.DEFLECTION_UNTESTED: touch.deflection > DEFLECTION_MAX,
         Limit.FORCE_UNTESTED: radial_force > FORCE_MAX,

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.animation import PillowWriter
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 from numpy.typing import ArrayLike
 
 from ..errors import TirelabError
 from .limits import DOUBTS, Limit, percent
 from .profile import Floats
 from .ride import Ride
+
+if TYPE_CHECKING:  # matplotlib takes longer to load than a ride to compute
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 GROUND, WHEEL, FORCE, DOUBT, AIR = "#8a6d4b", "#1f5a99", "#222222", "#d1495b", "#7fb2dd"
 
@@ -43,6 +43,9 @@ MOST_FRAMES = 400
 
 def draw_ride(ride: Ride, path: str | Path, title: str | None = None) -> None:
     """Write a PNG of `ride` to `path`: ground and wheel path, force over time, and one line per limit passed."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     met = [limit for limit in Limit if np.any(ride.limits & limit.value)]
     heights = [_ground_height(ride), 2.4] + ([0.25 * len(met) + 0.1] if met else [])
     figure = Figure(figsize=(WIDTH, sum(heights) + 1.9), layout="constrained")
@@ -62,6 +65,10 @@ def draw_ride(ride: Ride, path: str | Path, title: str | None = None) -> None:
 
 def animate_ride(ride: Ride, path: str | Path, frames: int = 120, frames_per_second: int = 20) -> None:
     """Write a GIF of `ride` to `path`: the wheel on its way, the force on it and the section in contact."""
+    from matplotlib.animation import PillowWriter
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     if not (2 <= frames <= MOST_FRAMES):
         raise TirelabError(f"{frames} frames; give 2 to {MOST_FRAMES}")
     figure = Figure(figsize=(8.0, 5.0), layout="constrained")
@@ -114,6 +121,8 @@ def _seen(ride: Ride) -> tuple[Floats, Floats]:
 
 
 def _draw_ground(axes: Axes, ride: Ride) -> None:
+    from matplotlib.patches import Circle
+
     touch, (s, z) = ride.contact, _seen(ride)
     if _to_scale(ride):
         lowered, words = 0.0, "path of the hub"
@@ -172,6 +181,8 @@ def _draw_limits(axes: Axes, ride: Ride, met: list[Limit]) -> None:
 
 
 def _draw_moment(axes: Axes, ride: Ride, i: int) -> None:
+    from matplotlib.patches import Circle
+
     axes.clear()
     touch, ground, radius = ride.contact, ride.ground, ride.wheel_radius
     s, height = touch.position[i], touch.hub_height[i]

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -34,24 +36,56 @@ SAME_PLACE = 1.0
 DELIMITERS = ",;\t"
 
 
-def read_profile(path: str | Path) -> Profile:
-    """Return the profile of the file at `path`: GPX where its name ends in .gpx, otherwise CSV."""
-    return read_gpx(path) if Path(path).suffix.lower() == ".gpx" else read_profile_csv(path)
+@dataclass(frozen=True)
+class ProfileColumns:
+    """Which columns of a file are s and z, where they have other names, and their units, over those of the header."""
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
-def read_profile_csv(path: str | Path, smoothing_length: float = CSV_SMOOTHING_LENGTH) -> Profile:
+def read_profile(path: str | Path, source: ProfileColumns = ProfileColumns()) -> Profile:
+    """Return the profile of the file at `path`: GPX where its name ends in .gpx, otherwise CSV.
+
+    source: which columns of a CSV file to read, and in which units
+    """
+    if Path(path).suffix.lower() != ".gpx":
+        return read_profile_csv(path, source=source)
+    if source != ProfileColumns():
+        raise TirelabError(f"{path}: a GPX track has no columns to name; leave out --columns and --units")
+    return read_gpx(path)
+
+
+def read_profile_csv(
+    path: str | Path,
+    smoothing_length: float = CSV_SMOOTHING_LENGTH,
+    source: ProfileColumns = ProfileColumns(),
+) -> Profile:
     """Return the profile of a CSV file with columns s and z, units in brackets: `s [m],z [cm]`.
 
-    Other columns, empty lines and lines that begin with # are passed over; the separator is the comma, the semicolon or
-    the tab of the header. Raises TirelabError with the row and column of what cannot be read.
+    Where neither column has a unit, both are read in metres and the profile's notes say so. Other columns, empty lines
+    and lines that begin with # are skipped; the separator is the comma, the semicolon or the tab of the header. Raises
+    TirelabError with the row and column of what cannot be read.
     """
-    (s, z), rows = read_columns(path, ("s", "z"))
-    check_points(s, z, lambda i: f"{path}, row {rows[i] if i < len(rows) else 1}")
-    return Profile(s, z, Path(path).name, smoothing_length)
+    table = read_columns(path, ("s", "z"), source)
+    s, z = table.values
+    check_points(s, z, lambda i: f"{path}, row {table.rows[i] if i < len(table.rows) else 1}")
+    return Profile(s, z, Path(path).name, smoothing_length, table.notes)
 
 
-def read_columns(path: str | Path, symbols: tuple[str, ...]) -> tuple[list[Floats], list[int]]:
-    """Return the columns `symbols` [m] of a CSV file, in that order, and the row of the file of every value."""
+@dataclass(frozen=True)
+class LengthColumns:
+    """Columns of lengths: `values` [m] in the order asked for, the file's row of each value, and notes for the user."""
+
+    values: tuple[Floats, ...]
+    rows: tuple[int, ...]
+    notes: tuple[str, ...]
+
+
+def read_columns(
+    path: str | Path, symbols: tuple[str, ...], source: ProfileColumns = ProfileColumns()
+) -> LengthColumns:
+    """Return the columns `symbols` [m] of a CSV file, in that order."""
     lines = _text(Path(path)).splitlines()
     filled = [(n, line) for n, line in enumerate(lines, start=1) if line.strip() and not line.startswith("#")]
     if not filled:
@@ -64,11 +98,12 @@ def read_columns(path: str | Path, symbols: tuple[str, ...]) -> tuple[list[Float
         raise TirelabError(
             f"{path}, row {filled[reader.line_num - 1][0]}: {error}; save it as plain CSV"
         ) from None
-    header, cells, numbers = rows[0][1], [row for _, row in rows[1:]], [n for n, _ in rows[1:]]
-    columns = [_column(path, header, symbol, symbols) for symbol in symbols]
+    header, cells, numbers = rows[0][1], [row for _, row in rows[1:]], tuple(n for n, _ in rows[1:])
+    places = [_place(path, header, symbol, symbols, source) for symbol in symbols]
+    conversions, notes = _conversions(path, header, dict(zip(symbols, places, strict=True)), source)
     values = np.empty((len(symbols), len(cells)))
     for i, row in enumerate(cells):
-        for j, (column, _) in enumerate(columns):
+        for j, column in enumerate(places):
             cell = row[column].strip() if column < len(row) else ""
             try:
                 values[j, i] = float(cell)
@@ -77,7 +112,8 @@ def read_columns(path: str | Path, symbols: tuple[str, ...]) -> tuple[list[Float
                     f"{path}, row {numbers[i]}, column {symbols[j]}: '{cell[:40]}' is not a number; write one, with a "
                     "decimal point"
                 ) from None
-    return [to_metres.to_si(values[j]) for j, (_, to_metres) in enumerate(columns)], numbers
+    converted = tuple(to_metres.to_si(v) for to_metres, v in zip(conversions, values, strict=True))
+    return LengthColumns(converted, numbers, notes)
 
 
 def read_gpx(path: str | Path, smoothing_length: float = GPX_SMOOTHING_LENGTH) -> Profile:
@@ -139,26 +175,52 @@ def _wanted(symbols: tuple[str, ...]) -> str:
     return " and ".join(f"'{symbol} [m]'" for symbol in symbols)
 
 
-def _column(
-    path: str | Path, header: list[str], symbol: str, symbols: tuple[str, ...]
-) -> tuple[int, Conversion]:
-    """Return where the column `symbol` stands and how its unit becomes metres."""
+def _place(
+    path: str | Path, header: list[str], symbol: str, symbols: tuple[str, ...], source: ProfileColumns
+) -> int:
+    """Return where the column `symbol` stands: under the name that `source` gives it, or under its own."""
+    named = source.columns.get(symbol)
     for i, cell in enumerate(header):
-        name, unit = split_header(cell)
-        if name.lower() != symbol:
-            continue
+        name, _ = split_header(cell)
+        if named is None and name.lower() == symbol:
+            return i
+        if named is not None and named.lower() in (name.lower(), cell.strip().lower()):
+            return i
+    among = ", ".join(repr(c.strip()) for c in header)[:200]
+    if named is not None:
+        raise TirelabError(
+            f"{path}, header: no column {named!r} among {among}; correct --columns {symbol}=NAME"
+        )
+    raise TirelabError(
+        f"{path}, header: no column '{symbol}' among {among}; name the columns {_wanted(symbols)}, or say which it is "
+        f"with --columns {symbol}=NAME"
+    )
+
+
+def _conversions(
+    path: str | Path, header: list[str], places: Mapping[str, int], source: ProfileColumns
+) -> tuple[list[Conversion], tuple[str, ...]]:
+    """Return how each column becomes metres, and the note where no column has a unit."""
+    units = {
+        symbol: source.units.get(symbol) or split_header(header[place])[1] for symbol, place in places.items()
+    }
+    notes: tuple[str, ...] = ()
+    if not any(units.values()):
+        units = dict.fromkeys(units, "m")
+        notes = (f"columns {' and '.join(units)} of {Path(path).name} have no units: read in metres",)
+    found = []
+    for symbol, unit in units.items():
+        cell = header[places[symbol]].strip()
         if unit is None:
             raise TirelabError(
-                f"{path}, header: column '{cell.strip()}' has no unit; write it in brackets, '{symbol} [m]'"
+                f"{path}, header: column '{cell}' has no unit; write it in brackets, '{symbol} [m]', or give "
+                f"--units {symbol}=m"
             )
         try:
-            return i, conversion(unit, "m")
+            found.append(conversion(unit, "m"))
         except UnitError as error:
-            raise TirelabError(f"{path}, header: '{cell.strip()}': {error}") from None
-    raise TirelabError(
-        f"{path}, header: no column '{symbol}' among {', '.join(repr(c.strip()) for c in header)[:200]}; "
-        f"name the columns {_wanted(symbols)}"
-    )
+            raise TirelabError(f"{path}, header: '{cell}': {error}") from None
+    return found, notes
 
 
 def _bytes(path: Path) -> bytes:

@@ -9,11 +9,15 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire import TireModel
+from radialtire.hull1996 import WHEEL_RADIUS
+from radialtire.model import Law
+from radialtire.power_law import CM_PER_M
 
 from ..errors import TirelabError
-from .contact import WHEEL_RADIUS, Contact, contact, hub_positions, rolling_path
+from .contact import Contact, contact, hub_positions, rolling_path
 from .curvature import Ground
-from .limits import Limit, LimitReport, limit_report, limits
+from .limits import LimitReport, limit_report, limits
 from .profile import Floats
 
 TireForce: TypeAlias = Callable[[Floats, Floats], Floats]
@@ -66,39 +70,47 @@ class Ride:
         return limit_report(self.limits, length)
 
 
+@dataclass(frozen=True, eq=False)
+class HubPath:
+    """The way of the hub: its height [m] (n,) at growing positions [m] (n,), by default those of `hub_positions`."""
+
+    height: Floats
+    position: Floats | None = None
+
+
 def ride(
     ground: Ground,
-    tire_force: TireForce,
+    tire: TireModel | TireForce,
     *,
     speed: float,
     load: float | None = None,
-    position: Floats | None = None,
-    hub_height: Floats | None = None,
+    hub_path: HubPath | None = None,
     wheel_radius: float = WHEEL_RADIUS,
 ) -> Ride:
     """Return the ride of a wheel over `ground` at a constant `speed` [m/s] > 0.
 
-    The hub follows `hub_height` [m] at `position` [m], both of shape (n,) and the position growing, from a multibody
-    tool or a measurement; or, where `load` [N] is given instead, the path on which the tire carries that load upwards
-    at every position: a ride so slow that nothing bounces. tire_force: see TireForce; it is asked only where the wheel
-    is on the ground.
+    The hub follows `hub_path`, from a multibody tool or a measurement; or, where `load` [N] is given instead, the path
+    on which the tire carries that load upwards at every position: a ride so slow that nothing bounces. tire: a tire, of
+    which the elastic law acts, or a force (see TireForce), which is asked only where the wheel is on the ground.
 
     Raises TirelabError for paths that are not over the ground, and for loads that the tire cannot carry.
     """
     if not (np.isfinite(speed) and speed > 0.0):
         raise TirelabError(f"speed {speed:g} m/s; give a speed above 0 m/s")
-    if (load is None) == (hub_height is None):
+    if (load is None) == (hub_path is None):
         raise TirelabError("a ride follows either a load or a path of the hub; give one of the two")
-    place = (
-        hub_positions(ground, wheel_radius) if position is None else np.asarray(position, dtype=np.float64)
-    )
+    tire_force = law_force(tire.law) if isinstance(tire, TireModel) else tire
+    given = None if hub_path is None else hub_path.position
+    place = hub_positions(ground, wheel_radius) if given is None else np.asarray(given, dtype=np.float64)
     if np.any(np.diff(place) <= 0.0):
         i = int(np.flatnonzero(np.diff(place) <= 0.0)[0])
         raise TirelabError(f"the hub goes backwards after s = {place[i]:g} m; give positions that only grow")
     rolling = rolling_path(ground, place, wheel_radius)
-    if load is not None:
+    if hub_path is None:
+        assert load is not None
         hub_height = constant_load_path(ground, tire_force, load, place, wheel_radius, rolling)
-    assert hub_height is not None
+    else:
+        hub_height = hub_path.height
     touch = contact(ground, place, hub_height, wheel_radius)
     force = _force(tire_force, touch)
     return Ride(
@@ -111,6 +123,17 @@ def ride(
         force,
         limits(touch, force, wheel_radius),
     )
+
+
+def law_force(law: Law) -> TireForce:
+    """Return the force of an elastic law for arrays of deflection [m] > 0 and surface radius [m]."""
+
+    def force(deflection: Floats, surface_radius: Floats) -> Floats:
+        coefficients = np.array([law.coefficients(radius) for radius in surface_radius.tolist()])
+        newtons: Floats = coefficients[:, 0] * (CM_PER_M * deflection) ** coefficients[:, 1]
+        return newtons
+
+    return force
 
 
 def constant_load_path(
@@ -181,6 +204,3 @@ def _force(tire_force: TireForce, touch: Contact) -> Floats:
             f"radius {touch.surface_radius[i]:g} m); check the tire's parameters"
         )
     return force
-
-
-__all__ = ["Limit", "Ride", "TireForce", "constant_load_path", "ride"]

@@ -80,7 +80,7 @@ def test_a_force_that_stands_still_is_read_right_from_the_start() -> None:
 
 def test_looking_again_at_a_moment_does_not_shorten_the_memory() -> None:
     tire = only("force_lag", law=LINEAR, delay=0.05)
-    once, often = tire.rest, tire.rest
+    once, often = tire.initial_state, tire.initial_state
     for i in range(40):
         step = (0.01 + 1e-4 * i, math.inf, 0.005 * i)
         expected, once = tire.step(*step, once)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from published import hull1996 as article
 from radialtire import Instant, PowerLaw, TireModel, power_law
 from radialtire.effects.series_compliance import SERIES_COMPLIANCE
+from scipy.optimize import brentq
 
 
 @given(
@@ -80,3 +81,39 @@ def test_a_spring_that_stiffens_gives_way_less_than_a_plain_one() -> None:
     rigid = drive(TireModel(), x, x)
     assert np.all(plain[1:] < stiffer[1:])
     assert np.all(stiffer[1:] < rigid[1:])
+
+
+def stiffening_part(x: float, A: float, B: float, compliance: float, stiffening: float) -> float:
+    instant = Instant(0.0, 0.0, True, x, 0.0, 0.0, A, B, 0.0)
+    return SERIES_COMPLIANCE.respond(x, instant, (), (compliance, stiffening))[0]
+
+
+@pytest.mark.parametrize(
+    ("x", "A", "B", "k", "h"),
+    [
+        # Newton's steps and halvings go on between two neighbouring numbers until there are too many of them
+        (0.16480921549555533, 297784.55518061545, 7.419966040574482, 8.087582869992886e-05, 912.526143627438),
+        (
+            0.22745462084471585,
+            273400.37602136726,
+            9.391705766341751,
+            2.1969222534702155e-05,
+            576.4878528657675,
+        ),
+        (0.02, 800.0, 1.4, 5e-6, 30.0),
+    ],
+)
+def test_a_stiffening_spring_against_a_bracketed_root(
+    x: float, A: float, B: float, k: float, h: float
+) -> None:
+    # a second formulation: scipy's bracketing root finder on d (1 + h d) = k F(x - d)
+    d = brentq(lambda d: d * (1.0 + h * d) - k * power_law.force(x - d, A, B), 0.0, x, xtol=1e-18, rtol=1e-15)
+    assert stiffening_part(x, A, B, k, h) == pytest.approx(x - d, abs=4e-15 * x)
+
+
+def test_a_tire_so_soft_that_a_plain_spring_would_leave_it_nothing_is_no_division_by_zero() -> None:
+    # A plain spring would leave less of x than its rounding: (x / (k A))^(1/B) of a centimetre is 1e-42 m.
+    x, A, B, k, h = 0.01, 1e6, 0.1, 1e-4, 1e5
+    d = brentq(lambda d: d * (1.0 + h * d) - k * power_law.force(x - d, A, B), 0.0, x, xtol=1e-18, rtol=1e-15)
+    assert d < 0.999 * x
+    assert stiffening_part(x, A, B, k, h) == pytest.approx(x - d, rel=1e-12)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_noise_has_the_strength_and_the_correlation_asked_for() -> None:
     clean = rig.record(TireModel(), math.inf, cycles=100).force
     for correlation_time in (0.0, 0.6):
         noisy = rig.record(
-            TireModel(), math.inf, cycles=100, noise=10.0, correlation_time=correlation_time, seed=4
+            TireModel(), math.inf, cycles=100, noise=rig.ForceNoise(10.0, correlation_time, (4,))
         )
         noise = noisy.force - clean
         memory = math.exp(-0.2 / correlation_time) if correlation_time else 0.0
@@ -87,7 +88,7 @@ def test_noise_has_the_strength_and_the_correlation_asked_for() -> None:
 
 
 def test_a_seed_repeats_its_noise_and_no_two_surfaces_share_it() -> None:
-    one, same, other = (rig.record_all(noise=10.0, seed=seed) for seed in (1, 1, 2))
+    one, same, other = (rig.record_all(noise=rig.ForceNoise(10.0, seed=(seed,))) for seed in (1, 1, 2))
     clean = rig.record_all()
     for a, b in zip(one, same, strict=True):
         np.testing.assert_array_equal(a.force, b.force)
@@ -108,15 +109,15 @@ def test_a_tire_too_stiff_for_the_rig_is_refused() -> None:
     ("arguments", "sentence"),
     [
         ({"cycles": 0}, "0 cycles"),
-        ({"noise": -1.0}, "noise of -1 N"),
-        ({"noise": math.nan}, "noise of nan N"),
-        ({"correlation_time": -1.0}, "correlated over -1 s"),
+        ({"noise": rig.ForceNoise(-1.0)}, "noise of -1 N"),
+        ({"noise": rig.ForceNoise(math.nan)}, "noise of nan N"),
+        ({"noise": rig.ForceNoise(1.0, -1.0)}, "correlated over -1 s"),
         ({"sampling_rate": 0.01}, "does not see a cycle"),
     ],
 )
-def test_senseless_arguments_are_refused(arguments: dict[str, float], sentence: str) -> None:
+def test_senseless_arguments_are_refused(arguments: dict[str, Any], sentence: str) -> None:
     with pytest.raises(TirelabError, match=sentence):
-        rig.record(TireModel(), math.inf, **arguments)  # type: ignore[arg-type]
+        rig.record(TireModel(), math.inf, **arguments)
 
 
 def test_the_command_writes_fourteen_recordings(tmp_path: Path) -> None:

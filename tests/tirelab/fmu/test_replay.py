@@ -51,7 +51,7 @@ def test_replay_with_a_memory_equals_the_model_stepped_by_hand(tmp_path: Path) -
         )
     )
     m = motion()
-    state, expected = tire.rest._replace(time=float(m.time[0])), []
+    state, expected = tire.initial_state._replace(time=float(m.time[0])), []
     for t, x, radius in zip(m.time.tolist(), m.deflection.tolist(), m.surface_radius.tolist(), strict=True):
         force, state = tire.step(x, radius, t, state)
         expected.append(force)

@@ -42,7 +42,7 @@ class Motion:
 
 def stepped(tire: TireModel, motion: Motion) -> FloatArray:
     """The force by the steps of the FMU."""
-    state = tire.rest
+    state = tire.initial_state
     force = np.empty(motion.time.size)
     for i in range(force.size):
         x, R, t = motion.deflection[i], motion.surface_radius[i], motion.time[i]
@@ -66,10 +66,10 @@ def random_values(effect: Effect, random: np.random.Generator) -> tuple[float, .
     """Values around everyday ones, the extras drawn from their starts to a third of their range."""
     values = []
     for p in effect.parameters:
-        if p.extra and p.off is None and random.random() < 0.7:
+        if p.optional and p.neutral is None and random.random() < 0.7:
             drawn = p.start + random.uniform(0.0, 0.3) * (p.maximum - p.start)
         else:
-            drawn = p.everyday * random.uniform(0.3, 3.0)
+            drawn = p.nominal_value * random.uniform(0.3, 3.0)
         values.append(min(max(p.minimum, drawn), p.maximum))
     return tuple(values)
 
@@ -161,7 +161,10 @@ def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
     stiffness, compliance, damping = 4e4, 1e-5, 100.0
     law = PowerLaw(stiffness / 100.0, 1.0)
     series = CATALOGUE["series_compliance"]
-    spring = (series, (compliance, *(p.everyday if not p.extra else p.start for p in series.parameters[1:])))
+    spring = (
+        series,
+        (compliance, *(p.nominal_value if not p.optional else p.start for p in series.parameters[1:])),
+    )
     tire = TireModel(law, (spring, (CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0))))
     # Of a deflection u a linear tire behind a linear spring has u / (1 + k c), and of its rate the same part.
     part = 1.0 / (1.0 + stiffness * compliance)
@@ -192,7 +195,7 @@ def test_what_enters_linearly_is_a_sum_of_columns(name: str, linear: tuple[str, 
     # the answer to a signal of zero is the sum of value times column, within roundings
     effect = CATALOGUE[name]
     motion = random_motion(9)
-    history, _ = elastic_stage(TireModel(effects=((effect, effect.typical),)), motion)
+    history, _ = elastic_stage(TireModel(effects=((effect, effect.nominal),)), motion)
     nothing = np.zeros_like(motion.time)
     drawn = random_values(effect, np.random.default_rng(3))
     values = {parameter.name: value for parameter, value in zip(effect.parameters, drawn, strict=True)}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tirelab.errors import TirelabError
 from tirelab.terrain import (
+    HubPath,
     Limit,
     flat,
     from_function,
@@ -71,7 +72,7 @@ def test_path_that_is_given() -> None:
     ground = ground_from(flat(4.0))
     position = np.linspace(0.5, 3.5, 31)
     hub = WHEEL - 0.01 * np.cos(position)
-    result = ride(ground, flat_law, speed=2.0, position=position, hub_height=hub)
+    result = ride(ground, flat_law, speed=2.0, hub_path=HubPath(hub, position))
     np.testing.assert_allclose(result.contact.deflection, 0.01 * np.cos(position), atol=1e-12)
     lifted = np.cos(position) <= 0.0
     assert np.all(result.radial_force[lifted] == 0.0)
@@ -92,7 +93,7 @@ def test_force_is_asked_with_the_mean_radius_and_only_on_the_ground() -> None:
 
     ground = ground_from(sine(8.0, (0.05, 2.0)))
     hub = np.full(hub_positions(ground).size, WHEEL + 0.04)
-    result = ride(ground, spy, speed=1.0, hub_height=hub)
+    result = ride(ground, spy, speed=1.0, hub_path=HubPath(hub))
     assert np.all(asked[0][0] > 0.0)
     loaded = result.contact.deflection > 0.0
     assert asked[0][0].size == np.count_nonzero(loaded) < loaded.size
@@ -103,7 +104,7 @@ def test_force_is_asked_with_the_mean_radius_and_only_on_the_ground() -> None:
 
 def test_wheel_that_never_lands() -> None:
     ground = ground_from(flat(3.0))
-    result = ride(ground, flat_law, speed=1.0, hub_height=np.full(hub_positions(ground).size, 1.0))
+    result = ride(ground, flat_law, speed=1.0, hub_path=HubPath(np.full(hub_positions(ground).size, 1.0)))
     assert np.all(result.radial_force == 0.0)
     assert result.report.share(Limit.AIRBORNE) == 1.0
 
@@ -118,13 +119,13 @@ def test_what_cannot_be_ridden() -> None:
     with pytest.raises(TirelabError, match="give one of the two"):
         ride(ground, flat_law, speed=1.0)
     with pytest.raises(TirelabError, match="give one of the two"):
-        ride(ground, flat_law, speed=1.0, load=500.0, hub_height=height)
+        ride(ground, flat_law, speed=1.0, load=500.0, hub_path=HubPath(height))
     with pytest.raises(TirelabError, match=r"the tire cannot carry 1e\+06 N at s = 0\.\d+ m"):
         ride(ground, flat_law, speed=1.0, load=1e6)
     with pytest.raises(TirelabError, match=r"the hub goes backwards after s = 1\.5 m"):
-        ride(ground, flat_law, speed=1.0, position=np.array([1.0, 1.5, 1.4]), hub_height=np.full(3, 0.33))
+        ride(ground, flat_law, speed=1.0, hub_path=HubPath(np.full(3, 0.33), np.array([1.0, 1.5, 1.4])))
     with pytest.raises(TirelabError, match="the tire's force is not a number at s = "):
-        ride(ground, lambda x, r: np.full(x.size, np.nan), speed=1.0, hub_height=height)
+        ride(ground, lambda x, r: np.full(x.size, np.nan), speed=1.0, hub_path=HubPath(height))
 
 
 def test_load_path_stands_on_the_rolling_path_when_the_tire_is_stiff() -> None:

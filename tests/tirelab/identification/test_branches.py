@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tirelab.identify.branches import LOADING, RESTING, UNLOADING, branches, turning_points
+from tirelab.identification.branches import LOADING, RESTING, UNLOADING, branches, turning_points
 
 Array = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from presses import ARTICLE, triangle
 from tirelab.article import press as rig
-from tirelab.identify import identify
-from tirelab.identify.noise import with_covariance
-from tirelab.identify.power_fit import fit_power
-from tirelab.identify.surfaces import surfaces_of
+from tirelab.identification.identify import identify
+from tirelab.identification.noise import with_covariance
+from tirelab.identification.power_fit import fit_power
+from tirelab.identification.surfaces import surfaces_of
 
 
 @pytest.mark.parametrize("correlation_time", [0.0, 0.5])
@@ -19,11 +19,7 @@ def test_the_covariance_of_a_surface_is_that_of_many_draws(correlation_time: flo
     fits = []
     for seed in range(150):
         surfaces = surfaces_of(
-            [
-                rig.record(
-                    ARTICLE, math.inf, noise=10.0, correlation_time=correlation_time, seed=seed, cycles=3
-                )
-            ]
+            [rig.record(ARTICLE, math.inf, noise=rig.ForceNoise(10.0, correlation_time, (seed,)), cycles=3)]
         )
         fits.append(with_covariance(surfaces, [fit_power(surfaces[0])])[0])
     spread = np.std([(f.coefficient, f.exponent) for f in fits], axis=0)

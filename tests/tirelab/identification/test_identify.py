@@ -15,7 +15,7 @@ from radialtire import SECOND_READING, Hull1996, PowerLaw, TireModel
 from radialtire.curvature_law import CurvatureLaw
 from tirelab.article import press as rig
 from tirelab.errors import TirelabError
-from tirelab.identify import Identification, identify
+from tirelab.identification.identify import Identification, identify
 from tirelab.recordings.recording import Recording
 
 
@@ -39,7 +39,7 @@ def test_the_ten_constants_come_back_from_clean_recordings(decay: float) -> None
 def covered(draws: int, correlation_time: float) -> int:
     """Return in how many draws all ten constants lie within three of the stated uncertainties."""
     found = (
-        identify(rig.record_all(noise=10.0, correlation_time=correlation_time, seed=seed))
+        identify(rig.record_all(noise=rig.ForceNoise(10.0, correlation_time, (seed,))))
         for seed in range(draws)
     )
     return sum(inside(f, Hull1996()) for f in found)
@@ -106,7 +106,7 @@ def test_what_the_surfaces_cannot_determine_is_said() -> None:
 
 
 def test_three_concave_radii_hardly_fix_three_constants() -> None:
-    found = identify(rig.record_all(noise=10.0))
+    found = identify(rig.record_all(noise=rig.ForceNoise(10.0)))
     rise = next(c for c in found.constants if c.symbol == "D1")
     assert rise.standing == "weakly determined"
     assert rise.low < 7822.0 < rise.high
@@ -118,7 +118,7 @@ def test_three_concave_radii_hardly_fix_three_constants() -> None:
 @pytest.mark.parametrize("seed", range(2))
 def test_heavy_noise_leaves_a_tire_within_the_laws_bounds(seed: int) -> None:
     # 150 N: the concave side is lost in it, and its constants run to their bounds
-    found = identify(rig.record_all(noise=150.0, seed=seed))
+    found = identify(rig.record_all(noise=rig.ForceNoise(150.0, seed=(seed,))))
     assert isinstance(found.tire.law, Hull1996)
     assert "not determined" in {c.standing for c in found.constants}
     assert found.tire.law.coefficients(math.inf) == pytest.approx((550.9, 1.422), rel=0.05)
@@ -126,10 +126,10 @@ def test_heavy_noise_leaves_a_tire_within_the_laws_bounds(seed: int) -> None:
 
 
 def test_a_law_that_does_not_fit_says_so_and_is_less_sure() -> None:
-    recordings = list(rig.record_all(noise=5.0))
+    recordings = list(rig.record_all(noise=rig.ForceNoise(5.0)))
     flat = recordings[10]
     recordings[10] = dataclasses.replace(flat, force=1.05 * flat.force)
-    found, honest = identify(recordings), identify(rig.record_all(noise=5.0))
+    found, honest = identify(recordings), identify(rig.record_all(noise=rig.ForceNoise(5.0)))
     assert any("does not follow all surfaces within their noise: on flat" in note for note in found.notes)
     assert found.constants[0].uncertainty > 3.0 * honest.constants[0].uncertainty
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS, Hull1996, PowerLaw, TestedRange, TireModel
 from radialtire.curvature_law import SURFACES_MAX, CurvatureLaw
+from radialtire.tirefile import LAWS
 
 from ..errors import TirelabError
 from ..recordings.recording import Recording
@@ -19,9 +20,6 @@ from .power_fit import chunks, fit_power, inner_products
 from .result import Constant, Identification, SurfaceFit, recording_notes, statements
 from .surfaces import CM_PER_M, Surface, names, surfaces_of
 from .two_stage import second_stage
-
-LAWS = ("auto", Hull1996.name, CurvatureLaw.name, PowerLaw.name)
-"""What `law` may be."""
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how many parts of it are done and how many there are (0: not known)."""
@@ -48,8 +46,8 @@ def identify(
 
     Reference: Hull, Wang & Moore, Cycling Science, Spring 1996, section Methods.
     """
-    if law not in LAWS:
-        raise TirelabError(f"no law is named {law!r}; known are {', '.join(LAWS)}")
+    if law not in ("auto", *LAWS):
+        raise TirelabError(f"no law is named {law!r}; known are auto, {', '.join(LAWS)}")
     surfaces = surfaces_of(recordings)
     chosen, why = _law_for(surfaces, law)
     pairs = []

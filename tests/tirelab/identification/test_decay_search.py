@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from radialtire import Hull1996
 from tirelab.article import press as rig
-from tirelab.identify.decay_search import Target, elsewhere, nearest
-from tirelab.identify.forms import HullForm
+from tirelab.identification.decay_search import Target, elsewhere, nearest
+from tirelab.identification.forms import HullForm
 
 FORM = HullForm(rig.SURFACES)
 LAW = Hull1996()

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from presses import on, triangle
 from scipy.optimize import curve_fit
-from tirelab.identify import identify
-from tirelab.identify.power_fit import inner_products
-from tirelab.identify.surfaces import surfaces_of
+from tirelab.identification.identify import identify
+from tirelab.identification.power_fit import inner_products
+from tirelab.identification.surfaces import surfaces_of
 
 
 def test_a_surface_has_the_least_rmse_of_the_force() -> None:
