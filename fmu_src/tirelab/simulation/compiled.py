@@ -1,8 +1,8 @@
-"""Compiles the physics of `radialtire` for whole recordings, and keeps what was compiled between runs.
+"""Compiles the physics of `radialtire` for whole recordings, and stores the result between runs.
 
-Compiling a loop takes a few tenths of a second, loading it again a few hundredths. What is kept lies in the cache, in a
-folder named after the content of `radialtire`: numba itself looks only at the file of a loop, not at those of the
-functions it calls.
+Compiling a loop takes a few tenths of a second, loading it again a few hundredths. The compiled loops are stored in the
+cache, in a folder named after the content of `radialtire`: numba itself checks only the file of a loop, not those of
+the functions it calls.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ KERNEL = Path(__file__).with_name("kernel.py")
 def loop(name: str, key: str, function: Callable[..., Any] | None = None) -> Callable[..., Any]:
     """Return the loop `name` of the kernel compiled, with `function` as its `respond`.
 
-    key: an identifier under which the loop is kept, one for each `function`.
+    key: an identifier under which the loop is stored, one for each `function`.
     """
     import numba  # here, since it takes half a second and only fits need it
 
@@ -52,7 +52,7 @@ def _compiled_globals(function: FunctionType, compile_one: Callable[..., Any]) -
 
 
 def _copy_of_kernel(key: str) -> tuple[ModuleType, bool]:
-    """Return a module of the kernel's code of its own, and whether it lies where its compilation can be kept."""
+    """Return a module of the kernel's code of its own, and whether its compilation can be stored beside it."""
     path, folder = KERNEL, private_folder(_fingerprint())
     if folder is not None:
         path = folder / f"{key}.py"
@@ -62,7 +62,7 @@ def _copy_of_kernel(key: str) -> tuple[ModuleType, bool]:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # numba looks there for what it kept
+    sys.modules[spec.name] = module  # numba looks there for what it stored
     spec.loader.exec_module(module)
     return module, folder is not None
 

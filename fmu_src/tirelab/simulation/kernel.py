@@ -1,7 +1,7 @@
-"""The loops over a recording's samples, with the very functions that run in the FMU.
+"""The loops over a recording's samples, with the same functions that run in the FMU.
 
-`compiled` loads this file once for each effect, puts that effect's response in the place of `respond`, and has numba
-compile the result.
+`compiled` loads this file once for each effect, replaces `respond` by that effect's response, and has numba compile
+the result.
 """
 
 from __future__ import annotations
@@ -18,19 +18,16 @@ FloatArray = NDArray[np.float64]
 
 def respond_loop(
     signal: FloatArray,
-    time: FloatArray,
-    deflection: FloatArray,
-    speed: FloatArray,
-    speeding: FloatArray,
-    coefficient: FloatArray,
-    exponent: FloatArray,
-    elastic: FloatArray,
-    curvature: FloatArray,
+    history: tuple[FloatArray, ...],
     state: State,
     values: State,
     answer: FloatArray,
 ) -> None:
-    """Fill `answer` with the effect's signal at every moment; `state` is the one at rest."""
+    """Fill `answer` with the effect's signal at every sample; `state` is its initial state.
+
+    history: time, deflection, rate, acceleration, coefficient, exponent, elastic force and curvature of every sample
+    """
+    time, deflection, rates, accelerations, coefficient, exponent, elastic, curvature = history
     for i in range(signal.size):
         answer[i], state = respond(
             signal[i],
@@ -39,8 +36,8 @@ def respond_loop(
                 time[i] - time[max(i - 1, 0)],
                 i == 0,
                 deflection[i],
-                speed[i],
-                speeding[i],
+                rates[i],
+                accelerations[i],
                 coefficient[i],
                 exponent[i],
                 elastic[i],
@@ -55,16 +52,16 @@ def track_loop(
     time: FloatArray,
     deflection: FloatArray,
     reading_noise: float,
-    speed: FloatArray,
-    speeding: FloatArray,
+    rates: FloatArray,
+    accelerations: FloatArray,
 ) -> None:
-    """Fill `speed` [m/s] and `speeding` [m/s^2] with rate and acceleration of the deflection [m]."""
+    """Fill `rates` [m/s] and `accelerations` [m/s^2] with those of the deflection [m]."""
     track = begin(deflection[0])
     for i in range(deflection.size):
         if i > 0 and time[i] > time[i - 1]:
             track = follow(track, time[i] - time[i - 1], deflection[i], reading_noise)
-        speed[i] = rate(track)
-        speeding[i] = acceleration(track)
+        rates[i] = rate(track)
+        accelerations[i] = acceleration(track)
 
 
 def elastic_loop(

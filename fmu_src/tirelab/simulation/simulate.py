@@ -1,10 +1,11 @@
 """The force of a tire on a whole recording: the steps of `TireModel`, sample by sample, compiled.
 
-    deflection read -> deflection of the tire -> factor -> elastic law -> forces in parallel -> inertia -> force read
+    measured deflection -> deflection of the tire -> factor -> elastic law -> parallel forces -> inertia -> force
 
-`simulate` does it all. A search that tries many values calls the stages itself and keeps what is upstream of what it
-varies: `history_of` (what effects may know), `respond_series` (one effect). With `signal` zero an effect in parallel
-answers with its force alone, linear in slip force, damping, shares, stiffness or mass: the column of a linear fit.
+`simulate` does it all. A search that tries many values calls the stages itself and keeps what lies upstream of the
+parameters it varies: `history_of` (the quantities that effects use), `respond_series` (one effect). With `signal` zero
+an effect in parallel returns its force alone, linear in slip force, damping, shares, stiffness or mass: the column of a
+linear fit.
 """
 
 from __future__ import annotations
@@ -44,8 +45,8 @@ class Sampled(Protocol):
         ...
 
 
-class Moved(Protocol):
-    """What is known of a motion beside its deflection, sample by sample."""
+class Kinematics(Protocol):
+    """Rate and acceleration of a deflection, sample by sample."""
 
     @property
     def rate(self) -> FloatArray:
@@ -90,7 +91,7 @@ def smoothed_motion(recording: Sampled, motion: Smoothed) -> SmoothedMotion:
 
 @dataclass(frozen=True)
 class History:
-    """What the effects may know of every moment (see `radialtire.effect.Instant`); arrays of one length.
+    """The quantities that effects use, at every sample (see `radialtire.effect.Instant`); arrays of one length.
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
     coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]
@@ -106,28 +107,28 @@ class History:
     curvature: FloatArray
 
 
-def simulate(tire: TireModel, recording: Sampled, moved: Moved | None = None) -> FloatArray:
-    """Return the radial force [N] of `tire` at every sample: that of `TireModel.step` from rest, to 1e-12.
+def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
+    """Return the radial force [N] of `tire` at every sample: that of `TireModel.step` from its initial state, to 1e-12.
 
-    moved: rate and acceleration where they are known better than the tire can follow them (see `tracking`)
+    kinematics: rate and acceleration where they are known better than the tire can track them (see `tracking`)
     """
-    history, force = elastic_stage(tire, recording, moved)
+    history, force = elastic_stage(tire, recording, kinematics)
     force = downstream(tire, history, force, ("parallel",))
     return downstream(tire, history, np.maximum(force, 0.0), ("inertia", "reading"))
 
 
 def elastic_stage(
-    tire: TireModel, recording: Sampled, moved: Moved | None = None
+    tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None
 ) -> tuple[History, FloatArray]:
-    """Return what the effects after the elastic law may know, and the elastic force [N] with its factor."""
+    """Return the quantities for the effects after the elastic law, and the elastic force [N] with its factor."""
     x = recording.deflection
-    history = history_of(tire, recording.time, x, recording.surface_radius, moved)
+    history = history_of(tire, recording.time, x, recording.surface_radius, kinematics)
     for place in UPSTREAM:
         history = replace(history, deflection=x)
         x = downstream(tire, history, x, (place,))
     rate = history.rate
     if any(effect.place in UPSTREAM for effect, _ in tire.effects) and tire.differentiates:
-        if moved is None:
+        if kinematics is None:
             rate, _ = track(history.time, x, tire.reading_noise)
         else:
             rate = rate + np.gradient(x - recording.deflection, history.time)
@@ -151,12 +152,12 @@ def history_of(
     time: FloatArray,
     deflection: FloatArray,
     surface_radius: FloatArray,
-    moved: Moved | None = None,
+    kinematics: Kinematics | None = None,
 ) -> History:
-    """Return what the first effects may know: time [s], deflection [m], surface's radius [m] of every sample."""
+    """Return the quantities for the first effects: time [s], deflection [m], surface radius [m] of every sample."""
     rate = acceleration = np.zeros_like(deflection)
-    if moved is not None:
-        rate, acceleration = moved.rate, moved.acceleration
+    if kinematics is not None:
+        rate, acceleration = kinematics.rate, kinematics.acceleration
     elif tire.differentiates:
         rate, acceleration = track(time, deflection, tire.reading_noise)
     A, B = coefficients(tire.law, surface_radius)
@@ -166,19 +167,21 @@ def history_of(
 
 
 def respond_series(effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
-    """Return the signal after `effect` with the parameters' `values`, from rest."""
+    """Return the signal after `effect` with the parameters' `values`, from its initial state."""
     answer = np.empty_like(signal)
     loop = compiled.loop("respond_loop", effect.name, effect.respond)
     loop(
         signal,
-        history.time,
-        history.deflection,
-        history.rate,
-        history.acceleration,
-        history.coefficient,
-        history.exponent,
-        history.elastic_force,
-        history.curvature,
+        (
+            history.time,
+            history.deflection,
+            history.rate,
+            history.acceleration,
+            history.coefficient,
+            history.exponent,
+            history.elastic_force,
+            history.curvature,
+        ),
         effect.initial_state,
         tuple(float(value) for value in values),
         answer,
@@ -194,7 +197,7 @@ def elastic_force(deflection: FloatArray, coefficient: FloatArray, exponent: Flo
 
 
 def coefficients(law: Law, surface_radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return A [N/cm^B] and B [1] of every sample; the law is asked once for each radius [m] that occurs."""
+    """Return A [N/cm^B] and B [1] of every sample; the law is evaluated once for each radius [m] that occurs."""
     starts = np.flatnonzero(np.append(True, surface_radius[1:] != surface_radius[:-1]))
     radii, which = np.unique(surface_radius[starts], return_inverse=True)
     pairs = np.array([law.coefficients(float(radius)) for radius in radii])
@@ -204,7 +207,7 @@ def coefficients(law: Law, surface_radius: FloatArray) -> tuple[FloatArray, Floa
 
 
 def track(time: FloatArray, deflection: FloatArray, reading_noise: float) -> tuple[FloatArray, FloatArray]:
-    """Return rate [m/s] and acceleration [m/s^2] as the tire follows them, without look-ahead (see `tracking`)."""
+    """Return rate [m/s] and acceleration [m/s^2] as the tire tracks them, without look-ahead (see `tracking`)."""
     rate, acceleration = np.empty_like(deflection), np.empty_like(deflection)
     compiled.loop("track_loop", "track")(time, deflection, float(reading_noise), rate, acceleration)
     return rate, acceleration

@@ -132,8 +132,8 @@ def test_zero_intervals_are_looked_at_again() -> None:
 
 
 @dataclass(frozen=True)
-class Moved:
-    """What is known of a motion beside its deflection."""
+class Known:
+    """Rate and acceleration of a motion."""
 
     rate: FloatArray
     acceleration: FloatArray
@@ -143,13 +143,13 @@ def test_a_motion_that_is_known_has_no_delay() -> None:
     time = np.arange(0.0, 2.0, 0.01)
     angle = 2.0 * np.pi * 5.0
     motion = Motion(time, 0.012 + 0.004 * np.sin(angle * time), np.full(time.size, math.inf))
-    moved = Moved(0.004 * angle * np.cos(angle * time), -0.004 * angle**2 * np.sin(angle * time))
+    known = Known(0.004 * angle * np.cos(angle * time), -0.004 * angle**2 * np.sin(angle * time))
     tire = TireModel(
         effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)), (CATALOGUE["inertia"], (2.0,)))
     )
     elastic = simulate(TireModel(), motion)
-    expected = elastic + 300.0 * moved.rate + 2.0 * moved.acceleration
-    assert simulate(tire, motion, moved) == pytest.approx(expected, rel=1e-12)
+    expected = elastic + 300.0 * known.rate + 2.0 * known.acceleration
+    assert simulate(tire, motion, known) == pytest.approx(expected, rel=1e-12)
     # Without look-ahead a step of 0.3 of the angle leaves some of its third power.
     assert np.max(np.abs(simulate(tire, motion) - expected)[10:]) > 0.01 * np.max(np.abs(expected - elastic))
 
@@ -157,7 +157,7 @@ def test_a_motion_that_is_known_has_no_delay() -> None:
 def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
     time = np.arange(0.0, 2.0, 1e-3)
     motion = Motion(time, 0.01 + 0.002 * np.sin(2.0 * np.pi * time), np.full(time.size, math.inf))
-    moved = Moved(0.004 * np.pi * np.cos(2.0 * np.pi * time), np.zeros(time.size))
+    known = Known(0.004 * np.pi * np.cos(2.0 * np.pi * time), np.zeros(time.size))
     stiffness, compliance, damping = 4e4, 1e-5, 100.0
     law = PowerLaw(stiffness / 100.0, 1.0)
     series = CATALOGUE["series_compliance"]
@@ -168,9 +168,9 @@ def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
     tire = TireModel(law, (spring, (CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0))))
     # Of a deflection u a linear tire behind a linear spring has u / (1 + k c), and of its rate the same part.
     part = 1.0 / (1.0 + stiffness * compliance)
-    expected = part * (stiffness * motion.deflection + damping * moved.rate)
+    expected = part * (stiffness * motion.deflection + damping * known.rate)
     # The spring's own way is differentiated over two samples: (2 pi 1 ms)^2 / 6 of the damping at the ends.
-    assert simulate(tire, motion, moved) == pytest.approx(expected, abs=0.02 * part * damping * 0.004 * np.pi)
+    assert simulate(tire, motion, known) == pytest.approx(expected, abs=0.02 * part * damping * 0.004 * np.pi)
 
 
 def test_stages_can_be_kept_and_continued() -> None:
