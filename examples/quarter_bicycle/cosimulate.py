@@ -19,7 +19,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.ssp.ssd import read_ssd
 from numpy.typing import NDArray
 from tirelab.errors import TirelabError
-from tirelab.fmu.replay import OpenFmu, opened
+from tirelab.fmu.replay import NO_REASON, OpenFmu, opened
 
 Table = dict[str, NDArray[np.float64]]
 """Time [s] and every output as COMPONENT.NAME; shape (n,)."""
@@ -82,7 +82,7 @@ def cosimulate(ssp: Path, *, step: float, duration: float, one_after_the_other: 
                 try:
                     units[name].instance.doStep(i * step, step)
                 except FMICallException:
-                    reason = units[name].messages[-1] if units[name].messages else "it logged no reason"
+                    reason = units[name].messages()[-1] if units[name].messages() else NO_REASON
                     raise TirelabError(f"{name} refused the step from {i * step:g} s: {reason}") from None
             if not one_after_the_other:
                 hand_over()

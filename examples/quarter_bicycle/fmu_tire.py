@@ -9,7 +9,7 @@ from pathlib import Path
 from coupled import SteppedTire
 from fmpy.fmi1 import FMICallException
 from tirelab.errors import TirelabError
-from tirelab.fmu.replay import OpenFmu, opened
+from tirelab.fmu.replay import NO_REASON, OpenFmu, opened
 
 FLAT = 1e5
 """Surface radius [m] that the FMU takes for flat, as it does infinity."""
@@ -43,7 +43,7 @@ def _asked(unit: OpenFmu) -> SteppedTire:
             else:
                 instance.exitInitializationMode()
         except FMICallException:
-            reason = unit.messages[-1] if unit.messages else "it logged no reason"
+            reason = unit.messages()[-1] if unit.messages() else NO_REASON
             raise TirelabError(f"the tire FMU refused t = {time:g} s: {reason}") from None
         last[:] = [time]
         return float(instance.getReal(output)[0])

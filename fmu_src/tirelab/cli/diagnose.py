@@ -8,20 +8,16 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
-from rich.console import Console
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from ..batch.batch import Batch, diagnose_batch
-from ..batch.summary import summary_table
-from ..batch.workers import Cores
-from ..diagnosis.diagnosis_run import DiagnosisRun, run_diagnosis
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from ..report.terminal import print_diagnosis, printable
-from .options import FILE, SentenceCommand, out, reading
+from .options import FILE, SentenceCommand, check_files, out, reading
+
+if TYPE_CHECKING:
+    from ..diagnosis.diagnosis_run import DiagnosisRun
 
 COLUMNS = 100
 """Width of the report where the output is no terminal."""
@@ -50,6 +46,7 @@ COLUMNS = 100
 @click.option("--dask", metavar="ADDRESS", help="With --each: scheduler of a Dask cluster to work on.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     """Say which physics a tire lacks to follow RECORDING..., files or folders of them, and correct it."""
+    check_files((*recordings, *options["held_out"]))
     if each:
         _batch(recordings, options)
     else:
@@ -59,6 +56,12 @@ def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
 def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if options["held_out"] or options["as_json"]:
         raise TirelabError("--each goes with neither --held-out nor --json; read its summary.csv instead")
+    from rich.console import Console
+
+    from ..batch.batch import Batch, diagnose_batch
+    from ..batch.summary import summary_table
+    from ..batch.workers import Cores
+
     folder: Path = options["out"]
     cores = Cores(options["jobs"], options["dask"])
     batch = Batch(recordings, folder, options["tire"], options["reading"])
@@ -70,6 +73,9 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
 def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if options["jobs"] is not None or options["dask"] is not None:
         raise TirelabError("--jobs and --dask say where to work with --each; add it, or leave them out")
+    from ..diagnosis.diagnosis_run import run_diagnosis
+    from ..report.terminal import printable
+
     folder: Path = options["out"]
     how: Reading = options["reading"]
     with _progress(options["quiet"]) as progress:
@@ -94,6 +100,11 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
 @contextmanager
 def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
     """Give a function that shows a stage on standard error: in place of the last one in a terminal, else as a line."""
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    from ..report.terminal import printable
+
     console = Console(stderr=True)
     if quiet:
         yield lambda sentence: None
@@ -107,6 +118,10 @@ def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
 
 
 def _print(run: DiagnosisRun, out: Path) -> None:
+    from rich.console import Console
+
+    from ..report.terminal import print_diagnosis
+
     if sys.stdout.isatty():
         console = Console(markup=False, highlight=False, emoji=False)
         print_diagnosis(console, run.content, out)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,6 +22,13 @@ class Refusal(click.ClickException):
     """Bad input reported in one sentence: exit status 2, no traceback."""
 
     exit_code = 2
+
+
+def check_files(given: Iterable[Path]) -> None:
+    """Raise TirelabError where a file or folder is not there: before anything is loaded that could read it."""
+    for path in given:
+        if not path.exists():
+            raise TirelabError(f"{path}: there is no such file; check the path")
 
 
 class SentenceCommand(click.Command):

@@ -1,11 +1,11 @@
-"""An FMU on a recording: the force it gives for the deflection and the surface that were recorded."""
+"""An FMU on a recording: the force it returns for the recorded deflection and surface radius."""
 
 from __future__ import annotations
 
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,9 +23,11 @@ from ..errors import TirelabError
 INPUTS = ("deflection", "surface_radius")
 OUTPUT = "radial_force"
 
+NO_REASON = "it logged no reason"
+
 
 class Motion(Protocol):
-    """What a replay needs of a recording, in SI."""
+    """The channels of a recording that a replay needs, in SI."""
 
     @property
     def time(self) -> NDArray[np.float64]: ...
@@ -37,11 +39,11 @@ class Motion(Protocol):
 
 @dataclass(frozen=True)
 class OpenFmu:
-    """An instance of an FMU with its variables' references and the messages it has logged."""
+    """An instance of an FMU, its variables' references, and a function that returns the messages it has logged."""
 
     instance: FMU2Slave
-    references: dict[str, int]
-    messages: list[str]
+    references: Mapping[str, int]
+    messages: Callable[[], tuple[str, ...]]
 
 
 @contextmanager
@@ -84,9 +86,11 @@ def opened(fmu: Path) -> Iterator[OpenFmu]:
             instance.instantiate(callbacks=callbacks, loggingOn=True)
         except Exception:
             instance.freeLibrary()
-            raise TirelabError(f"{fmu} cannot be instantiated: {_last(messages)}") from None
+            reason = messages[-1] if messages else NO_REASON
+            raise TirelabError(f"{fmu} cannot be instantiated: {reason}") from None
         try:
-            yield OpenFmu(instance, {v.name: v.valueReference for v in description.modelVariables}, messages)
+            references = {v.name: v.valueReference for v in description.modelVariables}
+            yield OpenFmu(instance, references, lambda: tuple(messages))
         finally:
             instance.freeInstance()
     except OSError as error:
@@ -131,14 +135,10 @@ def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
                 at.time = time
             instance.terminate()
         except FMICallException as error:
-            reason = _last(unit.messages) or str(error)
+            reason = unit.messages()[-1] if unit.messages() else str(error)
             raise TirelabError(
                 f"{fmu} refused sample {at.sample} (after t = {at.time:g} s): {reason}"
             ) from None
     if not np.isfinite(force[0]):
         raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
     return force
-
-
-def _last(messages: list[str]) -> str:
-    return messages[-1] if messages else "it logged no reason"

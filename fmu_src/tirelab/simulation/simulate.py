@@ -59,8 +59,8 @@ class Kinematics(Protocol):
         ...
 
 
-class Smoothed(Moved, Protocol):
-    """A motion without the noise of its reading."""
+class Smoothed(Kinematics, Protocol):
+    """A motion without the noise in the measured deflection."""
 
     @property
     def deflection(self) -> FloatArray:
@@ -70,9 +70,9 @@ class Smoothed(Moved, Protocol):
 
 @dataclass(frozen=True)
 class SmoothedMotion:
-    """The motion of a recording without the noise of its reading; arrays of one length.
+    """The motion of a recording without the noise in the measured deflection; arrays of one length.
 
-    time [s], deflection [m], surface_radius [m]; rate [m/s], acceleration [m/s^2]: seen from both sides of each moment
+    time [s], deflection [m], surface_radius [m]; rate [m/s], acceleration [m/s^2]: smoothed with look-ahead
     """
 
     time: FloatArray

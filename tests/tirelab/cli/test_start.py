@@ -1,0 +1,118 @@
+"""The program starts without what it does not need, and `tirelab` shows its public names only."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import subprocess
+import sys
+
+import click
+import pytest
+import tirelab
+from click.testing import CliRunner
+from tirelab.cli import COMMANDS, main
+
+HEAVY = {"fmpy", "joblib", "matplotlib", "numba", "numpy", "pint", "polars", "pythonfmu", "rich", "scipy"}
+
+PROGRAM = """
+import json, sys
+import tirelab
+from tirelab.cli import main
+try:
+    main(json.loads(sys.argv[1]), prog_name="tirelab")
+except SystemExit as end:
+    print(json.dumps([end.code, sorted(sys.modules)]))
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        (["--version"], 0),
+        (["--help"], 0),
+        (["diagnose", "nosuch.csv"], 2),
+        *(([name, "--help"], 0) for name in COMMANDS),
+    ],
+)
+def test_an_answer_without_work_loads_no_heavy_library(arguments: list[str], status: int) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, json.dumps(arguments)], capture_output=True, text=True, check=True
+    )
+    code, modules = json.loads(done.stdout.splitlines()[-1])
+    assert code == status
+    assert HEAVY.isdisjoint(modules)
+
+
+def test_a_file_that_is_not_there_is_said_so() -> None:
+    result = CliRunner().invoke(main, ["diagnose", "nosuch.csv"])
+    assert result.exit_code == 2
+    assert result.stderr == "Error: nosuch.csv: there is no such file; check the path\n"
+
+
+def test_a_held_out_file_that_is_not_there_is_said_so() -> None:
+    result = CliRunner().invoke(main, ["diagnose", __file__, "--held-out", "none.csv"])
+    assert result.exit_code == 2
+    assert result.stderr == "Error: none.csv: there is no such file; check the path\n"
+
+
+def test_every_command_listed_is_there_and_says_what_it_does() -> None:
+    context = click.Context(main)
+    listed = CliRunner().invoke(main, ["--help"]).stdout
+    for name, sentence in COMMANDS.items():
+        command = main.get_command(context, name)
+        assert command is not None
+        assert command.name == name
+        assert command.help
+        assert " ".join(sentence.split()) in " ".join(listed.split())
+    assert main.list_commands(context) == sorted(COMMANDS)
+
+
+def test_a_command_that_does_not_exist_is_refused() -> None:
+    result = CliRunner().invoke(main, ["diagnosis"])
+    assert result.exit_code == 2
+    assert "No such command 'diagnosis'" in result.stderr
+
+
+def test_the_package_runs_as_a_module() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "tirelab", "--version"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split()[-1] == importlib.metadata.version("tirelab")
+
+
+def test_dir_shows_the_public_names_and_nothing_else() -> None:
+    import tirelab.diagnosis.diagnose
+    import tirelab.identification.identify
+    import tirelab.terrain.ride
+
+    names = {
+        "Recording",
+        "read_recording",
+        "identify",
+        "diagnose",
+        "Limits",
+        "build_fmu",
+        "replay",
+        "compare",
+    }
+    assert set(dir(tirelab)) == names | {"ride", "__version__"}
+    assert tirelab.__version__ == importlib.metadata.version("tirelab")
+
+
+@pytest.mark.parametrize("name", ["identify", "diagnose", "build_fmu", "replay", "compare", "ride"])
+def test_a_verb_is_the_function_whatever_was_imported_before(name: str) -> None:
+    for module in ("diagnosis.diagnose", "identification.identify", "fmu.replay", "terrain.ride"):
+        importlib.import_module(f"tirelab.{module}")
+    function = getattr(tirelab, name)
+    assert callable(function)
+    assert function.__name__ == name
+
+
+def test_annotations_and_except_find_their_classes() -> None:
+    from tirelab import TirelabError, Verdict
+
+    assert issubclass(TirelabError, ValueError)
+    assert Verdict.__name__ == "Verdict"
+    with pytest.raises(AttributeError, match="module 'tirelab' has no attribute 'magic'"):
+        tirelab.magic  # noqa: B018
