@@ -13,6 +13,7 @@ from ..preprocessing.data_checks import PoorRecording, check_recordings
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
+from ..simulation.threads import one_thread
 from .discriminating_test import DiscriminatingTest, Limits, discriminate
 from .held_out import HeldOut, given, rmse, split
 from .localization import law_corrected, localize
@@ -27,6 +28,7 @@ FASTEST = 0.1
 """Rate [m/s] that every rig is taken to reach where its limits are not given; else twice the fastest recorded one."""
 
 
+@one_thread()
 def diagnose(
     recordings: Recorded | Sequence[Recorded],
     baseline: TireModel = TireModel(),  # noqa: B008
