@@ -42,6 +42,16 @@ LONGEST_STEP = 5e-3
 """Longest step [s] of the integrator, lest it pass over an obstacle: 5 cm at 10 m/s."""
 
 
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Where the bicycle rides: over `ground`, from `start` [m], for `duration` [s] at the constant `speed` [m/s]."""
+
+    ground: Ground
+    speed: float
+    start: float
+    duration: float
+
+
 def energy(bicycle: QuarterBicycle, states: Floats) -> Floats:
     """Return E [J] in `states`, rows of (z_s, v_s, z_u, v_u); shape (n,)."""
     z_s, v_s, z_u, v_u = states.T[:4]
@@ -136,22 +146,20 @@ def at_rest(bicycle: QuarterBicycle, ground: Ground, tire: Tire, position: float
 
 def integrate(
     bicycle: QuarterBicycle,
-    ground: Ground,
+    course: Course,
     tire: Tire,
     *,
-    speed: float,
-    start: float,
-    duration: float,
     state: Floats | None = None,
     samples: int = 2001,
     tolerance: float = 1e-7,
 ) -> Motion:
-    """Return the motion from `start` [m] for `duration` [s] at `speed` [m/s], bicycle, tire and ground as one system.
+    """Return the motion along `course`, bicycle, tire and ground as one system.
 
     state: (z_s, v_s, z_u, v_u) at the start, at rest if not given. tolerance: relative, of an embedded Runge-Kutta pair
     of order 5 whose absolute tolerance is 1e-3 of it (in m, m/s and J). The sampled ground is smooth in pieces only,
     where higher orders gain nothing: order 8 took four times as long.
     """
+    ground, speed, start, duration = course.ground, course.speed, course.start, course.duration
     track = track_of(ground, start, start + speed * duration, bicycle.wheel_radius)
     first = at_rest(bicycle, ground, tire, start) if state is None else np.asarray(state, dtype=np.float64)
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import click
 import numpy as np
 from account import Account, account
-from coupled import SteppedMotion, SteppedTire, run
+from coupled import Coupling, SteppedMotion, SteppedTire, run
 from fmu_tire import fmu_tire
 from model import Motion
 from radialtire import TireModel
@@ -62,15 +62,11 @@ def stepped(ride: RideOnGround, tire: SteppedTire, step: float, coupling: str) -
     late, look_ahead = COUPLINGS[coupling]
     return run(
         ride.bicycle,
-        ride.ground,
+        ride.course,
         tire,
-        speed=ride.speed,
-        start=ride.start,
-        duration=ride.duration,
         step=step,
         state=ride.state,
-        look_ahead=look_ahead,
-        late=late,
+        coupling=Coupling(look_ahead, late),
     )
 
 

@@ -8,18 +8,18 @@ from functools import partial
 
 import numpy as np
 from bicycle import QuarterBicycle
-from model import Floats, Motion, Tire, at_rest, integrate, track_of
+from model import Course, Floats, Motion, Tire, at_rest, integrate, track_of
 from radialtire import TireModel, power_law
 from tirelab.terrain import Ground, flat, ground_from, iso8608, log, place, reach, root
 from wheel import Track
 
 SLACK = 0.2
-"""Ground [m] beyond the ride's end, for what is told ahead."""
+"""Ground [m] beyond the ride's end, for the look-ahead."""
 
 
 @dataclass(frozen=True, eq=False)
 class RideOnGround:
-    """A bicycle on its way: from `start` [m] in `state` for `duration` [s] at `speed` [m/s]."""
+    """A bicycle that rides from `start` [m] in `state` for `duration` [s] at `speed` [m/s]."""
 
     name: str
     bicycle: QuarterBicycle
@@ -38,17 +38,13 @@ class RideOnGround:
         return track_of(self.ground, self.start, last, self.bicycle.wheel_radius)
 
     def integrated(self, tire: Tire, samples: int) -> Motion:
-        """Return the ride as one system with `tire`, with `samples` moments."""
-        return integrate(
-            self.bicycle,
-            self.ground,
-            tire,
-            speed=self.speed,
-            start=self.start,
-            duration=self.duration,
-            state=self.state,
-            samples=samples,
-        )
+        """Return the ride as one system with `tire`, with `samples` times."""
+        return integrate(self.bicycle, self.course, tire, state=self.state, samples=samples)
+
+    @property
+    def course(self) -> Course:
+        """Ground, speed, start and duration."""
+        return Course(self.ground, self.speed, self.start, self.duration)
 
 
 def elastic(tire: TireModel) -> Tire:

@@ -77,7 +77,7 @@ def _ride(example: dict[str, ModuleType], ground: Ground) -> Any:
     return example["rides"].RideOnGround(ground.name, bicycle, ground, SPEED, 1.0, DURATION, state)
 
 
-def _run(example: dict[str, ModuleType], ride: Any, **options: Any) -> Any:
+def _run(example: dict[str, ModuleType], ride: Any, *, step: float, **options: Any) -> Any:
     """Return the ride stepped in plain Python, the tire's law being the article's."""
     law = example["rides"].elastic(TireModel())
 
@@ -86,13 +86,11 @@ def _run(example: dict[str, ModuleType], ride: Any, **options: Any) -> Any:
 
     return example["coupled"].run(
         ride.bicycle,
-        ride.ground,
+        ride.course,
         tire,
-        speed=SPEED,
-        start=ride.start,
-        duration=DURATION,
+        step=step,
         state=ride.state,
-        **options,
+        coupling=example["coupled"].Coupling(**options),
     )
 
 
@@ -306,7 +304,10 @@ def test_ride_beyond_the_ground(example: dict[str, ModuleType], wavy: Any) -> No
         TirelabError, match=r"a ride from s = 1 m to 9 m on .*its wheel has ground beneath it"
     ):
         example["model"].integrate(
-            wavy.bicycle, wavy.ground, lambda x, r: 0.0, speed=4.0, start=1.0, duration=2.0, state=wavy.state
+            wavy.bicycle,
+            example["model"].Course(wavy.ground, 4.0, 1.0, 2.0),
+            lambda x, r: 0.0,
+            state=wavy.state,
         )
 
 
@@ -315,15 +316,11 @@ def test_diverging_ride_says_when(example: dict[str, ModuleType], bumpy: Any) ->
     with pytest.raises(TirelabError, match="the ride ends at 0"):
         example["coupled"].run(
             bumpy.bicycle,
-            bumpy.ground,
+            bumpy.course,
             lambda t, x, r: 1e6 * x,
-            speed=SPEED,
-            start=1.0,
-            duration=DURATION,
             step=0.01,
             state=bumpy.state,
-            late=True,
-            look_ahead=0.0,
+            coupling=example["coupled"].Coupling(0.0, late=True),
         )
 
 

@@ -65,7 +65,7 @@ def test_fork_sags_as_its_makers_ask(model: ModuleType) -> None:
 
 def test_who_stands_still_stays(model: ModuleType) -> None:
     motion = model.integrate(
-        model.QuarterBicycle(), level(), flat_law, speed=5.0, start=1.0, duration=0.5, samples=11
+        model.QuarterBicycle(), model.Course(level(), 5.0, 1.0, 0.5), flat_law, samples=11
     )
     np.testing.assert_allclose(
         motion.states, np.broadcast_to(motion.states[0], motion.states.shape), atol=1e-8
@@ -79,11 +79,8 @@ def test_free_fall_until_the_wheel_lands(model: ModuleType) -> None:
     hub = WHEEL + 0.05
     motion = model.integrate(
         model.QuarterBicycle(),
-        level(),
+        model.Course(level(), 3.0, 1.0, 0.15),
         flat_law,
-        speed=3.0,
-        start=1.0,
-        duration=0.15,
         state=np.array([hub, 0.0, hub, 0.0]),
     )
     landing = np.sqrt(2.0 * 0.05 / GRAVITY)
@@ -113,11 +110,8 @@ def test_small_oscillations_are_those_of_the_linear_system(model: ModuleType) ->
     push = np.array([0.0, 0.0, 1e-5, 0.0])
     motion = model.integrate(
         bicycle,
-        level(),
+        model.Course(level(), 2.0, 1.0, 0.2),
         flat_law,
-        speed=2.0,
-        start=1.0,
-        duration=0.2,
         state=rest + push,
         samples=41,
         tolerance=1e-10,
@@ -131,7 +125,7 @@ def test_small_oscillations_are_those_of_the_linear_system(model: ModuleType) ->
 def test_energy_is_accounted_for_over_a_log(model: ModuleType, speed: float) -> None:
     ground = ground_from(place(flat(10.0), log(0.05), 3.0), 0.002)
     motion = model.integrate(
-        model.QuarterBicycle(), ground, flat_law, speed=speed, start=2.3, duration=1.8 / speed, samples=401
+        model.QuarterBicycle(), model.Course(ground, speed, 2.3, 1.8 / speed), flat_law, samples=401
     )
     moved = np.ptp(motion.energy)
     assert moved > 50.0
@@ -150,7 +144,7 @@ def test_tire_gives_back_what_it_stored(model: ModuleType) -> None:
     """
     ground = ground_from(sine(12.0, (0.02, 1.5), spacing=0.002), 0.002)
     motion = model.integrate(
-        model.QuarterBicycle(), ground, flat_law, speed=5.0, start=1.0, duration=0.4, samples=201
+        model.QuarterBicycle(), model.Course(ground, 5.0, 1.0, 0.4), flat_law, samples=201
     )
     energy = flat_law_energy(motion.deflection)
     assert energy.max() > 2.0
@@ -162,11 +156,8 @@ def test_tighter_tolerance_changes_nothing_that_matters(model: ModuleType) -> No
     loose, tight = (
         model.integrate(
             model.QuarterBicycle(),
-            ground,
+            model.Course(ground, 5.0, 1.5, 0.4),
             flat_law,
-            speed=5.0,
-            start=1.5,
-            duration=0.4,
             samples=201,
             tolerance=t,
         )
@@ -182,7 +173,7 @@ def test_a_slope_is_paid_for(model: ModuleType) -> None:
     bicycle = model.QuarterBicycle()
     state = model.at_rest(bicycle, ground, flat_law, 1.0) + np.array([0.0, grade * speed, 0.0, grade * speed])
     motion = model.integrate(
-        bicycle, ground, flat_law, speed=speed, start=1.0, duration=0.5, state=state, samples=11
+        bicycle, model.Course(ground, speed, 1.0, 0.5), flat_law, state=state, samples=11
     )
     np.testing.assert_allclose(
         motion.drive, bicycle.weight * grade * speed * motion.time, rtol=1e-6, atol=1e-6
@@ -202,8 +193,8 @@ def test_stepped_ride_approaches_the_monolithic_one(
     model, coupled = example["model"], example["coupled"]
     ground = ground_from(sine(8.0, (0.01, 1.5), spacing=0.002), 0.002)
     bicycle = model.QuarterBicycle()
-    ride = {"speed": 4.0, "start": 1.0, "duration": 0.4}
-    truth = model.integrate(bicycle, ground, flat_law, **ride, samples=801)
+    course = model.Course(ground, speed=4.0, start=1.0, duration=0.4)
+    truth = model.integrate(bicycle, course, flat_law, samples=801)
 
     def tire(time: float, deflection: float, surface_radius: float) -> float:
         return flat_law(deflection, surface_radius) if deflection > 0.0 else 0.0
@@ -211,7 +202,12 @@ def test_stepped_ride_approaches_the_monolithic_one(
     errors = []
     for step in (0.002, 0.001, 0.0005):
         stepped = coupled.run(
-            bicycle, ground, tire, **ride, step=step, state=truth.states[0], look_ahead=look_ahead, late=late
+            bicycle,
+            course,
+            tire,
+            step=step,
+            state=truth.states[0],
+            coupling=coupled.Coupling(look_ahead, late),
         )
         at = np.round(stepped.time / 5e-4).astype(int)
         errors.append(np.sqrt(np.mean((stepped.states[:, 2] - truth.hub_height[at]) ** 2)))
@@ -247,11 +243,8 @@ def test_bad_step(example: dict[str, ModuleType]) -> None:
     with pytest.raises(TirelabError, match="step 0 s of a ride of 1 s"):
         example["coupled"].run(
             example["model"].QuarterBicycle(),
-            level(),
+            example["model"].Course(level(), 1.0, 1.0, 1.0),
             lambda t, x, r: 0.0,
-            speed=1.0,
-            start=1.0,
-            duration=1.0,
             step=0.0,
             state=np.zeros(4),
         )
