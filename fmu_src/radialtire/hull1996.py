@@ -13,7 +13,7 @@ to 38.1 cm concave, up to 3.175 cm of deflection and 2240 N.
 Departures from the print, each with its evidence:
 
 - 5a prints `e(-2519*Rb)`. Read as E0 = 0.2519 /cm, the digits as printed with the decimal point that 5b, 6a and 6b
-  lost in the same way. SECOND_READING has E0 = 0.02519 /cm, for which the article's own figures speak: its
+  lost in the same way. SECOND_READING has E0 = 0.02519 /cm, which the article's own figures support: its
   2.3e4 N/m on the 1.27 cm bump is 2.36e4 N/m with 0.02519 (secant at 1.27 cm) and at least 3.2e4 with 0.2519; its
   193 N at Rb = 25.4 cm, x = 2.53 cm, "bounded by 13.5 %", is 13.9 % with 0.02519 and 9.4 % with 0.2519; and the
   contact patch of a 33 cm wheel on a 25.4 cm bump makes it about 0.66 as stiff as on flat ground: 0.677 against 0.999.
@@ -56,7 +56,7 @@ PRINTED_READING = 0.2519
 """E0 [1/cm] with the digits as printed."""
 
 SECOND_READING = 0.02519
-"""E0 [1/cm] for which the article's own figures speak."""
+"""E0 [1/cm] which the article's own figures support."""
 
 
 FLAT_COEFFICIENT, FLAT_EXPONENT = 550.9, 1.422

@@ -70,5 +70,5 @@ class PowerLaw:
             parameter.checked(getattr(self, parameter.name))
 
     def coefficients(self, surface_radius: float) -> tuple[float, float]:
-        """Return A [N/cm^B] and B [1]; `surface_radius` [m] plays no part."""
+        """Return A [N/cm^B] and B [1]; `surface_radius` [m] has no influence."""
         return self.coefficient, self.exponent

@@ -1,4 +1,4 @@
-"""Where tirelab keeps between runs what it has compiled.
+"""Where tirelab stores compiled code between runs.
 
 The folder of the environment variable TIRELAB_CACHE, else in the virtual environment, else in the user's cache folder
 (XDG_CACHE_HOME or ~/.cache). What lies there is run, so a folder that anyone else may write to is not used.

@@ -163,7 +163,7 @@ def rate(law: Hull1996) -> Finding:
 
 
 def error_part(radius: float, deflection: float, error: float, printed: float) -> Check:
-    """Return the check of an error as a part of the force, the law's or the measured one, of either sign."""
+    """Return the check of an error as a percentage of the force, the law's or the measured one, of either sign."""
 
     def compute(law: Hull1996) -> Finding:
         load = force(law, radius, deflection)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-# matplotlib keeps its font cache in the user's home if it is not told otherwise
+# matplotlib keeps its font cache in the user's home by default
 if sys.prefix != sys.base_prefix:
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 

@@ -138,7 +138,7 @@ def _guid(members: dict[str, bytes], description: ElementTree.Element) -> str:
 
 
 def _write(members: dict[str, bytes], folder: Path) -> Path:
-    """Write the archive under a temporary name and move it into place, so that no half FMU is ever seen."""
+    """Write the archive under a temporary name and move it into place, so that nobody sees half an FMU."""
     path = folder / f"{MODEL}.fmu"
     partial = path.with_suffix(".partial")
     try:

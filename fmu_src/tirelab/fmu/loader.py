@@ -1,7 +1,7 @@
 """Compiles the FMU's Linux binary, loader.c, with whatever C compiler there is.
 
 ziglang takes some seconds, so what it made is kept: it brings its own headers and libraries, and makes the same bytes
-of the same sources anywhere. The machine's own compiler is quick, and what it makes depends on more than can be told.
+of the same sources anywhere. The machine's own compiler is quick, and its output depends on more than can be known.
 """
 
 import hashlib
@@ -28,7 +28,7 @@ NO_COMPILER = (
     "There is no C compiler for Linux on x86-64 here, so on Linux the FMU will work only in tools that are "
     "Python themselves: install one with `python -m pip install ziglang`, or a cc, and build again."
 )
-"""What to tell the user when `compile_loader` returns None."""
+"""The sentence for the user when `compile_loader` returns None."""
 
 _SWAYS = ("C_INCLUDE_PATH", "CPATH", "LIBRARY_PATH", "SOURCE_DATE_EPOCH", "ZIG_LIB_DIR")
 """Environment variables that change what ziglang makes."""
@@ -117,9 +117,9 @@ def _kept(compiler: Compiler) -> Path | None:
     if folder is None:
         return None
     here = Path(__file__).parent
-    told = hashlib.sha256()
+    digest = hashlib.sha256()
     for path in sorted([*here.glob("*.c"), *here.glob("*.h")]):
-        told.update(path.name.encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+        digest.update(path.name.encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
     sways = [f"{name}={os.environ.get(name)}" for name in _SWAYS]
-    told.update("\0".join([compiler.name, *compiler.command, *_FLAGS, *SOURCES, *sways]).encode())
-    return folder / f"{told.hexdigest()[:32]}.so"
+    digest.update("\0".join([compiler.name, *compiler.command, *_FLAGS, *SOURCES, *sways]).encode())
+    return folder / f"{digest.hexdigest()[:32]}.so"

@@ -65,12 +65,16 @@ def opened(fmu: Path) -> Iterator[OpenFmu]:
     except (OSError, zipfile.BadZipFile, KeyError) as error:
         raise TirelabError(f"{fmu} cannot be read as an FMU ({error}); build it again") from None
     except Exception as error:  # fmpy raises plain Exception for a description that breaks the standard
-        raise TirelabError(f"{fmu} breaks the FMI standard ({error}); build it again") from None
+        first = " ".join(str(error).splitlines()[:2])
+        raise TirelabError(f"{fmu} breaks the FMI standard ({first}); build it again") from None
 
     folder = tempfile.mkdtemp(prefix="tirelab_")
     messages: list[str] = []
     try:
         fmpy.extract(str(fmu), folder)
+        library = Path(folder, "binaries", fmpy.platform, kind.modelIdentifier + fmpy.sharedLibraryExtension)
+        if not library.is_file():
+            raise TirelabError(f"{fmu} has no binary for this machine ({fmpy.platform}); export it for that")
         instance = FMU2Slave(
             guid=description.guid,
             unzipDirectory=folder,

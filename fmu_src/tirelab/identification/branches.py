@@ -2,8 +2,8 @@
 
 A leg runs from one turning point of the deflection to the next; a turning point counts once the deflection has come
 back from it by 5 % of the recording's range, so that noise makes none. Where the press rests at a turning point, or
-before its first move and after its last, the samples belong to neither branch: they tell how the force relaxes, not
-how it depends on the deflection.
+before its first move and after its last, the samples belong to neither branch: they show how the force relaxes,
+not how it depends on the deflection.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 LOADING, RESTING, UNLOADING = 1, 0, -1
 
 TURN = 0.05
-"""Part of the range by which the deflection must come back to have turned."""
+"""Fraction of the range by which the deflection must come back before a turning point counts."""
 
 NEARNESS = 0.04
-"""Part of a leg's travel within which a sample is at its turning point."""
+"""Fraction of a leg's travel within which a sample is at its turning point."""
 
 DWELL = 6.0
 """How many times longer than at the legs' speed the deflection stays there if it rests (a sine: 4.4 times)."""
 
 CHUNK_FIRST, CHUNK_LARGEST = 256, 65536
-"""Samples looked at together: few, as legs may be short, then more, as they may be long."""
+"""Samples processed together: few, as legs may be short, then more, as they may be long."""
 
 
 def branches(time: NDArray[np.float64], deflection: NDArray[np.float64]) -> NDArray[np.int8]:
@@ -56,9 +56,9 @@ def _speed(time: NDArray[np.float64], deflection: NDArray[np.float64]) -> float:
     travel = float(deflection[-1] - deflection[0])
     if travel == 0.0:
         return 0.0
-    part = (deflection - deflection[0]) / travel
-    late = int(np.flatnonzero(part > 0.9)[0])
-    early = int(np.flatnonzero(part[: late + 1] < 0.1)[-1])
+    progress = (deflection - deflection[0]) / travel
+    late = int(np.flatnonzero(progress > 0.9)[0])
+    early = int(np.flatnonzero(progress[: late + 1] < 0.1)[-1])
     return 0.8 * abs(travel) / float(time[late] - time[early])
 
 
@@ -67,9 +67,9 @@ def turning_points(deflection: NDArray[np.float64]) -> list[int]:
     threshold = TURN * float(np.ptp(deflection))
     turns = [0]
     sign = 1.0
-    turned = threshold > 0.0
-    while turned:
-        extreme, turned = _leg(deflection, turns[-1], sign, threshold)
+    reversed_ = threshold > 0.0
+    while reversed_:
+        extreme, reversed_ = _leg(deflection, turns[-1], sign, threshold)
         if extreme > turns[-1]:
             turns.append(extreme)
         sign = -sign

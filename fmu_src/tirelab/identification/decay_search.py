@@ -1,10 +1,10 @@
-"""The constants of equations 3 and 4 that come nearest to given A and B, wherever the search starts.
+"""The constants of equations 3 and 4 that fit given A and B best, wherever the search starts.
 
     minimise  sum over surfaces |G_i (A - A_i, B - B_i)|^2,   A, B given by the form
 
-Where the difference D exp(-E R) of a side from flat ground has vanished, neither D nor E has a slope left, and a search
-that came there stays. So when a search has come to rest, each difference is taken out in turn and put back with other
-rates of decay; from where the rest of the constants could then follow to less, by their slopes, it is searched again.
+Where the difference D exp(-E R) of a side from flat ground has vanished, the cost has no slope in D and E, and a search
+that came there stays. So after a search has converged, each difference is removed in turn and inserted again with other
+rates of decay; where the linearized problem then predicts a lower cost, the search is restarted.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ DECAYS_TRIED = 0.05, 5.0
 """Their span, as multiples of 1/largest and 1/smallest radius of the side."""
 
 GAIN = 1e-3
-"""Part of what is minimised by which another place must be better: far less than noise would tell apart."""
+"""Fraction of the cost by which another start must be better: far less than the noise can resolve."""
 
 ROUNDING = 1e-20
-"""Part of what is minimised without any form, below which only rounding is left."""
+"""Fraction of the cost without any form, below which only rounding remains."""
 
 SLOPES_ALIKE = 1e-8
-"""Part of the best known combination of slopes below which a combination counts as unknown."""
+"""Singular value, relative to the largest, below which a combination of slopes counts as undetermined."""
 
 SEARCHES_MOST = 8
-"""Searches from other places."""
+"""Restarts at most."""
 
 
 def decays_tried(radii: Array) -> Array:
@@ -47,7 +47,7 @@ def decays_tried(radii: Array) -> Array:
 
 @dataclass(frozen=True)
 class Target:
-    """What the form shall come near to: A and B of its surfaces `pairs` (n, 2), by the matrices `roots` G (n, 2, 2)."""
+    """The data of the search: A and B of the surfaces, `pairs` (n, 2), with the weights `roots`, G (n, 2, 2)."""
 
     form: HullForm
     pairs: Array
@@ -72,8 +72,8 @@ class Target:
 def nearest(target: Target, start: Array, precision: float, evaluations_most: int) -> Array:
     """Return the logarithms (k,) that `target` seeks, from the logarithms `start`.
 
-    precision: part of a change in what is minimised, and of a step, after which a search has come to rest
-    evaluations_most: those after which it is left where it is
+    precision: relative change of the cost, and relative step, at which a search has converged
+    evaluations_most: number of evaluations after which a search is stopped
     """
 
     def search(start: Array) -> tuple[float, Array]:

@@ -1,4 +1,4 @@
-"""The way from recordings to a tire, from its first stage to its last."""
+"""The identification of a tire from recordings, stage by stage."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .surfaces import CM_PER_M, Surface, names, surfaces_of
 from .two_stage import second_stage
 
 Progress = Callable[[str, int, int], None]
-"""Called with what is being done, how many parts of it are done and how many there are (0: not known)."""
+"""Called with the stage, the number of its steps that are done, and their total (0: not known)."""
 
 ROUNDING = 1e-9
 """Part of a curvature by which the tested range is wider, as radii are rounded to nine digits."""
@@ -37,12 +37,12 @@ def identify(
     name: str = "",
     progress: Progress = lambda what, done, total: None,
 ) -> Identification:
-    """Return the tire that `recordings` show.
+    """Return the tire identified from `recordings`.
 
     law: "hull1996", "curvature_law", "power_law", or "auto": what the number of surfaces allows
     name: of the tire; progress: see Progress
 
-    Raises TirelabError where the recordings cannot tell that law.
+    Raises TirelabError where the recordings do not determine that law.
 
     Reference: Hull, Wang & Moore, Cycling Science, Spring 1996, section Methods.
     """
@@ -130,7 +130,7 @@ def _law_for(surfaces: Sequence[Surface], law: str) -> tuple[str, list[str]]:
     if law == Hull1996.name:
         if not enough:
             raise TirelabError(
-                f"{here} cannot tell the constants: {needs}; record more, or choose curvature_law"
+                f"{here} cannot determine the constants: {needs}; record more, or choose curvature_law"
             )
         missing = [side for side, count in (("convex", convex), ("concave", concave)) if count == 0]
         return law, [f"no {side} surface was recorded: the law takes such ground as flat" for side in missing]

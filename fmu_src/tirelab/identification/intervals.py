@@ -1,12 +1,12 @@
-"""How far each constant may be moved before the recordings object: its profile.
+"""The profile of each constant: how far it can be moved before the fit becomes significantly worse.
 
     chi2(q) = sum over surfaces d_i' V_i^-1 d_i,   d_i = (A, B)_i of the form - (A, B)_i of the surface itself
 
-One constant is held, all others are fitted anew, and the ends of its interval are where chi2 has risen by 9, three
+One constant is held, all others are refitted, and the ends of its interval are where chi2 has risen by 9, three
 standard uncertainties. An end that is never reached says that the surfaces do not determine the constant on that side;
 the symmetric uncertainty of the joint fit cannot say so.
 
-chi2 at its least also tells whether the form follows the surfaces within their noise. Where it exceeds its degrees of
+The least chi2 also shows whether the form follows the surfaces within their noise. Where it exceeds its degrees of
 freedom, the form does not, and all uncertainties are widened by the root of the ratio (R. T. Birge, "The calculation
 of errors by the method of least squares", Physical Review 40 (1932) 207).
 """
@@ -33,10 +33,10 @@ SPAN = np.log(1e3)
 """How far from its estimate a constant is moved: a factor of a thousand."""
 
 EVALUATIONS_MOST = 100
-"""Evaluations after which a constant far from its estimate is left at what was reached."""
+"""Evaluations after which the refit of a constant far from its estimate is stopped."""
 
 PRECISION = 1e-3
-"""Precision of an interval's ends, as a part of its half-width."""
+"""Precision of an interval's ends, relative to its half-width."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Profile:
 
     @property
     def widening(self) -> float:
-        """Factor on uncertainties by what the form leaves of the surfaces' A and B beyond their noise."""
+        """Factor on uncertainties (Birge ratio) where the form does not follow the surfaces within their noise."""
         return max(1.0, self.chi_square / self.freedom) ** 0.5 if self.freedom else 1.0
 
 

@@ -2,9 +2,9 @@
 
     minimise  sum over surfaces g_i sum w (F - A_i x^B_i)^2,   A_i, B_i given by the form
 
-g_i is what a surface's sample tells, from its noise and how that is correlated. For each trial, one pass through the
-samples gathers the inner products of the error and its two derivatives; their triangular root stands for all samples of
-the surface, so the solver sees three rows for each surface and not one for each sample, with the same sums.
+g_i is the weight of a sample of a surface, from its noise and the autocorrelation of that. For each trial, one pass
+through the samples sums the inner products of the error and its two derivatives; their triangular root replaces all
+samples of the surface, so the solver sees three rows for each surface and not one for each sample, with the same sums.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
-"""How far A and B of a surface can be trusted: the noise actually seen, correlated as it is.
+"""The covariance of A and B of a surface, from the measured noise and its autocorrelation.
 
-The errors F - A x^B of each recording are averaged over at most 2000 blocks in a row; what loading and unloading differ
-by (the loop: a mean part and a part that grows with the deflection) is set aside, since both branches weigh alike and
-it cancels. What is left is the noise. Its autocorrelation is pooled over the recordings whose blocks last alike and
-described by an autoregression, whose order the Bayesian criterion chooses; noise that seems to cancel itself counts
-as white. Then, with J the derivatives of the force
-by A and B, W the weights and R the noise's covariance,
+The errors F - A x^B of each recording are averaged over at most 2000 consecutive blocks; the difference of loading and
+unloading (the loop: a mean part and a part that grows with the deflection) is removed, since both branches have the
+same weight and it cancels. The remainder is the noise. Its autocorrelation is pooled over the recordings with blocks of
+about the same duration and described by an autoregression, whose order the Bayesian criterion selects; noise whose
+autocorrelation sums to less than that of white noise counts as white. Then, with J the derivatives of the force by A
+and B, W the weights and R the noise's covariance,
 
     cov(A, B) = (J' W J)^-1 (J' W R W J) (J' W J)^-1
 
@@ -33,22 +33,22 @@ ORDER_MOST = 8
 """Highest order of the autoregression."""
 
 CORRECTIONS, CORRECTED = 20, 1e-4
-"""Most rounds in which the autocorrelation is corrected for what the fit took out, and what ends them sooner."""
+"""Most corrections of the autocorrelation for the fitted part, and the relative change that ends them sooner."""
 
 LEFT_LEAST = 0.25
-"""Least part of a recording's noise that counts as left by the fit: with less its variance would be a guess."""
+"""Least fraction of a recording's noise that the fit is taken to leave: with less its variance would be a guess."""
 
-FLOOR = 1e-10
-"""Noise, as a part of the largest force, below which a recording counts as free of noise."""
+NOISE_FLOOR = 1e-10
+"""Noise, as a fraction of the largest force, below which a recording counts as free of noise."""
 
 
 @dataclass(frozen=True)
 class PowerFit:
-    """A and B of one surface and how they are known.
+    """A and B of one surface and their covariance.
 
     coefficient: A [N/cm^B]; exponent: B [1]; covariance of (A, B) (2, 2)
     products: J' W J of the derivatives by A and B (2, 2); meat: J' W R W J (2, 2)
-    noise: standard deviation of a sample's noise [N]; independent: how many independent samples tell as much
+    noise: standard deviation of a sample's noise [N]; independent: effective number of independent samples
     loop: mean force of loading less that of unloading [N], None where one of them is missing
     """
 
@@ -67,9 +67,9 @@ class _Blocks:
     """One recording in blocks.
 
     noise: mean of each block [N] (n,); scores: sums of W J (n, 2)
-    fitted: what was fitted to the errors, as orthonormal columns (n, 2 or 4): the noise has no part along them
+    fitted: what was fitted to the errors, as orthonormal columns (n, 2 or 4): the noise is orthogonal to them
     size: samples in a block; interval: [s] that a block lasts; within: variance of the samples inside a block [N^2]
-    floor: noise [N] below which there is none
+    noise_floor: noise [N] below which a recording counts as free of noise
     """
 
     noise: NDArray[np.float64]
@@ -78,7 +78,7 @@ class _Blocks:
     size: int
     interval: float
     within: float
-    floor: float
+    noise_floor: float
     loop: float | None
 
     @property
@@ -117,7 +117,7 @@ def _power_fit(
         count = b.noise.size
         correlation = correlations[b.kin][:count]
         repeats = float(1.0 + 2.0 * ((1.0 - np.arange(1, count) / count) @ correlation[1:]))
-        of_block = max(float(b.noise @ b.noise) / float(_expected(b, correlation, 0)[0]), b.floor**2)
+        of_block = max(float(b.noise @ b.noise) / float(_expected(b, correlation, 0)[0]), b.noise_floor**2)
         meat += of_block * b.scores.T @ matmul_toeplitz(correlation, b.scores)
         independent += min(count * (b.within + of_block) / (of_block * repeats), count * b.size)
         variance += (b.within + of_block) / len(blocks)
@@ -171,7 +171,7 @@ def _blocks(piece: Piece, surface: Surface, coefficient: float, exponent: float)
         size=size,
         interval=size * piece.interval,
         within=within,
-        floor=FLOOR * surface.force_max,
+        noise_floor=NOISE_FLOOR * surface.force_max,
         loop=loop,
     )
 
@@ -183,7 +183,7 @@ def _autocorrelation(blocks: list[_Blocks]) -> NDArray[np.float64]:
     noise that is left is what was seen.
     """
     longest = max(b.noise.size for b in blocks)
-    noisy = [b for b in blocks if b.noise @ b.noise > b.noise.size * b.floor**2]
+    noisy = [b for b in blocks if b.noise @ b.noise > b.noise.size * b.noise_floor**2]
     correlation = np.zeros(longest)
     correlation[0] = 1.0
     if not noisy:

@@ -96,7 +96,7 @@ def fit_power(surface: Surface) -> tuple[float, float]:
 
 
 def _start(surface: Surface) -> float:
-    """Return the best of EXPONENT_STARTS on every so-manieth sample: no logarithm of a noisy force is taken."""
+    """Return the best of EXPONENT_STARTS on thinned samples: no logarithm of a noisy force is taken."""
     fits = np.zeros((2, EXPONENT_STARTS.size))
     for piece in surface.pieces:
         thin = slice(None, None, max(1, piece.force.size // THINNED))

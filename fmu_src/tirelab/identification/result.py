@@ -1,4 +1,4 @@
-"""What an identification found, as values, as JSON, and as sentences about what it could not find."""
+"""The result of an identification: values, JSON, and sentences about what it could not determine."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class SurfaceFit:
     surface_radius: [m]; recordings: their names; samples: that load or unload the tire; resting: that do neither
     coefficient, exponent: A [N/cm^B] and B [1] of this surface by itself, with their standard uncertainties
     rmse: [N] of these, loading and unloading weighted alike; noise: standard deviation of a sample's noise [N]
-    independent: how many independent samples would tell as much as these; loop: loading less unloading, mean [N]
+    independent: effective number of independent samples; loop: loading less unloading, mean [N]
     law_coefficient, law_exponent, law_rmse: the same from the law of all surfaces
-    largest_error: of the law [N], without sign; at: the deflection where it is [m]; relative_error: part of force_max
+    largest_error: of the law [N], without sign; at: its deflection [m]; relative_error: as a fraction of force_max
     deflection_max: [m]; force_max: [N]
     """
 
@@ -154,7 +154,7 @@ def statements(
     found = [c.statement() for c in constants if c.standing != "determined"]
     if found and any(c.name.endswith("_decay") for c in constants):
         found.append(
-            "such constants make up for each other, so the law itself is known where it was measured: "
+            "these constants compensate each other; the law itself is determined where it was measured: "
             + "; ".join(_known(surfaces[i], *law_uncertainties[i]) for i in sorted({0, len(surfaces) - 1}))
         )
     if freedom and chi_square / freedom > 1.0 + 4.0 * math.sqrt(2.0 / freedom):
@@ -176,13 +176,13 @@ def _known(surface: SurfaceFit, coefficient_uncertainty: float, exponent_uncerta
 
 
 def recording_notes(surfaces: tuple[SurfaceFit, ...], one_sided: tuple[bool, ...]) -> list[str]:
-    """Return the sentences about samples without a part and missing branches; one_sided: which surfaces lack one."""
+    """Return the sentences about unused samples and missing branches; one_sided: which surfaces lack a branch."""
     found = []
     for surface, alone in zip(surfaces, one_sided, strict=True):
         where = f"{', '.join(surface.recordings)} ({describe(surface.surface_radius)})"
         if surface.resting:
             found.append(
-                f"{where}: {surface.resting} samples at rest between loading and unloading play no part"
+                f"{where}: {surface.resting} samples at rest between loading and unloading are not used"
             )
         if alone:
             found.append(

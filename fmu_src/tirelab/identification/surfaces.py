@@ -108,7 +108,7 @@ class Surface:
 def surfaces_of(recordings: Iterable[Recording]) -> tuple[Surface, ...]:
     """Return the surfaces of `recordings`, from the sharpest bump over flat ground to the tightest dip.
 
-    Raises TirelabError, with the recording's name, where one cannot tell a power law.
+    Raises TirelabError, with the recording's name, where it does not determine a power law.
     """
     found: dict[float, list[Piece]] = {}
     for recording in recordings:
@@ -187,7 +187,7 @@ def _piece(recording: Recording, stretch: slice) -> Piece | None:
 
 
 def _surface(radius: float, pieces: list[Piece]) -> Surface:
-    """Return the surface that `pieces` were recorded on, or raise TirelabError where they cannot tell A and B."""
+    """Return the surface that `pieces` were recorded on, or raise TirelabError where they do not determine A and B."""
     where = _where(radius, pieces)
     count = sum(p.force.size for p in pieces)
     if count < SAMPLES_LEAST:

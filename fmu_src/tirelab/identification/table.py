@@ -18,7 +18,7 @@ def surface_table(identification: Identification) -> Table:
     table = _table(
         "A and B of each surface",
         "A [N/cm^B] and B with standard uncertainties; RMSE of each surface's own A and B, and of the law; the law's "
-        "largest error, the deflection where it is, and its part of the largest force on that surface",
+        "largest error, the deflection where it is, and its percentage of the largest force on that surface",
     )
     table.add_column("surface", no_wrap=True)
     for head in ("A", "B", "RMSE\n[N]", "law's\n[N]", "largest\n[N]", "at\n[cm]", "\n[%]"):
@@ -34,7 +34,7 @@ def constant_table(identification: Identification) -> Table:
     table = _table(
         f"Constants of the law {identification.tire.law.name}",
         "joint fit of all samples with its standard uncertainty; the interval of three standard uncertainties on "
-        "either side, within which the recordings do not object"
+        "either side, that the recordings allow"
         + ("; the same constants by the article's two stages" if two_stages else ""),
     )
     table.add_column("constant", no_wrap=True)

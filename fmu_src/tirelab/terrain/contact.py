@@ -171,8 +171,8 @@ def _meet(
     section[row, deepest] = True
     length = _at(ground.arc, end) - _at(ground.arc, start)
     curvature = _at(ground.curvature, foot)
-    turned = _at(ground.direction, start) - _at(ground.direction, end)
-    np.divide(turned, length, out=curvature, where=length > 1e-9)
+    turning = _at(ground.direction, start) - _at(ground.direction, end)
+    np.divide(turning, length, out=curvature, where=length > 1e-9)
 
     foot_position, bend = _at(ground.s, foot), ground.curvature[points]
     return Contact(
@@ -237,7 +237,7 @@ def _vertex(left: Floats, middle: Floats, right: Floats) -> tuple[Floats, Floats
 def _crossing(
     squared: Floats, row: NDArray[np.int64], outer: NDArray[np.int64], wheel_radius: float, step: int = 1
 ) -> Floats:
-    """Return how far, in samples from `outer`, the ground crosses the wheel's circle on the way to its neighbour."""
+    """Return how far, in samples from `outer`, the ground crosses the wheel's circle towards its neighbour."""
     out, inn = squared[row, outer], squared[row, outer + step]
     share = np.zeros_like(out)
     np.divide(out - wheel_radius**2, out - inn, out=share, where=out > inn)

@@ -20,7 +20,7 @@ from .profile import Floats
 
 @dataclass
 class _Track:
-    """What the parser has seen so far."""
+    """What the parser has read so far."""
 
     path: str
     parser: expat.XMLParserType
@@ -80,7 +80,7 @@ class _Track:
             value = math.nan
         if not math.isfinite(value):
             raise self.fail(
-                f"track point {len(self.points) + 1}: {what} '{text.strip()[:40]}' is not a number; mend it"
+                f"track point {len(self.points) + 1}: {what} '{text.strip()[:40]}' is not a number; correct it"
             )
         return value
 

@@ -1,4 +1,4 @@
-"""Where on a ride the article's tire was used outside of what the article stands for.
+"""Where on a ride the article's tire is used outside of its limits.
 
 Each limit is a sentence of the article, or the range it tested, made measurable:
 
@@ -20,7 +20,7 @@ Each limit is a sentence of the article, or the range it tested, made measurable
 - coarse ground, ours: the contact, or one of 1 mm of deflection on flat ground, is shorter than the data can show, so
   bumps of the tire's size are not in the file.
 
-In the air the force is zero and nothing is left to doubt: that share of the ride is told beside the limits.
+In the air the force is zero and certain: that fraction of the ride is stated beside the limits.
 
 Reference: M. L. Hull, E. L. Wang, D. F. Moore, "An empirical model for determining the radial force-deflection behavior
 of off-road bicycle tires", Cycling Science, Spring 1996.
@@ -46,7 +46,7 @@ from .contact import Contact
 from .profile import Floats
 
 EDGE_TURN = math.radians(15.0)
-"""A circle drawn with fewer than 24 points per half turn cannot be told from a corner."""
+"""A circle drawn with fewer than 24 points per half turn cannot be distinguished from a corner."""
 
 SPREAD_LIMIT = 0.5
 """Largest spread q of the curvature in contact, and largest jump in the same measure."""
@@ -120,7 +120,7 @@ class LimitReport:
         return dict(self.shares)[limit]
 
     def sentences(self) -> tuple[str, ...]:
-        """Return what to tell a user, the most frequent limit first; one sentence where there is none."""
+        """Return the sentences for the user, the most frequent limit first; one sentence where there is none."""
         met = sorted((s for s in self.shares if s[1] > 0.0), key=lambda s: -s[1])
         if not met:
             return (f"The article's model holds along all of the {self.length:.1f} m ridden.",)

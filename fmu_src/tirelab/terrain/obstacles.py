@@ -56,7 +56,7 @@ def root(radius: float = 0.05) -> Obstacle:
 
 
 def rut(depth: float = 0.08, width: float = 0.4) -> Obstacle:
-    """Return a rain rut across the way, z = -depth (1 - (2 u / width)^2)^3, with a smooth edge [m]."""
+    """Return a rain rut across the track, z = -depth (1 - (2 u / width)^2)^3, with a smooth edge [m]."""
     _positive("rut", depth=depth, width=width)
     u = np.linspace(-0.5 * width, 0.5 * width, 161)
     return Obstacle("rut", u, -depth * (1.0 - (2.0 * u / width) ** 2) ** 3)

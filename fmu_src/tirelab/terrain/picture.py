@@ -64,7 +64,7 @@ def draw_ride(ride: Ride, path: str | Path, title: str | None = None) -> None:
 
 
 def animate_ride(ride: Ride, path: str | Path, frames: int = 120, frames_per_second: int = 20) -> None:
-    """Write a GIF of `ride` to `path`: the wheel on its way, the force on it and the section in contact."""
+    """Write a GIF of `ride` to `path`: the moving wheel, the force on it and the section in contact."""
     from matplotlib.animation import PillowWriter
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

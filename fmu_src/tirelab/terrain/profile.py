@@ -29,7 +29,7 @@ class Profile:
 
     s: horizontal distance [m], shape (n,), growing; z: height [m], shape (n,); n >= 5
     smoothing_length: wavelength [m] of which smoothing should keep half, for heights that carry noise; 0 for exact ones
-    notes: what was done to the heights on the way here, a sentence each
+    notes: how the heights were processed, a sentence each
 
     Raises TirelabError, with the point, for heights that are not numbers, profiles that fold back, repeated points,
     and steps (slopes above STEEPEST_SLOPE).

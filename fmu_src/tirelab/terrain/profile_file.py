@@ -75,7 +75,7 @@ def read_profile_csv(
 
 @dataclass(frozen=True)
 class LengthColumns:
-    """Columns of lengths: `values` [m] in the order asked for, the file's row of each value, and notes for the user."""
+    """Columns of lengths: `values` [m] in the requested order, the file's row of each value, and notes for the user."""
 
     values: tuple[Floats, ...]
     rows: tuple[int, ...]

@@ -36,7 +36,7 @@ DEEPEST_DROP = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Ride:
-    """What a wheel met on its way; arrays of shape (n,), one value per position of the hub.
+    """The ride of a wheel; arrays of shape (n,), one value per position of the hub.
 
     time [s] at the constant speed [m/s]; rolling_height: the hub's height without deflection [m];
     radial_force: compressive, along the line from hub to ground [N]; limits: bits of `Limit`.
@@ -53,13 +53,13 @@ class Ride:
 
     @property
     def vertical_force(self) -> Floats:
-        """Upward part of the force on the wheel [N]."""
+        """Upward component of the force on the wheel [N]."""
         up: Floats = self.radial_force * np.cos(self.contact.inclination)
         return up
 
     @property
     def horizontal_force(self) -> Floats:
-        """Forward part of the force on the wheel [N], negative where the ground holds the wheel back."""
+        """Forward component of the force on the wheel [N], negative where the ground holds the wheel back."""
         forward: Floats = self.radial_force * np.sin(self.contact.inclination)
         return forward
 
@@ -72,7 +72,7 @@ class Ride:
 
 @dataclass(frozen=True, eq=False)
 class HubPath:
-    """The way of the hub: its height [m] (n,) at growing positions [m] (n,), by default those of `hub_positions`."""
+    """The path of the hub: its height [m] (n,) at growing positions [m] (n,), by default those of `hub_positions`."""
 
     height: Floats
     position: Floats | None = None
@@ -91,7 +91,7 @@ def ride(
 
     The hub follows `hub_path`, from a multibody tool or a measurement; or, where `load` [N] is given instead, the path
     on which the tire carries that load upwards at every position: a ride so slow that nothing bounces. tire: a tire, of
-    which the elastic law acts, or a force (see TireForce), which is asked only where the wheel is on the ground.
+    which the elastic law acts, or a force (see TireForce), which is evaluated only where the wheel is on the ground.
 
     Raises TirelabError for paths that are not over the ground, and for loads that the tire cannot carry.
     """

@@ -40,7 +40,7 @@ def test_the_command_closes_the_loop_through_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["flat.csv", "--law", "hull1996"], "1 surface (flat) cannot tell the constants"),
+        (["flat.csv", "--law", "hull1996"], "1 surface (flat) cannot determine the constants"),
         (["absent.csv"], "absent.csv"),
         (["flat.csv", "--out", "."], "cannot be written"),
         (["flat.csv", "--law", "spline"], "'spline' is not one of"),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -90,3 +92,52 @@ def test_a_file_that_is_no_fmu(tmp_path: Path, content: bytes) -> None:
 def test_a_missing_fmu(tmp_path: Path) -> None:
     with pytest.raises(TirelabError, match="does not exist"):
         replay(tmp_path / "nothing.fmu", motion(3))
+
+
+def changed(fmu: Path, folder: Path, old: str, new: str) -> Path:
+    """Return a copy of `fmu` whose model description has `new` in place of the pattern `old`."""
+    path = folder / "changed.fmu"
+    with zipfile.ZipFile(fmu) as given, zipfile.ZipFile(path, "w") as copy:
+        for name in given.namelist():
+            content = given.read(name)
+            if name == "modelDescription.xml":
+                text, count = re.subn(old, new, content.decode())
+                assert count
+                content = text.encode()
+            copy.writestr(name, content)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        (
+            'fmiVersion="2.0"',
+            'fmiVersion="1.0"',
+            r"changed\.fmu breaks the FMI standard \(.*\); build it again",
+        ),
+        (
+            "<CoSimulation [^>/]*",
+            '<ModelExchange modelIdentifier="BicycleTire"',
+            "is not an FMI 2.0 Co-Simulation unit; export it as one",
+        ),
+        ('name="radial_force"', 'name="push"', "has no variable 'radial_force'; a tire has deflection"),
+        ('modelIdentifier="BicycleTire"', 'modelIdentifier="Absent"', "has no binary for this machine"),
+    ],
+)
+def test_an_fmu_that_is_no_tire_for_this_machine_is_refused(
+    fmu: Path, tmp_path: Path, old: str, new: str, sentence: str
+) -> None:
+    with pytest.raises(TirelabError, match=sentence) as caught:
+        replay(changed(fmu, tmp_path, old, new), motion(3))
+    assert "\n" not in str(caught.value)
+
+
+def test_an_fmu_that_cannot_be_instantiated_says_why(fmu: Path, tmp_path: Path) -> None:
+    path = tmp_path / "hollow.fmu"
+    with zipfile.ZipFile(fmu) as given, zipfile.ZipFile(path, "w") as copy:
+        for name in given.namelist():
+            if not name.endswith("tire.json"):
+                copy.writestr(name, given.read(name))
+    with pytest.raises(TirelabError, match=r"hollow\.fmu cannot be instantiated: .*tire\.json"):
+        replay(path, motion(3))

@@ -1,7 +1,10 @@
 """Rides: the path under a load against the law solved by hand, and what cannot be ridden."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from radialtire import PowerLaw, TireModel
 from tirelab.errors import TirelabError
 from tirelab.terrain import (
     HubPath,
@@ -16,6 +19,7 @@ from tirelab.terrain import (
     ride,
     rolling_path,
     sine,
+    write_ride,
 )
 from tirelab.terrain.profile import Floats
 
@@ -133,3 +137,17 @@ def test_load_path_stands_on_the_rolling_path_when_the_tire_is_stiff() -> None:
     result = ride(ground, lambda x, r: 1e9 * x, speed=1.0, load=500.0)
     # 500 N at 1e9 N/m: half a micrometre, below the error of the rolling path itself.
     np.testing.assert_allclose(result.contact.hub_height, rolling_path(ground), atol=2e-6)
+
+
+def test_a_ride_on_a_tire_has_its_law_and_is_written(tmp_path: Path) -> None:
+    # F = 550.9 x^1.422 is 550.9 N at 1 cm on flat ground; at 1 kN on 1500 N/cm the tire is pressed by 2/3 cm
+    result = ride(ground_from(flat(4.0)), TireModel(), speed=2.0, load=550.9)
+    np.testing.assert_allclose(result.contact.deflection, 0.01, rtol=1e-6)
+    soft = ride(ground_from(flat(4.0)), TireModel(law=PowerLaw(1500.0, 1.0)), speed=2.0, load=1000.0)
+    np.testing.assert_allclose(soft.contact.deflection, 2.0 / 300.0, rtol=1e-6)
+    write_ride(soft, tmp_path / "soft.csv")
+    table = np.genfromtxt(tmp_path / "soft.csv", delimiter=",", skip_header=1)
+    np.testing.assert_allclose(table[:, 3], soft.contact.deflection, rtol=1e-8)
+    np.testing.assert_allclose(table[:, 0], 0.5 * (table[:, 1] - table[0, 1]), atol=1e-8)
+    with pytest.raises(TirelabError, match=r"absent.*; name a file that can be written"):
+        write_ride(soft, tmp_path / "absent" / "soft.csv")
