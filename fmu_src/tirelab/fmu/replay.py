@@ -54,7 +54,10 @@ def opened(fmu: Path) -> Iterator[OpenFmu]:
     Raises TirelabError where it cannot be read, is not FMI 2.0 Co-Simulation, or does not load here.
     """
     try:
-        description = fmpy.read_model_description(str(fmu))
+        with open(
+            fmu, "rb"
+        ) as file:  # opened here, since fmpy leaves it open where it refuses the description
+            description = fmpy.read_model_description(file)
         kind = description.coSimulation
         if description.fmiVersion != "2.0" or kind is None:
             raise TirelabError(f"{fmu} is not an FMI 2.0 Co-Simulation unit; export it as one")

@@ -113,7 +113,7 @@ def changed(fmu: Path, folder: Path, old: str, new: str) -> Path:
     [
         (
             'fmiVersion="2.0"',
-            'fmiVersion="1.0"',
+            'fmiVersion="2.0" wrong="1" worse="2"',
             r"changed\.fmu breaks the FMI standard \(.*\); build it again",
         ),
         (
