@@ -8,6 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent / "fmu_src"))
 
 try:
+    import tirelab.fmu.build  # noqa: F401 - what the command loads when it is used
     from tirelab.cli.build import command
 except ModuleNotFoundError as error:
     sys.exit(

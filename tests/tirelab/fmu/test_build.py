@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import zipfile
@@ -201,3 +202,14 @@ def test_a_machine_without_a_compiler_still_builds(
     assert "only in tools that are Python themselves" in sentence
     with zipfile.ZipFile(tmp_path / "BicycleTire.fmu") as archive:
         assert "binaries/linux64/BicycleTire.so" in archive.namelist()
+
+
+def test_without_what_it_needs_the_script_says_what_to_install(repository: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", str(repository / "build_fmu.py")], capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    assert re.fullmatch(
+        r"Error: the package \w+ is missing; install what tirelab needs: python -m pip install -e \.\n",
+        done.stderr,
+    )

@@ -239,7 +239,7 @@ class Motion:
     deflection = 0.01 + 0.005 * np.sin(9.0 * time)
     surface_radius = np.full(50, np.inf)
 
-tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0)),))
+tire = TireModel(effects=((CATALOGUE["bottoming"], (2e5, 0.012, 2e-4, 1.0)),))
 print(json.dumps(simulate(tire, Motion).tolist()))
 """
 
