@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from drives import Drive, flat_force, read, ride, triangle
 from radialtire import CATALOGUE, TireModel, read_tire
 from tirelab.cli import diagnose as diagnose_command
+from tirelab.diagnosis import diagnosis_run
 from tirelab.diagnosis.verdict import Verdict
 from tirelab.fmu.replay import replay
 from tirelab.recordings.recording import Recording, read_recording, write_recording
@@ -55,10 +56,8 @@ def done(rides: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result,
     out = tmp_path_factory.mktemp("damped") / "deep" / "out"
     found: list[Verdict] = []
     with pytest.MonkeyPatch.context() as patch:
-        genuine = diagnose_command.diagnose
-        patch.setattr(
-            diagnose_command, "diagnose", lambda *a, **k: found.append(genuine(*a, **k)) or found[0]
-        )
+        genuine = diagnosis_run.diagnose
+        patch.setattr(diagnosis_run, "diagnose", lambda *a, **k: found.append(genuine(*a, **k)) or found[0])
         result = run(rides / "ride.csv", "--held-out", rides / "kept.csv", "--out", out)
     return result, out, found[0]
 
@@ -66,7 +65,7 @@ def done(rides: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result,
 @pytest.fixture
 def known(done: tuple[Result, Path, Verdict], monkeypatch: pytest.MonkeyPatch) -> Verdict:
     """The verdict of `done`, which the command is given without thinking again."""
-    monkeypatch.setattr(diagnose_command, "diagnose", lambda *_, **__: done[2])
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: done[2])
     return done[2]
 
 
@@ -165,7 +164,9 @@ def test_the_terminal_report_is_short_and_plain(done: tuple[Result, Path, Verdic
     told = " ".join(" ".join(lines).split())
     for words in ("not seen by the fit", "where they part", "N·s/m", "force for each m/s", "report.html"):
         assert words in told
-    assert result.stderr == ""
+    stages = result.stderr.splitlines()  # no terminal: one plain line for each stage
+    assert stages[:2] == ["reading ride.csv", "reading kept.csv"]
+    assert stages[-1] == "writing the report"
 
 
 def test_the_page_names_the_command_and_both_recordings(done: tuple[Result, Path, Verdict]) -> None:
@@ -211,7 +212,7 @@ def test_a_folder_means_its_recordings(known: Verdict, rides: Path, tmp_path: Pa
 def test_an_fmu_that_does_something_else_is_told(
     known: Verdict, rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(diagnose_command, "replay", lambda fmu, r: replay(fmu, r) + 3.0)
+    monkeypatch.setattr(diagnosis_run, "replay", lambda fmu, r: replay(fmu, r) + 3.0)
     result = run(rides / "ride.csv", "--out", tmp_path)
     assert result.exit_code == 0
     assert "on ride the corrected FMU differs by up to 3 N from the simulation" in " ".join(
@@ -262,7 +263,7 @@ def _silent() -> Drive:
 def test_a_folder_that_cannot_be_written_is_told_at_once(
     rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(diagnose_command, "diagnose", lambda *_, **__: pytest.fail("it began to work"))
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: pytest.fail("it began to work"))
     taken = tmp_path / "taken"
     taken.write_text("a file")
     result = run(rides / "ride.csv", "--out", taken / "deeper")

@@ -102,7 +102,7 @@ def test_what_the_surfaces_cannot_determine_is_said() -> None:
     sentences = " ".join(found.notes)
     assert "E0" in sentences
     assert "is not determined: any" in sentences
-    assert "the law itself is known where it was measured" in sentences
+    assert "the law itself is determined where it was measured" in sentences
 
 
 def test_three_concave_radii_hardly_fix_three_constants() -> None:
@@ -211,7 +211,7 @@ def test_a_ride_over_terrain_is_refused() -> None:
 
 def test_too_few_surfaces_for_the_chosen_law_are_refused() -> None:
     with pytest.raises(
-        TirelabError, match="cannot tell the constants: equations 3 and 4 need two radii on each side"
+        TirelabError, match="cannot determine the constants: equations 3 and 4 need two radii on each side"
     ):
         identify([triangle(), triangle(0.254)], law="hull1996")
     lone = [triangle(r) for r in (*rig.CONVEX_RADII[:6], math.inf, -0.381)]

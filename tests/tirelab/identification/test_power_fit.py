@@ -64,7 +64,7 @@ def test_what_happens_in_a_hold_plays_no_part() -> None:
     found = identify([on(math.inf, x, relaxed)])
     # the hold's neighbourhood of 4 % of the travel goes with it
     assert found.surfaces[0].coefficient == pytest.approx(550.9, rel=1e-9)
-    assert any("samples at rest between loading and unloading play no part" in note for note in found.notes)
+    assert any("samples at rest between loading and unloading are not used" in note for note in found.notes)
 
 
 def test_one_branch_alone_is_said() -> None:
