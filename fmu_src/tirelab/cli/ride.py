@@ -11,7 +11,6 @@ from radialtire import TireModel, read_tire
 from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
-from .assignments import assignments
 from .option_group import option_group
 from .options import FILE, SentenceCommand, out
 
@@ -20,6 +19,11 @@ if TYPE_CHECKING:
 
 LOAD = 500.0
 """Load [N] where neither a load nor a path of the hub is given."""
+
+
+def _known_column(name: str, option: str) -> None:
+    if name not in ("s", "z"):
+        raise TirelabError(f"{option}: {name!r} is not a column of a profile; name s or z")
 
 
 @dataclass(frozen=True)
@@ -49,10 +53,12 @@ class Terrain:
 
     def source(self) -> ProfileColumns:
         """Return which columns of the file are which, and their units."""
+        from ..recordings.assignments import assignments
         from ..terrain import ProfileColumns
 
-        columns = assignments(self.columns or "", "--columns", ("s", "z"), 's=Distance,z="Height of ground"')
-        units = assignments(self.units or "", "--units", ("s", "z"), "s=m,z=mm")
+        example = 's=Distance,z="Height of ground"'
+        columns = assignments(self.columns or "", "--columns", example, _known_column)
+        units = assignments(self.units or "", "--units", "s=m,z=mm", _known_column)
         return ProfileColumns(columns, units)
 
     def _with_obstacles(self, terrain: Profile) -> Profile:

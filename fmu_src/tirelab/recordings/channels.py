@@ -1,9 +1,9 @@
 """The channels of a recording, and which column of a file is which."""
 
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from .assignments import assignments
 from .formats import Header, RecordingError
 from .formats.table import listed, quoted
 from .origin import Origin
@@ -80,7 +80,7 @@ def parse_columns(text: str) -> dict[str, str]:
 
     Errors: RecordingError for an unknown or repeated channel, a missing = or a quote left open.
     """
-    return _assignments(text, "--columns", 'deflection=Stroke,force="Load cell"')
+    return assignments(text, "--columns", 'deflection=Stroke,force="Load cell"', known_channel)
 
 
 def parse_units(text: str) -> dict[str, str]:
@@ -88,7 +88,7 @@ def parse_units(text: str) -> dict[str, str]:
 
     Errors: RecordingError for an unknown or repeated channel, a missing = or a quote left open.
     """
-    return _assignments(text, "--units", "time=ms,deflection=mm,force=kN")
+    return assignments(text, "--units", "time=ms,deflection=mm,force=kN", known_channel)
 
 
 def assignments_text(values: Mapping[str, str]) -> str:
@@ -101,28 +101,6 @@ def _in_quotes(value: str) -> str:
         return value
     # A double quote cannot stand between double quotes: it gets single ones.
     return "'\"'".join(f'"{piece}"' if piece else "" for piece in value.split('"'))
-
-
-def _assignments(text: str, option: str, example: str) -> dict[str, str]:
-    reader = shlex.shlex(text, posix=True)
-    reader.whitespace, reader.whitespace_split, reader.commenters, reader.escape = ",", True, "", ""
-    found: dict[str, str] = {}
-    try:
-        pieces = list(reader)
-    except ValueError:
-        raise RecordingError(
-            f"{option} {quoted(text)}: a quote is not closed; write like {example}"
-        ) from None
-    for piece in pieces:
-        name, equals, value = piece.partition("=")
-        name = name.strip().lower()
-        if not equals:
-            raise RecordingError(f"{option}: {quoted(piece)} has no =; write like {example}")
-        known_channel(name, option)
-        if name in found:
-            raise RecordingError(f"{option}: {name} is given twice; leave one out")
-        found[name] = value.strip()
-    return found
 
 
 def known_channel(name: str, where: str) -> None:
