@@ -20,7 +20,7 @@ None of them is a tire. A sphere pressed into tissue follows the tire's own law 
 B = 2. Their lengths and forces are multiplied up to those of a tire, time is left as it is, and every figure is printed
 in the unit of its recording. The damper and the piston have next to no stiffness, and the tool looks for what departs
 from a law that has one: a spring K of our own is laid beside them, K x added to the force recorded and K to the law
-believed. That is exact and hides nothing.
+the baseline. That is exact and hides nothing.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ class Refusal:
     names: tuple[str, ...]
     why: str
 
-    def told(self, verdict: Verdict) -> str:
+    def text(self, verdict: Verdict) -> str:
         """Whether the tool claims one of them in every explanation that it offers."""
-        sets = [set(verdict.names), *(set(rival.names) for rival in verdict.alternatives)]
+        sets = [set(verdict.names), *(set(alternative.names) for alternative in verdict.alternatives)]
         claimed = [name for name in self.names if all(name in names for names in sets)]
         if claimed:
             return f"CLAIMS {' and '.join(claimed)}, though {self.why}".replace("_", " ")
@@ -63,12 +63,12 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found in one recording: RMSE on `unseen` samples in `unit`, before and after the correction."""
+    """What was found in one recording: RMSE on `held_out` samples in `unit`, before and after the correction."""
 
     title: str
-    believed: str
+    baseline: str
     verdict: Verdict
-    unseen: str
+    held_out: str
     before: float
     after: float
     noise: float
@@ -76,20 +76,22 @@ class Finding:
     evidence: tuple[str, ...]
     refusals: tuple[Refusal, ...] = ()
 
-    def told(self) -> str:
+    def text(self) -> str:
         """The finding in words."""
         v = self.verdict
         found = ", ".join(v.names) or "nothing is missing"
-        rivals = "; or ".join(" + ".join(rival.names) or "nothing" for rival in v.alternatives)
+        alternatives = "; or ".join(
+            " + ".join(alternative.names) or "nothing" for alternative in v.alternatives
+        )
         lines = [
-            f"believed   {self.believed}",
+            f"baseline   {self.baseline}",
             f"found      {found} (confidence {100 * v.confidence:.0f} %)".replace("_", " "),
-            *([f"           could also be {rivals}".replace("_", " ")] if rivals else []),
+            *([f"           could also be {alternatives}".replace("_", " ")] if alternatives else []),
             *([f"           unknown depends on {', '.join(v.unexplained_by)}"] if v.unexplained else []),
-            f"RMSE       {self.before:.3g} -> {self.after:.3g} {self.unit} on {self.unseen}; "
+            f"RMSE       {self.before:.3g} -> {self.after:.3g} {self.unit} on {self.held_out}; "
             f"noise {self.noise:.2g} {self.unit}",
             *(f"evidence   {line}" for line in self.evidence),
-            *(f"the tool   {refusal.told(v)}" for refusal in self.refusals),
+            *(f"the tool   {refusal.text(v)}" for refusal in self.refusals),
         ]
         wrapped = (
             textwrap.fill(line, 110, initial_indent="  ", subsequent_indent=13 * " ") for line in lines
@@ -104,7 +106,7 @@ def part(recording: Recording, samples: slice) -> Recording:
     )
 
 
-def believed_law(coefficient: float, exponent: float) -> TireModel:
+def baseline_law(coefficient: float, exponent: float) -> TireModel:
     """A law F = A x^B with A [N/cm^B] whose tested range is not known."""
     return TireModel(PowerLaw(coefficient, exponent), tested_range=None)
 
@@ -114,16 +116,16 @@ def rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def errors(verdict: Verdict, tire: TireModel, whole: Recording, unseen: slice) -> tuple[float, float]:
-    """RMSE [N] of the believed and of the corrected tire on some samples of a recording, simulated from its start."""
-    before, after = (rms((whole.force - simulate(t, whole))[unseen]) for t in (tire, verdict.tire))
+def errors(verdict: Verdict, tire: TireModel, whole: Recording, held_out: slice) -> tuple[float, float]:
+    """RMSE [N] of the baseline and of the corrected tire on some samples of a recording, simulated from its start."""
+    before, after = (rms((whole.force - simulate(t, whole))[held_out]) for t in (tire, verdict.tire))
     return before, after
 
 
 def brain(folder: Path) -> Finding:
     """Approach, hold and the first half of the withdrawal fitted; the rest of the withdrawal is not."""
     found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
-    r, tire = found.recording, believed_law(found.coefficient, 1.5)
+    r, tire = found.recording, baseline_law(found.coefficient, 1.5)
     fitted = (found.turned + len(r)) // 2
     verdict = diagnose([part(r, slice(0, fitted))], tire)
     before, after = errors(verdict, tire, r, slice(fitted, None))
@@ -145,7 +147,7 @@ def gel(folder: Path) -> Finding:
     """One curve fitted, another of the same day and cantilever not."""
     first = indentation(folder / "force-save-2021.06.30-13.48.08.425.txt")
     other = indentation(folder / "example1_creep.txt")
-    tire = believed_law(first.coefficient, 1.5)
+    tire = baseline_law(first.coefficient, 1.5)
     verdict = diagnose([first.recording], tire)
     before, after = errors(verdict, tire, other.recording, slice(None))
     return Finding(
@@ -180,7 +182,7 @@ def indenter(folder: Path) -> Finding:
     corrected = power_law_fit(own - own[0], force[loading])
     a, b, zero = raw
     x = (depth[loading] - depth[start] - zero) * PER_NANOMETRE
-    tire = believed_law(a * PER_MICRONEWTON / (100.0 * PER_NANOMETRE) ** b, b)
+    tire = baseline_law(a * PER_MICRONEWTON / (100.0 * PER_NANOMETRE) ** b, b)
     r = recorded("loading", time[loading], x, force[loading] * PER_MICRONEWTON)
     verdict = diagnose([part(r, slice(0, None, 2))], tire)
     before, after = errors(verdict, tire, r, slice(1, None, 2))
@@ -211,20 +213,20 @@ DAMPER_SPRING = 1e5
 """Stiffness laid beside the damper [N/m]: 2.5 kN at its full stroke, as a tire has."""
 
 
-def damper(folder: Path, name: str, *, preload_believed: bool) -> Finding:
+def damper(folder: Path, name: str, *, preload_in_baseline: bool) -> Finding:
     """The first half of the strokes fitted, the second half not.
 
-    preload_believed: the law holds the straight line through the first half; else nothing but our own spring
+    preload_in_baseline: the law holds the straight line through the first half; else nothing but our own spring
     """
     columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
     units = {"time": "s", "deflection": "mm", "force": "N"}
     own = read_recording(folder / f"{name}.mat", columns=columns, units=units, radius="flat")
     half = len(own) // 2
     x = own.deflection - own.deflection.min() + 1e-4  # in contact throughout
-    slope, preload = np.polyfit(x[:half], own.force[:half], 1).tolist() if preload_believed else (0.0, 0.0)
+    slope, preload = np.polyfit(x[:half], own.force[:half], 1).tolist() if preload_in_baseline else (0.0, 0.0)
     stiffness = DAMPER_SPRING + slope
     r = recorded(name, own.time, x + preload / stiffness, own.force + DAMPER_SPRING * x)
-    tire = believed_law(stiffness / 100.0, 1.0)
+    tire = baseline_law(stiffness / 100.0, 1.0)
     verdict = diagnose([part(r, slice(0, half))], tire)
     before, after = errors(verdict, tire, r, slice(half, None))
     still = int(np.flatnonzero(np.abs(np.diff(own.deflection)) > 1e-6)[0])
@@ -232,7 +234,7 @@ def damper(folder: Path, name: str, *, preload_believed: bool) -> Finding:
     return Finding(
         f"Magnetorheological damper ({name})",
         f"a spring of {slope:.0f} N/m with a preload of {preload:.0f} N"
-        if preload_believed
+        if preload_in_baseline
         else "no force at all",
         verdict,
         "the second half of the strokes",
@@ -249,7 +251,7 @@ def damper(folder: Path, name: str, *, preload_believed: bool) -> Finding:
                 (name,), "with a linear law the zero of the force and that of the deflection are one preload"
             )
             for name in ("force_offset", "deflection_offset")
-            if not preload_believed
+            if not preload_in_baseline
         ),
     )
 
@@ -259,7 +261,7 @@ PISTON_LEVER = 0.02
 
 
 def piston(folder: Path, bar: int) -> Finding:
-    """The first half of the strokes fitted, the second half not; the mean force is believed, friction is left out."""
+    """The first half of the strokes fitted, the second half not; the mean force is the baseline, friction is left out."""
     channels = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
     units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
 
@@ -273,7 +275,7 @@ def piston(folder: Path, bar: int) -> Finding:
     spring = mean / PISTON_LEVER
     x = own.deflection - own.deflection.min()
     r = recorded(f"O-ring_{bar}bar", own.time, x + PISTON_LEVER, own.force + spring * x)
-    tire = believed_law(spring / 100.0, 1.0)
+    tire = baseline_law(spring / 100.0, 1.0)
     verdict = diagnose([part(r, slice(0, half))], tire)
     before, after = errors(verdict, tire, r, slice(half, None))
     alone, together = slope_per_bar([own]), slope_per_bar(list(files.values()))
@@ -341,8 +343,8 @@ def findings(folder: Path) -> Iterator[Finding]:
     )
     cases: list[Callable[[], Finding]] = [lambda: brain(afm), lambda: gel(afm), lambda: indenter(indent)]
     cases += [
-        lambda: damper(mr, "ensaio1", preload_believed=False),
-        lambda: damper(mr, "ensaio4a", preload_believed=True),
+        lambda: damper(mr, "ensaio1", preload_in_baseline=False),
+        lambda: damper(mr, "ensaio4a", preload_in_baseline=True),
     ]
     cases += [lambda: piston(air, 1), lambda: piston(air, 7)]
     return (case() for case in cases)
@@ -353,12 +355,12 @@ def main() -> int:
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE.parent / "shared" / "recordings" / "real"
     if not folder.is_dir():
         print(
-            f"{folder}: there is no such folder; get the recordings as told at the top of this file",
+            f"{folder}: there is no such folder; get the recordings as described at the top of this file",
             file=sys.stderr,
         )
         return 2
     for finding in findings(folder):
-        print(finding.told(), end="\n\n", flush=True)
+        print(finding.text(), end="\n\n", flush=True)
     return 0
 
 

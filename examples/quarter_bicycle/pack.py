@@ -58,7 +58,7 @@ CONNECTIONS = (
 
 
 def pack_bicycle(ride: RideOnGround, folder: Path, *, step: float) -> Path:
-    """Write `folder`/QuarterBicycle.fmu for `ride`, whose masters step by `step` [s] unless told otherwise."""
+    """Write `folder`/QuarterBicycle.fmu for `ride`, whose masters step by `step` [s] unless set otherwise."""
     with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
         members = _packed(_ride_json(ride, step), Path(name))
         binary = Path(name) / "loader.so"
@@ -90,14 +90,14 @@ def pack_system(
 
     look_ahead [s]: None takes one and a half steps, for masters that run the two FMUs side by side
     """
-    told_ahead = lag(step, late=True) if look_ahead is None else look_ahead
+    ahead = lag(step, late=True) if look_ahead is None else look_ahead
     with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
         fmus = (
             pack_bicycle(ride, Path(name), step=step),
             build_fmu(tire, Path(name)).path,
         )
         members = {f"resources/{fmu.name}": fmu.read_bytes() for fmu in fmus}
-    members["SystemStructure.ssd"] = _text(structure(ride, step, told_ahead))
+    members["SystemStructure.ssd"] = _text(structure(ride, step, ahead))
     return _write(members, folder / SYSTEM)
 
 

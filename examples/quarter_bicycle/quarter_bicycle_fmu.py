@@ -48,7 +48,7 @@ OUTPUTS: dict[str, tuple[str, str]] = {
 """Unit and meaning of each output."""
 
 PARAMETERS: dict[str, tuple[str, float, str]] = {
-    "look_ahead": ("s", 0.0, "By how much deflection and surface_radius are told ahead"),
+    "look_ahead": ("s", 0.0, "By how much deflection and surface_radius are with look-ahead"),
     "speed": ("m/s", 0.0, "Forward speed"),
     "sprung_mass": ("kg", 0.1, "Rider and frame on the front wheel"),
     "unsprung_mass": ("kg", 0.1, "Wheel and lower fork"),
@@ -82,7 +82,7 @@ class QuarterBicycleFmu(Fmi2Slave):
         self._state: State = tuple(ride["state"])
         self._start_time = self._elapsed = 0.0
         self._radial_force = self._upward = 0.0
-        self._told: Meeting | None = None
+        self._sent: Meeting | None = None
 
         self.register_variable(
             Real(
@@ -120,7 +120,7 @@ class QuarterBicycleFmu(Fmi2Slave):
 
     def _set(self, name: str, value: float) -> None:
         self._values[name] = value
-        self._told = None
+        self._sent = None
 
     def _bicycle(self) -> QuarterBicycle:
         v = self._values
@@ -136,14 +136,14 @@ class QuarterBicycleFmu(Fmi2Slave):
     def _output(self, name: str) -> float:
         mass_height, mass_velocity, hub_height, hub_velocity = self._state
         if name in ("deflection", "surface_radius"):
-            if self._told is None:
+            if self._sent is None:
                 try:
-                    self._told = self._meet(self._values["look_ahead"])
+                    self._sent = self._meet(self._values["look_ahead"])
                 except OffTheGroundError:
                     return math.nan  # the step that needs it says why
             if name == "deflection":
-                return self._told.deflection
-            return min(max(self._told.surface_radius, -FLAT), FLAT)
+                return self._sent.deflection
+            return min(max(self._sent.surface_radius, -FLAT), FLAT)
         return {
             "position": self._start + self._values["speed"] * self._elapsed,
             "hub_height": hub_height,
@@ -183,7 +183,7 @@ class QuarterBicycleFmu(Fmi2Slave):
             return False
         self._upward = upward
         self._elapsed = current_time + step_size - self._start_time
-        self._told = None
+        self._sent = None
         return True
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:

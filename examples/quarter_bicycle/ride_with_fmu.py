@@ -26,9 +26,9 @@ from tirelab.fmu.build import build_fmu
 
 COUPLINGS: dict[str, tuple[bool, float | None]] = {
     "one after the other": (False, 0.0),
-    "one after the other, told ahead": (False, None),
+    "one after the other, with look-ahead": (False, None),
     "side by side": (True, 0.0),
-    "side by side, told ahead": (True, None),
+    "side by side, with look-ahead": (True, None),
 }
 """How the two may be coupled: whether the answer acts late, and the look-ahead (None: the coupling's lag)."""
 

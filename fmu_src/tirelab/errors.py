@@ -2,7 +2,7 @@
 
 
 class TirelabError(ValueError):
-    """Bad input, told in one sentence with the place and the next step."""
+    """Bad input, explained in one sentence with the place and the next step."""
 
 
 def missing_library(purpose: str, library: str, package: str) -> str:

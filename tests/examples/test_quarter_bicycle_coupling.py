@@ -262,7 +262,7 @@ def test_energy_of_a_stepped_ride(example: dict[str, ModuleType], bumpy: Any, wa
 def test_tire_fmu_in_the_loop(example: dict[str, ModuleType], bumpy: Any, tmp_path: Path) -> None:
     fmu = importlib.import_module("tirelab.fmu.build").build_fmu(TireModel(), tmp_path).path
     with example["fmu_tire"].fmu_tire(fmu) as tire:
-        found = example["ride_with_fmu"].stepped(bumpy, tire, 1e-3, "one after the other, told ahead")
+        found = example["ride_with_fmu"].stepped(bumpy, tire, 1e-3, "one after the other, with look-ahead")
     np.testing.assert_allclose(found.hub_height, _run(example, bumpy, step=1e-3).hub_height, atol=1e-12)
     with example["fmu_tire"].fmu_tire(fmu) as tire:
         tire(0.0, 0.01, math.inf)

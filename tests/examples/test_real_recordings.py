@@ -127,7 +127,7 @@ def test_the_indenters_own_compliance_is_not_claimed(real_recordings: ModuleType
 
 @pytest.mark.slow
 def test_the_damper_has_preload_and_a_loop(real_recordings: ModuleType, data: Path) -> None:
-    found = real_recordings.damper(data / FOLDERS[1], "ensaio1", preload_believed=False)
+    found = real_recordings.damper(data / FOLDERS[1], "ensaio1", preload_in_baseline=False)
     named = set(found.verdict.names)
     assert named & {"force_offset", "deflection_offset"}
     assert named & {"rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "unknown"}
@@ -142,5 +142,5 @@ def test_the_pistons_friction_is_not_claimed_from_one_speed(
     found = real_recordings.piston(data / FOLDERS[3], bar)
     assert found.verdict.names
     assert found.after < 0.5 * found.before
-    assert not any("CLAIMS" in refusal.told(found.verdict) for refusal in found.refusals)
+    assert not any("CLAIMS" in refusal.text(found.verdict) for refusal in found.refusals)
     assert any("49.9 N/bar over all files" in line for line in found.evidence)
