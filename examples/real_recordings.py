@@ -19,8 +19,8 @@ pneumatic_cylinder_pressure_friction/
 None of them is a tire. A sphere pressed into tissue follows the tire's own law with B = 1.5; the indenter's does with
 B = 2. Their lengths and forces are multiplied up to those of a tire, time is left as it is, and every figure is printed
 in the unit of its recording. The damper and the piston have next to no stiffness, and the tool looks for what departs
-from a law that has one: a spring K of our own is laid beside them, K x added to the force recorded and K to the law
-the baseline. That is exact and hides nothing.
+from a law that has one: a spring K of our own is laid beside them: K x is added to the recorded force and K to the
+law of the baseline. That is exact and hides nothing.
 """
 
 from __future__ import annotations
@@ -261,7 +261,7 @@ PISTON_LEVER = 0.02
 
 
 def piston(folder: Path, bar: int) -> Finding:
-    """The first half of the strokes fitted, the second half not; the mean force is the baseline, friction is left out."""
+    """The first half of the strokes is fitted; the baseline is the mean force, without friction."""
     channels = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
     units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
 

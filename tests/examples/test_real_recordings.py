@@ -121,7 +121,7 @@ def test_the_indenters_own_compliance_is_not_claimed(real_recordings: ModuleType
     found = real_recordings.indenter(data / FOLDERS[2])
     assert "series_compliance" not in found.verdict.names
     # both numbers were measured on this file by its notes: 1.22 as it is, 1.88 without the machine
-    assert "B = 1.2" in found.believed
+    assert "B = 1.2" in found.baseline
     assert any("1.9" in line for line in found.evidence)
 
 
