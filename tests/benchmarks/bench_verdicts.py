@@ -5,8 +5,9 @@
 DIR gets one folder for each case, with all that `tirelab diagnose` writes, and `times.json`: wall and CPU seconds of
 the whole command. The cases are the shared concealed folders (with their held-out file), the press sets (each with the
 tire that `tirelab identify` makes of it), and blind trials of one seed: the rig draws them into DIR, with --as those of
-KEPT are read. With --as every diagnosis.json is compared with that of KEPT, and the CPU times too. The exit
-status is 1 where one differs.
+KEPT are read. With --as every diagnosis.json is compared with that of KEPT, and the CPU times too: "same" means the
+same bytes, "same but for sentences" that only sentences and labels for a reader differ. The exit status is 1 where
+more differs.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 SHARED = Path(os.environ.get("TIRELAB_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
 
@@ -53,6 +55,23 @@ def cases(program: Path, out: Path, trials: Path) -> Iterator[tuple[str, list[st
             f"trial_{folder.name}",
             [*map(str, files), "--tire", str(trials / "tires" / f"{folder.name}.json")],
         )
+
+
+def without_sentences(content: dict[str, Any]) -> dict[str, Any]:
+    """Return a diagnosis without what is written for a reader: summary, sentence of the test, labels of places."""
+    verdict = {k: v for k, v in content["verdict"].items() if k != "summary"}
+    if verdict["separating_test"] is not None:
+        verdict["separating_test"] = {k: v for k, v in verdict["separating_test"].items() if k != "sentence"}
+    where = [{k: v for k, v in place.items() if k != "label"} for place in content["where"]]
+    return {**content, "verdict": verdict, "where": where}
+
+
+def compared(before: bytes, after: bytes) -> str:
+    """Return "same", "same but for sentences" or "DIFFERS" for the contents of two diagnosis.json."""
+    if before == after:
+        return "same"
+    old, new = (json.dumps(without_sentences(json.loads(content))) for content in (before, after))
+    return "same but for sentences" if old == new else "DIFFERS"
 
 
 def run(words: list[str]) -> tuple[float, float]:
@@ -105,8 +124,8 @@ def main() -> int:
         same = ""
         if given.kept is not None:
             before, after = ((d / name / "diagnosis.json").read_bytes() for d in (given.kept, given.out))
-            same = "same" if before == after else "DIFFERS"
-            if before != after:
+            same = compared(before, after)
+            if same == "DIFFERS":
                 differ.append(name)
         print(f"{name:28s} {times[name][0]:7.1f} s wall {times[name][1]:7.1f} s CPU {same}", flush=True)
     if given.kept is not None:

@@ -1,4 +1,4 @@
-"""tirelab diagnose: which physics a simulation left out of recordings, and the tire with it."""
+"""tirelab diagnose: which physics a simulation left out of recordings, and the corrected tire."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ COLUMNS = 100
 
 @click.command("diagnose", cls=SentenceCommand)
 @click.argument("recordings", type=FILE, nargs=-1, required=True, metavar="RECORDING...")
-@click.option("--tire", type=FILE, help="The baseline: a tire file.  [default: the article's tire]")
+@click.option("--tire", type=FILE, help="Tire file of the baseline.  [default: the article's tire]")
 @click.option(
     "--held-out",
     type=FILE,
     multiple=True,
     metavar="RECORDING",
-    help="A recording kept from the fit, on which the correction is judged; may be given again.",
+    help="Recording that is not fitted, only used to check the correction; may be repeated.",
 )
 @out("diagnosis")
 @reading
-@click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json alone.")
+@click.option("--json", "as_json", is_flag=True, help="Print only diagnosis.json.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
     "--each",
     is_flag=True,
-    help="Batch diagnosis: one verdict per recording or folder, and a summary table; goes on where it stopped.",
+    help="Batch diagnosis: one verdict per recording or folder, and a summary table; continues where it stopped.",
 )
-@click.option("--jobs", type=int, help="With --each: processes to work in.  [default: one per core]")
-@click.option("--dask", metavar="ADDRESS", help="With --each: scheduler of a Dask cluster to work on.")
+@click.option("--jobs", type=int, help="With --each: number of processes.  [default: one per core]")
+@click.option("--dask", metavar="ADDRESS", help="With --each: address of the scheduler of a Dask cluster.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
-    """Say which physics a tire lacks to follow RECORDING..., files or folders of them, and correct it."""
+    """Find the physics that a tire model lacks to reproduce RECORDING... (files or folders), and correct it."""
     check_files((*recordings, *options["held_out"]))
     if each:
         _batch(recordings, options)
@@ -55,7 +55,9 @@ def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
 
 def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if options["held_out"] or options["as_json"]:
-        raise TirelabError("--each goes with neither --held-out nor --json; read its summary.csv instead")
+        raise TirelabError(
+            "--each cannot be combined with --held-out or --json; read its summary.csv instead"
+        )
     from rich.console import Console
 
     from ..batch.batch import Batch, diagnose_batch
@@ -72,7 +74,7 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
 
 def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if options["jobs"] is not None or options["dask"] is not None:
-        raise TirelabError("--jobs and --dask say where to work with --each; add it, or leave them out")
+        raise TirelabError("--jobs and --dask need --each; add --each, or remove them")
     from ..diagnosis.diagnosis_run import run_diagnosis
     from ..report.terminal import printable
 
@@ -99,7 +101,7 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
 
 @contextmanager
 def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Give a function that shows a stage on standard error: in place of the last one in a terminal, else as a line."""
+    """Give a function that shows a stage on standard error: a live line in a terminal, else one plain line each."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -134,6 +136,6 @@ def _print(run: DiagnosisRun, out: Path) -> None:
 
 
 def _echo(line: str) -> None:
-    """Print a line, with question marks for letters that the output's encoding lacks."""
+    """Print a line, with a question mark for each letter that the encoding of the output lacks."""
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     click.echo(line.encode(encoding, errors="replace").decode(encoding))

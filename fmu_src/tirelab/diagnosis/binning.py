@@ -1,4 +1,4 @@
-"""Everything that recordings know of their samples, cut into bins: time, deflection, rate, surface, cycle and more."""
+"""The coordinates of the samples, cut into bins: time, deflection, rate, surface, cycle and more."""
 
 from __future__ import annotations
 

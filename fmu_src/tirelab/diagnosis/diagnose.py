@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from radialtire import TireModel
@@ -22,7 +23,7 @@ from .summary import summarise
 from .verdict import Fit, Verdict
 
 MOST_TESTED = 3
-"""Alternatives, likeliest first, that a test is looked for to tell from the verdict: each costs a fit."""
+"""Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
 
 FASTEST = 0.1
 """Rate [m/s] that every rig is taken to reach where its limits are not given; else twice the fastest recorded one."""
@@ -40,10 +41,10 @@ def diagnose(
 ) -> Verdict:
     """Return what the `baseline` tire leaves out of one recording or several.
 
-    held_out: recordings on which the correction is only judged (without any, a part of `recordings` that the fit is
-    repeated without, see `held_out.split`); catalogue: names of the effects that may be found
-    (CATALOGUE_NAMES; without one of them what it does is something unknown); limits: of the rig that would drive a
-    further test; progress: called with a sentence now and then
+    held_out: recordings that only check the correction (without any, the fit is repeated without a part of
+    `recordings`, see `held_out.split`); catalogue: names of the effects that may be found (what an effect outside it
+    does is something unknown); limits: of the rig that would drive the next test; progress: called with a sentence for
+    each stage
 
     Raises PoorRecording where the recordings are too short or too poor, ValueError for an unknown name in `catalogue`.
     """
@@ -53,7 +54,7 @@ def diagnose(
     check_recordings(fitted)
     dataset = dataset_of(fitted, baseline)
     explanation = explain_misfit(fitted, dataset, baseline, catalogue, report)
-    report("judging the correction on held-out data")
+    report("validating the correction on held-out data")
     before = [r.force - simulate(baseline, r) for r in fitted]
     validation = _validate(fitted, kept, dataset, before, baseline, explanation)
     remainder = residual_models(explanation.unexplained_by, dataset, explanation.residuals, validation)
@@ -77,11 +78,25 @@ def diagnose(
         ),
         where=places,
         fit=fit,
-        tire=explanation.model.tire,
+        tire=_named(explanation.model.tire, baseline, fitted),
         evidence=explanation.evidence,
         test=test if test is not None and test.sufficient else None,
         compared=explanation.compared,
         evaluations=explanation.evaluations,
+        recordings=tuple(fitted),
+        held_out=tuple(kept),
+        baseline=baseline,
+    )
+
+
+def _named(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:
+    """Return the corrected tire under a name of its own, unless it is the baseline."""
+    if corrected.law == baseline.law and corrected.effects == baseline.effects:
+        return corrected
+    return replace(
+        corrected,
+        name=f"{baseline.name}, corrected",
+        source=f"{baseline.source}; corrected by tirelab diagnose with {', '.join(r.name for r in fitted)}",
     )
 
 
@@ -105,7 +120,7 @@ def _validate(
     baseline: TireModel,
     explanation: Explanation,
 ) -> HeldOut:
-    """Return what the correction does on data that it was not fitted to: on what was held out, else on a part."""
+    """Return the errors on held-out data: the held-out recordings, else a part of the fitted ones."""
     if held_out:
         return given(held_out, recordings, dataset, before, baseline, explanation)
     return split(recordings, dataset, before, explanation)
@@ -132,10 +147,10 @@ def _recommend(
     limits: Limits | None,
     progress: Callable[[str], None],
 ) -> DiscriminatingTest | None:
-    """Return the test that tells the first alternative that one tells; else the one that comes nearest to it."""
+    """Return the test that separates the likeliest alternative that a test can; else the one that comes nearest."""
     if not explanation.alternatives:
         return None
-    progress("looking for the test that tells the alternatives apart")
+    progress("searching for a test that separates the alternatives")
     fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in dataset.experiments)
     rig = limits or Limits(deepest=dataset.max_deflection, fastest=max(FASTEST, fastest))
     nearest: DiscriminatingTest | None = None

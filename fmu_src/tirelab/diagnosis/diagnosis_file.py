@@ -1,4 +1,4 @@
-"""What a diagnosis states: its diagnosis.json, read back and checked."""
+"""A diagnosis.json read back and checked."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class DiagnosisFileError(TirelabError):
 @dataclass(frozen=True)
 class StatedPlace:
     """One place of the misfit: coordinate, span in `unit` (None: no end), share of the squared error, recording, and
-    what the place is called where numbers do not say it."""
+    the name of the place where numbers do not say it."""
 
     by: str
     begin: float | str | None
@@ -43,8 +43,8 @@ class Stated:
     """A verdict as its file states it.
 
     names: the effects, with "unknown" where something stays unexplained; {"none"} where nothing is missing
-    alternatives: the rivals, each a full set; confidence: 0 to 1
-    separating_test: file of the test that would tell the rivals apart, or None
+    alternatives: each a full set of names; confidence: 0 to 1
+    separating_test: file of the test that separates the alternatives, or None
     fit: noise, before, after, held_out_before, held_out_after [N], None where not known
     tire, corrected_fmu, report: the files, None where there is none
     """

@@ -9,7 +9,7 @@ import json
 import os
 import shlex
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +24,14 @@ from ..fmu.replay import replay
 from ..recordings.files import recording_files
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
-from ..report import write_report
+from ..report.page import write_report
 from ..simulation.simulate import simulate
 from .diagnose import diagnose
-from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, beside, contract_of
+from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
 
 AGREEMENT = 1e-9
-"""The FMU and the simulation differ by less than this part of the largest force: they sum the same in another order."""
+"""The FMU and the simulation may differ by this part of the largest force: they add in another order."""
 
 FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -42,7 +42,7 @@ Diagnoser = Callable[[Sequence[Path], "Path | None", Path], None]
 
 @dataclass(frozen=True)
 class DiagnosisRun:
-    """A diagnosis that was written: the verdict, the content of diagnosis.json, and what the readers and the FMU noted.
+    """A diagnosis that was written: the verdict, the content of diagnosis.json, notes and warnings.
 
     notes: of the files that were skipped, and of the recordings as they were read; warnings: for the top of the report
     """
@@ -64,8 +64,8 @@ def run_diagnosis(
 ) -> DiagnosisRun:
     """Diagnose files or folders of recordings and write everything into `out`.
 
-    tire: file of the baseline tire, None for the article's; held_out: recordings kept from the fit; reading: how all of
-    them are read; progress: called with a sentence for each stage
+    tire: file of the baseline tire, None for the article's; held_out: recordings that are not fitted; reading: how
+    the files are read; progress: called with a sentence for each stage
 
     Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
     """
@@ -79,18 +79,15 @@ def run_diagnosis(
     kept = [_read(file, reading, report) for file in kept_files]
     verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
     report("building the corrected FMU")
-    corrected = _named(verdict, baseline, fitted)
-    fmu = build_fmu(corrected, out).path
-    on_fitted, more = _replayed(fmu, fitted, baseline, corrected, report)
-    on_kept, warnings = _replayed(fmu, kept, baseline, corrected, report)
+    fmu = build_fmu(verdict.tire, out).path
+    on_fitted, more = _replayed(fmu, fitted, baseline, verdict.tire, report)
+    on_kept, warnings = _replayed(fmu, kept, baseline, verdict.tire, report)
     report("writing the report")
-    content = contract_of(verdict, on_fitted, on_kept)
-    _write(out, content, corrected, verdict)
+    content = content_of(verdict.to_dict(), on_fitted, on_kept)
+    _write(out, content, verdict)
     page = {
         **content,
-        **beside(verdict),
-        "tire_before": baseline.name,
-        "tire_after": corrected.name,
+        **verdict.page_content(),
         "warnings": [*more, *warnings],
         "command": command_line(recordings, out, tire, held_out, reading),
     }
@@ -139,7 +136,9 @@ def _check_once(files: Sequence[Path]) -> None:
     seen = set()
     for file in files:
         if file.resolve() in seen:
-            raise TirelabError(f"{file} is given twice; a recording is either fitted or held out, once")
+            raise TirelabError(
+                f"{file} is given twice; give each recording once, either to fit or to hold out"
+            )
         seen.add(file.resolve())
 
 
@@ -149,18 +148,6 @@ def _check_folder(out: Path) -> None:
     if not there.is_dir() or not os.access(there, os.W_OK):
         why = "is not writable" if there.is_dir() else "is a file"
         raise TirelabError(f"{out} cannot be written, {there} {why}; name another folder with --out")
-
-
-def _named(verdict: Verdict, baseline: TireModel, fitted: Sequence[Recording]) -> TireModel:
-    """Return the corrected tire under a name of its own, unless it is the baseline."""
-    if verdict.tire.law == baseline.law and verdict.tire.effects == baseline.effects:
-        return verdict.tire
-    names = ", ".join(r.name for r in fitted)
-    return replace(
-        verdict.tire,
-        name=f"{baseline.name}, corrected",
-        source=f"{baseline.source}; corrected by tirelab diagnose with {names}",
-    )
 
 
 def _replayed(
@@ -176,24 +163,25 @@ def _replayed(
         progress(f"replaying the corrected FMU on {recording.name}")
         forces.append(replay(fmu, recording))
         warnings += _disagreement(recording, forces[-1], simulate(corrected, recording))
-    return Replayed(recordings, [simulate(baseline, r) for r in recordings], forces), warnings
+    before = tuple(simulate(baseline, r) for r in recordings)
+    return Replayed(tuple(recordings), before, tuple(forces)), warnings
 
 
 def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatArray) -> list[str]:
-    """Return the sentence to be said where the FMU does not do what the simulation did."""
+    """Return a warning where the FMU and the simulation disagree."""
     difference = float(np.max(np.abs(replayed - simulated)))
     if difference <= AGREEMENT * float(np.max(np.abs(simulated))) + 1e-12:
         return []
     return [
-        f"on {recording.name} the corrected FMU differs by up to {difference:.3g} N from the simulation that was "
-        "fitted; the stated errors are those of the FMU"
+        f"on {recording.name} the corrected FMU differs by up to {difference:.3g} N from the fitted "
+        "simulation; the stated errors are those of the FMU"
     ]
 
 
-def _write(out: Path, content: Mapping[str, Any], corrected: TireModel, verdict: Verdict) -> None:
+def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:
     """Write all but the FMU and the report; a test of an earlier diagnosis is removed."""
     try:
-        write_tire(corrected, out / TIRE)
+        write_tire(verdict.tire, out / TIRE)
         (out / DIAGNOSIS).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
         (out / TEST).unlink(missing_ok=True)
         if verdict.test is not None:

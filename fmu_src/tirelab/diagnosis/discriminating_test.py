@@ -50,7 +50,7 @@ class DiscriminatingTest:
     """The test on which two sets of effects differ most.
 
     between: the two sets; separation: expected distance in units of the noise, over all samples together; typical: root
-    mean square distance of one sample in units of the noise; sentence: what to do, or that nothing would tell
+    mean square distance of one sample in units of the noise; sentence: what to do, or that no motion separates them
     """
 
     test: Test
@@ -61,10 +61,10 @@ class DiscriminatingTest:
 
     @property
     def sufficient(self) -> bool:
-        """Whether the test would tell the two sets apart."""
+        """Whether the test separates the two sets."""
         return self.separation >= DECISIVE
 
-    def to_contract(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, object]:
         """Return the entry `separating_test` of diagnosis.json."""
         t = self.test
         return {
@@ -196,18 +196,23 @@ def discriminate(
 def _sentence(
     test: Test, between: tuple[tuple[str, ...], tuple[str, ...]], separation: float, typical: float
 ) -> str:
-    radius, path = float(test.surface_radius[0]), test.deflection
-    place = "flat ground" if not np.isfinite(radius) else f"a surface of radius {100.0 * radius:.4g} cm"
-    first, second = (set_title(names) for names in between)
+    place, path = _surface(float(test.surface_radius[0])), test.deflection
+    first, second = (set_title(names) if names else "the baseline tire" for names in between)
     if separation < DECISIVE:
         return (
-            f"No motion within the rig's limits would tell {first} from {second}: the best one tried, {test.name} on "
-            f"{place}, sets them {separation:.2g} times the noise apart over all its samples, and {DECISIVE:g} are "
+            f"No motion within the rig's limits separates {first} from {second}. The best motion tried, {test.name} on "
+            f"{place}, makes them differ by {separation:.2g} times the noise over all samples; {DECISIVE:g} times are "
             "needed."
         )
     rate = 1e3 * float(np.abs(np.diff(path) / np.diff(test.time)).max())
     return (
-        f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, up to {rate:.0f} mm/s for "
-        f"{test.time[-1] - test.time[0]:.0f} s: {first} then differs from {second} by {typical:.2g} times the noise "
-        f"in a typical sample, {separation:.0f} times over all of them."
+        f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, at up to {rate:.0f} mm/s, for "
+        f"{test.time[-1] - test.time[0]:.0f} s. Then {first} and {second} differ by {typical:.2g} times the noise "
+        f"in a typical sample, and by {separation:.0f} times the noise over all samples."
     )
+
+
+def _surface(radius: float) -> str:
+    if not np.isfinite(radius):
+        return "flat ground"
+    return f"a {'convex' if radius > 0.0 else 'concave'} surface of radius {100.0 * abs(radius):.4g} cm"

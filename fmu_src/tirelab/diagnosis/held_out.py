@@ -1,8 +1,9 @@
-"""What a correction does on data that it was not fitted to.
+"""The errors of a correction on held-out data.
 
-Recordings kept from the fit are taken where they were given. Where none were, the accepted effects are fitted once more
-without one part: the last recording whose surfaces the others drive too, or the end of each recording, a block of time
-simulated from its true history. Which effects were accepted was seen on the whole; their parameters were not.
+Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
+part: the last recording whose surfaces the others drive too, or the end of each recording, a block of time
+simulated from its true history. The effects were chosen on all of the data; the parameters were fitted without the
+held-out part.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ FITTED = 0.7
 
 @dataclass(frozen=True)
 class Part:
-    """The samples `chosen` of one recording, and what the baseline and the corrected tire leave of all of it [N].
+    """The samples `chosen` of one recording, and all residuals [N] of the baseline and of the corrected tire.
 
-    noise_free [N]: what the corrected tire leaves where it is given the noise-free deflection
+    noise_free [N]: residual of the corrected tire where it is given the noise-free deflection
     """
 
     experiment: Experiment
@@ -66,7 +67,7 @@ def rmse(parts: Sequence[FloatArray]) -> float:
 
 
 def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) -> FloatArray:
-    """Return what `tire` leaves of a recording [N] where it is given the smoothed motion in place of the readings."""
+    """Return the residual [N] of `tire` where it is given the smoothed motion in place of the readings."""
     smooth = smoothed_motion(recording, motion)
     return recording.force - simulate(tire, smooth, smooth)
 
@@ -79,7 +80,7 @@ def given(
     baseline: TireModel,
     explanation: Explanation,
 ) -> HeldOut:
-    """Return the errors on recordings that were kept from the fit; before [N]: residuals of the fitted ones."""
+    """Return the errors on the held-out recordings; before [N]: residuals of the fitted ones."""
     corrected = explanation.model.tire
     fitted = zip(dataset.experiments, recordings, before, explanation.residuals, strict=True)
     others = zip(dataset_of(held_out, baseline).experiments, held_out, strict=True)
@@ -124,7 +125,7 @@ def split(
 
 
 def _parts(recordings: Sequence[Recorded]) -> tuple[list[BoolArray], str]:
-    """Return which samples stay fitted, and what the others are called."""
+    """Return which samples stay fitted, and the name of the held-out part."""
     surfaces = [set(np.unique(r.surface_radius).tolist()) for r in recordings]
     for number in reversed(range(len(recordings))):
         others = set().union(*(s for i, s in enumerate(surfaces) if i != number))

@@ -1,17 +1,17 @@
-"""Where simulation and recording differ: the residual against everything that a recording knows.
+"""Where simulation and recording differ: the residual over every coordinate of a recording.
 
 Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording two
-kinds of span are looked for: where the squared error beyond the noise is denser than elsewhere, and where the mean
-residual is another than elsewhere. They are spans of largest sum (Kadane's, Bentley 1984), bounded where the residual
-says so and not by a grid. In time, cycles and history "elsewhere" means at the same deflections and directions of the
+kinds of span are searched: where the squared error beyond the noise is denser than elsewhere, and where the mean
+residual differs from elsewhere. They are spans of largest sum (Kadane's, Bentley 1984), bounded where the residual
+changes and not by a grid. In time, cycles and history "elsewhere" means at the same deflections and directions of the
 same recording, else every cycle's deep half would be a place.
 
 Places are ranked by concentration: their part of the excess error less their part of the samples, or the part of it
 that their own mean takes away, whichever is more.
 
-A span is told where noise alone would hardly show it anywhere: its squares, and the squares of its bins' means, are
-held against chi square with as many degrees of freedom as the noise has independent samples (a block as long as its
-correlation counts once), and the chance is multiplied by the number of spans that were looked at.
+A span is reported where noise alone would hardly show it anywhere: its squares, and the squares of its bins' means, are
+compared with chi square with as many degrees of freedom as the noise has independent samples (a block as long as its
+correlation counts once), and the chance is multiplied by the number of spans that were examined.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 
 DEPTHS = 12
-"""Spans of deflection which, loading and unloading apart, tell what error a sample has on average."""
+"""Spans of deflection, loading and unloading apart, in which samples are alike: they share a mean error."""
 
 DENSE = 1.0
 """Samples belong to a span where their excess is at least this part of the noise's variance: less would let a walk of
 noise alone carry an end away by more than a few samples that count as one."""
 
 LOCATED = 1e-3
-"""Chance, over all spans of all coordinates together, of telling any span where there is noise alone."""
+"""Chance, over all spans of all coordinates together, of reporting any span in noise alone."""
 
 FAINT = 0.35
 """Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
@@ -56,8 +56,8 @@ class Span:
     """One place of the misfit.
 
     by: coordinate; start, stop: its bounds in `unit` (direction: -1 unloading, +1 loading; cycle and recording: numbers
-    from 1; radius [m]: infinite is flat); label: what it is called where numbers do not say it; recording: the one
-    that is meant, where a time is told of one among several
+    from 1; radius [m]: infinite is flat); label: its name where numbers do not say it; recording: the one
+    whose time it is, where there are several
     share: part of the squared error beyond the noise, 0 to 1; samples: part of the samples, 0 to 1
     mean_residual [N]: recording less simulation; chance: that noise alone shows such a place anywhere, 0 to 1
     concentration: rank of the place, 0 to 1
@@ -75,7 +75,7 @@ class Span:
     chance: float
     concentration: float
 
-    def to_contract(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, object]:
         """Return the span as the entry of `where` in diagnosis.json."""
         entry: dict[str, object] = {
             "by": self.by,

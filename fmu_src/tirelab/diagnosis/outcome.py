@@ -1,4 +1,4 @@
-"""A verdict with the forces that belong to it -> the content of diagnosis.json, and what the report says besides."""
+"""The content of diagnosis.json with the errors of the FMU itself, and what the report shows besides it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..engine.findings import Alternative, Evidence
 from ..recordings.recording import Recording
 from ..report.titles import newtons
-from .verdict import ResidualModel, Verdict
+from .discriminating_test import DiscriminatingTest
+from .residual_model import ResidualModel
 
 FloatArray = NDArray[np.float64]
 
@@ -28,11 +30,11 @@ TIRE, FMU, DIAGNOSIS, REPORT, TEST = (
 
 @dataclass(frozen=True)
 class Replayed:
-    """Recordings with the forces [N] that the believed tire simulates and the corrected FMU gives; one array each."""
+    """Recordings with the forces [N] of the simulated baseline and of the replayed corrected FMU; one array each."""
 
-    recordings: Sequence[Recording]
-    before: Sequence[FloatArray]
-    after: Sequence[FloatArray]
+    recordings: tuple[Recording, ...]
+    before: tuple[FloatArray, ...]
+    after: tuple[FloatArray, ...]
 
     def rmse(self, forces: Sequence[FloatArray]) -> float | None:
         """Return the root mean square error [N] of `forces` over all recordings together; None without any."""
@@ -42,35 +44,36 @@ class Replayed:
         return float(np.sqrt(np.mean(np.concatenate(squares))))
 
 
-def contract_of(verdict: Verdict, fitted: Replayed, held_out: Replayed) -> dict[str, Any]:
-    """Return the content of diagnosis.json, schema 1, with the errors of the corrected FMU itself.
+def content_of(verdict: Mapping[str, Any], fitted: Replayed, held_out: Replayed) -> dict[str, Any]:
+    """Return the content of diagnosis.json, schema 1, with the errors of the corrected FMU and the names of the files.
 
-    The held-out errors are those of the recordings held out; without any, those of the part that the diagnosis left
-    out of a fit of its own (`held_out_by` says which). A number that is not known is null.
+    verdict: from `Verdict.to_dict`. The held-out errors are those of the held-out recordings; without any, those of the
+    part of the recordings that the diagnosis held out (`held_out_by` says which). A number that is not known is null.
     """
-    content: dict[str, Any] = dict(verdict.to_contract())
+    content = dict(verdict)
     content["fit"] = {
         **content["fit"],
         "before": fitted.rmse(fitted.before),
         "after": fitted.rmse(fitted.after),
     }
-    content["held_out_by"] = content["fit"].pop("held_out_by")
     if held_out.recordings:
         content["fit"] |= {
             "held_out_before": held_out.rmse(held_out.before),
             "held_out_after": held_out.rmse(held_out.after),
         }
-    told = dict(content["verdict"])
-    if told["separating_test"] is not None:
-        told["separating_test"] = {**told["separating_test"], "file": TEST}
-    content["verdict"] = told
-    content |= {"tire": TIRE, "corrected_fmu": FMU, "report": REPORT}
-    return dict(_finite(content))
+    if content["verdict"]["separating_test"] is not None:
+        test = {**content["verdict"]["separating_test"], "file": TEST}
+        content["verdict"] = {**content["verdict"], "separating_test": test}
+    return finite({**content, "tire": TIRE, "corrected_fmu": FMU, "report": REPORT})
 
 
-def beside(verdict: Verdict) -> dict[str, Any]:
-    """Return what `write_report` can take besides the contract (see there)."""
-    test = verdict.test
+def page_content(
+    evidence: Sequence[Evidence],
+    alternatives: Sequence[Alternative],
+    residual_models: Sequence[ResidualModel],
+    test: DiscriminatingTest | None,
+) -> dict[str, Any]:
+    """Return what `write_report` can show besides the content of diagnosis.json (see there)."""
     return {
         "evidence": [
             {
@@ -79,10 +82,10 @@ def beside(verdict: Verdict) -> dict[str, Any]:
                 "misfit": math.sqrt(max(e.chi_square, 0.0)),
                 "remark": _remark(number, e.log_evidence),
             }
-            for number, e in enumerate(verdict.evidence)
+            for number, e in enumerate(evidence)
         ],
-        "reasons": [r.reason for r in verdict.alternatives],
-        "correction": [_correction(c) for c in verdict.residual_models],
+        "reasons": [a.reason for a in alternatives],
+        "correction": [_regression(m) for m in residual_models],
         "waveform": None
         if test is None
         else {"time": test.test.time.tolist(), "deflection": test.test.deflection.tolist()},
@@ -92,20 +95,20 @@ def beside(verdict: Verdict) -> dict[str, Any]:
 def _remark(number: int, log_evidence: float) -> str:
     if number == 0:
         return "the verdict"
-    return "" if math.isfinite(log_evidence) else "a part too small, or of a sign it cannot have"
+    return "" if math.isfinite(log_evidence) else "refused: an effect is too small or has the wrong sign"
 
 
-def _correction(found: ResidualModel) -> dict[str, Any]:
+def _regression(found: ResidualModel) -> dict[str, Any]:
     if found.r2 > 0.0:
         repeats = (
-            f"It repeats: it explains {100.0 * found.r2:.0f} % of what is left on blocks of time not seen."
+            f"It repeats: it explains {100.0 * found.r2:.0f} % of the remainder on held-out blocks of time."
         )
     else:
-        repeats = "It does not repeat on blocks of time not seen: do not use it."
+        repeats = "It does not repeat on held-out blocks of time: do not use it."
     if math.isfinite(found.after):
-        repeats += f" With it the error is {newtons(found.after)}"
-        unseen = math.isfinite(found.held_out_after)
-        repeats += f", and {newtons(found.held_out_after)} on what was not fitted." if unseen else "."
+        repeats += f" With it the RMS error is {newtons(found.after)}"
+        held_out = math.isfinite(found.held_out_after)
+        repeats += f", and {newtons(found.held_out_after)} on held-out data." if held_out else "."
     return {
         "by": found.by,
         "unit": found.unit,
@@ -116,12 +119,16 @@ def _correction(found: ResidualModel) -> dict[str, Any]:
     }
 
 
-def _finite(value: Any) -> Any:
-    """Return plain Python values that JSON can carry: null for numbers that are none."""
+def finite(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `content` in plain Python values that JSON can hold: None for numbers that are not finite."""
+    return {str(k): _plain(v) for k, v in content.items()}
+
+
+def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {str(k): _finite(v) for k, v in value.items()}
+        return finite(value)
     if isinstance(value, (list, tuple)):
-        return [_finite(v) for v in value]
+        return [_plain(v) for v in value]
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):

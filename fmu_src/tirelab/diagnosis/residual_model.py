@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..preprocessing.dataset import Dataset, Experiment
 from ..preprocessing.kinematics import FloatArray
 from .held_out import HeldOut, rmse
-from .verdict import ResidualModel
 
 KNOTS = 120
 SAMPLES_PER_KNOT = 30
@@ -35,10 +35,38 @@ COORDINATES: dict[str, tuple[str, Coordinate]] = {
 """The coordinate over which each kind of residual is regressed; what is not here is regressed over time."""
 
 
+@dataclass(frozen=True)
+class ResidualModel:
+    """A regression of a residual that no effect explains: force [N] over one coordinate, and whether it repeats.
+
+    by: coordinate; at: its values in `unit`; force [N]; r2: cross-validated R^2 over blocks of time, negative where the
+    curve does not repeat
+    after, held_out_after: RMSE [N] of the corrected tire with the force added, on fitted and on held-out data
+    """
+
+    by: str
+    unit: str
+    at: FloatArray = field(repr=False)
+    force: FloatArray = field(repr=False)
+    r2: float = 0.0
+    after: float = float("nan")
+    held_out_after: float = float("nan")
+
+    def to_dict(self) -> dict[str, object]:
+        """Return an entry of `corrections` in diagnosis.json; the curve itself is in the report."""
+        return {
+            "by": self.by,
+            "unit": self.unit,
+            "repeats": self.r2,
+            "after": self.after,
+            "held_out_after": self.held_out_after,
+        }
+
+
 def residual_models(
     coordinates: Sequence[str], dataset: Dataset, residuals: Sequence[FloatArray], validation: HeldOut
 ) -> tuple[ResidualModel, ...]:
-    """Return a regression over each of `coordinates`, from what is left of each recording [N]."""
+    """Return a regression over each of `coordinates`, from the residual of each recording [N]."""
     return tuple(_regressed(by, dataset, residuals, validation) for by in coordinates)
 
 

@@ -1,45 +1,31 @@
-"""The verdict: the effects that are missing, how sure, the alternatives and why, and what stays unexplained."""
+"""The verdict: the effects that are missing, the confidence, the alternatives and why, and what stays unexplained."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from radialtire import TireModel
 
 from ..engine.findings import Alternative, Evidence, NamedEffect
+from ..errors import TirelabError
 from ..names import UNKNOWN
+from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
+from ..recordings.recording import Recording
+from ..report.titles import headline
+from ..simulation.simulate import simulate
 from .discriminating_test import DiscriminatingTest
 from .localization import Span
+from .outcome import finite, page_content
+from .residual_model import ResidualModel
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-@dataclass(frozen=True)
-class ResidualModel:
-    """A regression of a residual that no effect explains: force [N] over one coordinate, and whether it repeats.
-
-    by: coordinate; at: its values in `unit`; force [N]; r2: cross-validated R^2 over blocks of time, negative where the
-    curve does not repeat
-    after, held_out_after: RMSE [N] of the corrected tire with the force added, on fitted and on held-out data
-    """
-
-    by: str
-    unit: str
-    at: FloatArray = field(repr=False)
-    force: FloatArray = field(repr=False)
-    r2: float = 0.0
-    after: float = float("nan")
-    held_out_after: float = float("nan")
-
-    def to_contract(self) -> dict[str, object]:
-        """Return an entry of `corrections` in diagnosis.json; the curve itself is in the report."""
-        return {
-            "by": self.by,
-            "unit": self.unit,
-            "repeats": self.r2,
-            "after": _number(self.after),
-            "held_out_after": _number(self.held_out_after),
-        }
+    from ..report.loops import Case
 
 
 @dataclass(frozen=True)
@@ -64,11 +50,12 @@ class Verdict:
 
     effects: what is missing, empty where nothing is; confidence: 0 to 1; alternatives: other sets, likeliest first
     unexplained_by: coordinates on which something depends that no effect explains; residual_models: regressions of it
-    summary: sentences for a reader; where: places of the misfit before the correction, of what the corrected law leaves
-    of it where other effects are missing too; tire: the corrected one
-    evidence: all sets that were compared to the end; test: what would tell an alternative from the verdict, None where
-    no motion within the rig's limits does (the summary then says so)
+    summary: sentences for a reader; where: places of the misfit before the correction, or of what the refitted law
+    leaves of it where other effects are missing too; tire: the corrected one
+    evidence: all sets that were compared to the end; test: the one that separates an alternative from the verdict, None
+    where no motion within the rig's limits does (the summary then says so)
     compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
+    recordings, held_out: those that were fitted and those that were not; baseline: the tire that was corrected
     """
 
     effects: tuple[NamedEffect, ...]
@@ -84,6 +71,9 @@ class Verdict:
     test: DiscriminatingTest | None
     compared: int
     evaluations: int
+    recordings: tuple[Recorded, ...] = field(default=(), repr=False, compare=False)
+    held_out: tuple[Recorded, ...] = field(default=(), repr=False, compare=False)
+    baseline: TireModel = field(default=TireModel(), repr=False, compare=False)
 
     @property
     def unexplained(self) -> bool:
@@ -95,46 +85,137 @@ class Verdict:
         """Names of the effects, with "unknown" where something stays unexplained."""
         return (*(e.name for e in self.effects), *((UNKNOWN,) if self.unexplained else ()))
 
-    def to_contract(self) -> dict[str, object]:
-        """Return the content of diagnosis.json but for the names of the files beside it.
+    def __repr__(self) -> str:
+        fit = self.fit
+        said = headline([e.name for e in self.effects], self.unexplained, False).removesuffix(".")
+        alternatives = f", {len(self.alternatives)} alternative" if self.alternatives else ""
+        return (
+            f"Verdict({said!r}, {100.0 * self.confidence:.0f} % sure, {fit.before:.3g} -> {fit.after:.3g} N, "
+            f"noise {fit.noise:.3g} N{alternatives}{'s' if len(self.alternatives) > 1 else ''})"
+        )
 
-        The regressions of something unknown stand under "corrections", which is absent where nothing is unknown.
+    def _repr_html_(self) -> str:
+        from ..report.verdict_table import verdict_table  # a notebook alone needs it
+
+        return verdict_table(self.to_dict())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of diagnosis.json: plain values that JSON can hold, None for a number that is not known.
+
+        The errors are those of the simulated tires; the files beside diagnosis.json are None, for none is written. The
+        regressions of something unknown are under "corrections", which is absent where nothing is unknown.
         """
         regressed = (
-            {"corrections": [c.to_contract() for c in self.residual_models]} if self.residual_models else {}
+            {"corrections": [c.to_dict() for c in self.residual_models]} if self.residual_models else {}
         )
-        return {
-            "schema": 1,
-            "verdict": {
-                "effects": [
-                    {
-                        "name": e.name,
-                        "parameters": {
-                            p: {"value": v.value, "std": v.std, "unit": v.unit}
-                            for p, v in e.parameters.items()
-                        },
-                        "share": e.share,
-                    }
-                    for e in self.effects
-                ],
-                "confidence": self.confidence,
-                "alternatives": [list(r.names) for r in self.alternatives],
-                "unexplained": self.unexplained,
-                "summary": self.summary,
-                "separating_test": None if self.test is None else self.test.to_contract(),
-                **regressed,
-            },
-            "where": [s.to_contract() for s in self.where],
-            "fit": {
-                "noise": self.fit.noise,
-                "before": self.fit.before,
-                "after": self.fit.after,
-                "held_out_before": _number(self.fit.held_out_before),
-                "held_out_after": _number(self.fit.held_out_after),
+        return finite(
+            {
+                "schema": 1,
+                "verdict": {
+                    "effects": [
+                        {
+                            "name": e.name,
+                            "parameters": {
+                                p: {"value": v.value, "std": v.std, "unit": v.unit}
+                                for p, v in e.parameters.items()
+                            },
+                            "share": e.share,
+                        }
+                        for e in self.effects
+                    ],
+                    "confidence": self.confidence,
+                    "alternatives": [list(r.names) for r in self.alternatives],
+                    "unexplained": self.unexplained,
+                    "summary": self.summary,
+                    "separating_test": None if self.test is None else self.test.to_dict(),
+                    **regressed,
+                },
+                "where": [s.to_dict() for s in self.where],
+                "fit": {
+                    "noise": self.fit.noise,
+                    "before": self.fit.before,
+                    "after": self.fit.after,
+                    "held_out_before": self.fit.held_out_before,
+                    "held_out_after": self.fit.held_out_after,
+                },
                 "held_out_by": self.fit.held_out_by,
-            },
+                "tire": None,
+                "corrected_fmu": None,
+                "report": None,
+            }
+        )
+
+    def page_content(self) -> dict[str, Any]:
+        """Return what the report shows besides the content of diagnosis.json (see `report.page.write_report`)."""
+        return {
+            **page_content(self.evidence, self.alternatives, self.residual_models, self.test),
+            "tire_before": self.baseline.name,
+            "tire_after": self.tire.name,
         }
 
+    def report(self, path: Path | str) -> None:
+        """Write the page that `tirelab diagnose` writes, with the forces of the simulated corrected tire, to `path`.
 
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+        Raises TirelabError where the file cannot be written, or the verdict does not carry its recordings.
+        """
+        from ..report.page import write_report  # matplotlib takes long to import
+
+        fitted, kept = self._recordings(), tuple(map(_recording, self.held_out))
+        write_report(
+            Path(path),
+            {**self.to_dict(), **self.page_content()},
+            fitted,
+            _forces(self.baseline, fitted),
+            _forces(self.tire, fitted),
+            held_out=(kept, _forces(self.baseline, kept), _forces(self.tire, kept)) if kept else None,
+        )
+
+    def plot_loops(self, axes: Axes | None = None, recording: str | None = None) -> Axes:
+        """Draw force over deflection, recorded and simulated before and after the correction, and return the axes.
+
+        axes: to draw on, None for those of a new figure; recording: name of the recording, None for the one with the
+        largest error before the correction. Raises TirelabError where no recording has that name.
+        """
+        from ..report.loops import plot_loops  # matplotlib takes long to import
+
+        cases = self._cases(recording)
+        return plot_loops(max(cases, key=lambda c: c.excess), axes)
+
+    def plot_residuals(self, axes: Axes | None = None, over: str = "time") -> Axes:
+        """Draw the recorded minus the simulated force, before and after the correction, and return the axes.
+
+        axes: to draw on, None for those of a new figure; over: "time" (every sample), "deflection" or "rate" (means).
+        Raises TirelabError for another `over`.
+        """
+        from ..report.residuals import plot_residuals  # matplotlib takes long to import
+
+        return plot_residuals(self._cases(), self.fit.noise, axes, over)
+
+    def _recordings(self) -> tuple[Recording, ...]:
+        if not self.recordings:
+            raise TirelabError("this verdict does not carry its recordings; diagnose them again")
+        return tuple(map(_recording, self.recordings))
+
+    def _cases(self, name: str | None = None) -> list[Case]:
+        """Return the recordings, or the one of that name, with the simulated forces."""
+        from ..report.loops import Case  # matplotlib takes long to import
+
+        chosen = [r for r in (*self._recordings(), *map(_recording, self.held_out)) if r.name == name]
+        if name is not None and not chosen:
+            known = ", ".join(r.name for r in (*self.recordings, *self.held_out))
+            raise TirelabError(f"no recording is named {name}; this verdict carries {known}")
+        return [
+            Case(r, simulate(self.baseline, r), simulate(self.tire, r)) for r in chosen or self._recordings()
+        ]
+
+
+def _recording(recorded: Recorded) -> Recording:
+    """Return what was diagnosed as a Recording, which the report and the plots draw."""
+    if isinstance(recorded, Recording):
+        return recorded
+    r = recorded
+    return Recording(r.name, r.time, r.deflection, r.surface_radius, r.force)
+
+
+def _forces(tire: TireModel, recordings: Sequence[Recording]) -> list[FloatArray]:
+    return [simulate(tire, r) for r in recordings]

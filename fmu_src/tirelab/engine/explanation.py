@@ -129,7 +129,7 @@ def explain_misfit(
         noises, families = clearer, worth_trying(everything, scene)
         found = search(scene, noises, families, power, progress)
     for _ in range(LESS):
-        progress("checking whether a smaller set explains it")
+        progress("checking whether fewer effects explain the misfit")
         wider = noise_of_less(found.settled[0], scene, noises, families, power)
         if wider is None:
             break

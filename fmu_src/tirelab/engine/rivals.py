@@ -174,16 +174,16 @@ def poverty(scene: Scene) -> list[str]:
     """Return what the recordings lack that tells effects apart."""
     lacks = []
     if one_constant_rate(scene):
-        lacks.append("there is one constant rate only")
+        lacks.append("one constant rate only: drive a second rate")
     if len(scene.radii) == 1:
-        lacks.append("there is one surface only")
+        lacks.append("one surface only: press on a second surface")
     rates = [np.abs(r.motion.rate) for r in scene.records]
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
     held = max(_longest_rest(r.time, np.abs(r.motion.rate) < 0.02 * typical) for r in scene.records)
     if held < 1.0:
-        lacks.append("nothing is held still for a second")
+        lacks.append(f"no hold: hold 10 s at {650.0 * scene.deepest:.0f} mm")
     if max(float(r.motion.cycle.max()) for r in scene.records) < 1.0:
-        lacks.append("no cycle is repeated")
+        lacks.append("no repeated cycle: drive each cycle twice")
     return lacks
 
 
@@ -202,12 +202,16 @@ def reason_of(names: tuple[str, ...], other: tuple[str, ...], scene: Scene) -> s
     apart = set(names) ^ set(other)
     lacks = poverty(scene)
     if apart <= STATIC:
-        return "all of them are functions of deflection and surface alone, at one pressure and stiffness of the rig"
+        return "they depend on deflection and surface only: record at a second pressure or on a stiffer rig"
     if apart <= set(LOOPS):
         told = [x for x in lacks if "surface" not in x]
-        return " and ".join(told) if told else "their loops are alike at the rates driven"
+        return (
+            "; ".join(told)
+            if told
+            else "their loops are alike at the recorded rates: drive slower and faster"
+        )
     if apart <= SLOW:
-        return "all of them change slowly with time, and no cycle from the beginning comes again after a rest"
+        return "they all change slowly with time: repeat the first cycle after a rest"
     if UNKNOWN in apart:
-        return "a smooth function of the coordinates follows the misfit as well"
-    return " and ".join(lacks) if lacks else "the difference is smaller than these recordings can show"
+        return "a smooth curve fits the residual as well as a known effect does"
+    return "; ".join(lacks) if lacks else "the difference is smaller than these recordings can show"

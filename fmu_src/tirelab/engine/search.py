@@ -256,7 +256,8 @@ def search(
                 settle_all(screen.seeds(), point)
         best = max(settled.values(), key=lambda s: s.log_evidence)
         if progress is not None:
-            progress(f"{compared} sets compared; best so far: {', '.join(best.names) or 'nothing'}")
+            shown = ", ".join(best.names).replace("_", " ") or "nothing missing"
+            progress(f"{compared} sets of effects compared; best so far: {shown}")
         if before is not None and best.names == before.names:
             break
         point = best.point

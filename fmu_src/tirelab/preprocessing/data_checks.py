@@ -28,19 +28,17 @@ def check_recordings(recordings: Sequence[Recorded]) -> None:
     for r in recordings:
         where = f"recording {r.name}"
         if r.time.size < FEWEST_SAMPLES:
-            raise PoorRecording(
-                f"{where} has {r.time.size} samples; at least {FEWEST_SAMPLES} are needed to tell anything"
-            )
+            raise PoorRecording(f"{where} has {r.time.size} samples; at least {FEWEST_SAMPLES} are needed")
         if np.ptp(r.deflection) <= 0.0:
-            raise PoorRecording(f"{where} holds one constant deflection; record at least one full cycle")
+            raise PoorRecording(f"{where} has one constant deflection; record at least one full cycle")
         if np.ptp(r.force) <= 0.0:
-            raise PoorRecording(f"{where} holds one constant force; check that the load cell was connected")
+            raise PoorRecording(f"{where} has one constant force; check that the load cell was connected")
         if float(r.deflection.max()) <= 0.0:
             raise PoorRecording(f"{where} never loads the tire: its deflection stays at or below 0 m")
         distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
         if distinct < FEWEST_STEPS:
             raise PoorRecording(
-                f"{where} shows {distinct} distinct deflections only; sample each cycle at {FEWEST_STEPS} points"
+                f"{where} has only {distinct} deflections; sample each cycle at {FEWEST_STEPS} or more points"
             )
 
 
@@ -51,11 +49,11 @@ def check_signal(dataset: Dataset, noises: Sequence[Noise]) -> None:
         travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
         if motion.noise > 0.3 * float(np.std(motion.deflection)):
             raise PoorRecording(
-                f"the deflection of recording {number} is noise: no motion of the tire can be seen in it"
+                f"the deflection of recording {number} is noise only; check that the displacement sensor was connected"
             )
         if travel > 0.7 * float(np.std(motion.deflection)):
             raise PoorRecording(
-                f"recording {number} has about one sample to a cycle; sample each cycle at {FEWEST_STEPS} points"
+                f"recording {number} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
         related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
         if not np.isfinite(related) or abs(related) < 0.2 or noise.level > 0.9 * float(np.std(record.force)):

@@ -1,5 +1,1 @@
-"""A diagnosis as one page to read: `write_report`."""
-
-from .page import write_report
-
-__all__ = ["write_report"]
+"""A diagnosis for a reader: the page, the terminal, the pictures and their words."""

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ..recordings.recording import Recording
-from .svg import AFTER, BEFORE, drawing, inline_svg
+from .palette import PAGE, PLAIN, Palette
+from .svg import drawing, inline_svg
 from .thinning import LONGEST_LINE, Limits, occupancy, trail
 
 FloatArray = NDArray[np.float64]
@@ -18,8 +21,11 @@ FloatArray = NDArray[np.float64]
 DOTS = (480, 640)
 """Rows and columns of the picture of the recorded samples."""
 
+VISIBLE = 1e-2
+"""A change of the simulated force is visible from this part of the largest residual on."""
+
 GREY, ORANGE, BLUE = (140, 148, 158), (222, 110, 26), (46, 138, 214)
-"""Dots that show on light and on dark paper."""
+"""Colours of dots that show on a light and on a dark page."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +43,17 @@ class Case:
 
     @property
     def alike(self) -> bool:
-        """Whether the correction changes nothing here."""
-        return bool(np.max(np.abs(self.before - self.after)) <= 1e-9 * np.max(np.abs(self.before)) + 1e-9)
+        """Whether the correction changes nothing here that a picture could show."""
+        residual = self.recording.force - self.before
+        return bool(np.max(np.abs(self.before - self.after)) <= VISIBLE * np.max(np.abs(residual)))
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The limits of a picture, across and up."""
+
+    across: Limits
+    up: Limits
 
 
 def limits_of(*series: FloatArray, margin: float = 0.04) -> Limits:
@@ -48,67 +63,71 @@ def limits_of(*series: FloatArray, margin: float = 0.04) -> Limits:
     return low - room, high + room
 
 
+def plot_loops(case: Case, axes: Axes | None) -> Axes:
+    """Draw the recorded and both simulated loops, with a legend, on `axes` or on those of a new figure."""
+    drawn: Axes = Figure(layout="constrained").subplots() if axes is None else axes
+    _loops(drawn, case, "both", PLAIN)
+    drawn.set_title(case.recording.name, parse_math=False)
+    lines = (
+        [(PLAIN.before, "simulated")] if case.alike else [(PLAIN.before, "before"), (PLAIN.after, "after")]
+    )
+    dots = Line2D([], [], color=PLAIN.recorded, marker="o", ls="none", label="recorded")
+    drawn.legend(
+        handles=[dots, *(Line2D([], [], color=colour, label=label) for colour, label in lines)], frameon=False
+    )
+    return drawn
+
+
 def draw_loops(case: Case, which: str, mark: str, alt: str) -> Markup:
     """Return the recorded loop with the simulated one: `which` is "before", "after" or "both"."""
-    mm, force = 1e3 * case.recording.deflection, case.recording.force
-    across, up = limits_of(mm), limits_of(force, case.before, case.after)
     with drawing() as (figure, axes):
-        _dots(axes, mm, force, across, up, GREY, 2)
-        if which != "after":
-            _line(axes, mm, case.before, across, up, BEFORE, ORANGE)
-        if which != "before" and not case.alike:
-            _line(axes, mm, case.after, across, up, AFTER, BLUE)
-        axes.set(xlim=across, ylim=up, xlabel="deflection [mm]", ylabel="radial force [N]")
-        if which != "both" and not case.alike:
-            axes.set_title(f"{which.capitalize()} the correction")
+        _loops(axes, case, which, PAGE)
+        if not case.alike:
+            axes.set_title(f"{'Before and after' if which == 'both' else which.capitalize()} the correction")
         return inline_svg(figure, alt, mark)
 
 
 def draw_difference(case: Case, mark: str) -> Markup:
-    """Return what the believed tire leaves of the recorded force, and what the correction adds to it."""
-    mm, left, added = (
-        1e3 * case.recording.deflection,
-        case.recording.force - case.before,
-        case.after - case.before,
-    )
-    across, up = limits_of(mm), limits_of(left, added)
+    """Return the residual of the baseline tire over the deflection, and the force that the correction adds."""
+    mm = 1e3 * case.recording.deflection
+    residual, added = case.recording.force - case.before, case.after - case.before
+    frame = Frame(limits_of(mm), limits_of(residual, added))
     with drawing() as (figure, axes):
-        _dots(axes, mm, left, across, up, GREY, 2)
+        _dots(axes, mm, residual, frame, GREY, 2)
         if not case.alike:
-            _line(axes, mm, added, across, up, AFTER, BLUE)
-        axes.set(
-            xlim=across, ylim=up, xlabel="deflection [mm]", ylabel="force [N]", title="The difference alone"
-        )
-        alt = "Recorded less simulated force over deflection, and what the correction adds."
+            _line(axes, mm, added, frame, PAGE.after, BLUE)
+        title = "Recorded minus simulated force"
+        axes.set(xlim=frame.across, ylim=frame.up, xlabel="deflection [mm]", ylabel="force [N]", title=title)
+        alt = "Recorded minus simulated force over deflection, and the force that the correction adds."
         return inline_svg(figure, alt, mark)
 
 
+def _loops(axes: Axes, case: Case, which: str, palette: Palette) -> None:
+    mm, force = 1e3 * case.recording.deflection, case.recording.force
+    frame = Frame(limits_of(mm), limits_of(force, case.before, case.after))
+    _dots(axes, mm, force, frame, GREY, 2)
+    if which != "after":
+        _line(axes, mm, case.before, frame, palette.before, ORANGE)
+    if which != "before" and not case.alike:
+        _line(axes, mm, case.after, frame, palette.after, BLUE)
+    axes.set(xlim=frame.across, ylim=frame.up, xlabel="deflection [mm]", ylabel="radial force [N]")
+
+
 def _dots(
-    axes: Axes,
-    x: FloatArray,
-    y: FloatArray,
-    across: Limits,
-    up: Limits,
-    colour: tuple[int, int, int],
-    wide: int = 0,
+    axes: Axes, x: FloatArray, y: FloatArray, frame: Frame, colour: tuple[int, int, int], wide: int = 0
 ) -> None:
     picture = np.zeros((*DOTS, 4), dtype=np.uint8)
     picture[..., :3] = colour
-    picture[..., 3] = occupancy(x, y, across, up, DOTS, wide)
-    axes.imshow(picture, extent=(*across, *up), origin="lower", aspect="auto", interpolation="none", zorder=1)
+    picture[..., 3] = occupancy(x, y, frame.across, frame.up, DOTS, wide)
+    extent = (*frame.across, *frame.up)
+    axes.imshow(picture, extent=extent, origin="lower", aspect="auto", interpolation="none", zorder=1)
 
 
 def _line(
-    axes: Axes,
-    x: FloatArray,
-    y: FloatArray,
-    across: Limits,
-    up: Limits,
-    colour: str,
-    dots: tuple[int, int, int],
+    axes: Axes, x: FloatArray, y: FloatArray, frame: Frame, colour: str, dots: tuple[int, int, int]
 ) -> None:
-    path = trail(x, y, across, up)
+    path = trail(x, y, frame.across, frame.up)
     if path[0].size > LONGEST_LINE:
-        _dots(axes, x, y, across, up, dots)
+        _dots(axes, x, y, frame, dots)
     else:
         axes.plot(*path, color=colour, lw=1.1)

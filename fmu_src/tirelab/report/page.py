@@ -46,7 +46,7 @@ MOST_SETS = 15
 """Rows of the table of sets that were compared."""
 
 BESIDE = ("tire_before", "tire_after", "evidence", "reasons", "correction", "waveform", "warnings", "command")
-"""What a diagnosis may have besides the contract."""
+"""What a diagnosis may have besides the content of diagnosis.json."""
 
 VERSIONS_OF = ("tirelab", "numpy", "scipy", "matplotlib")
 
@@ -62,19 +62,19 @@ def write_report(
 ) -> None:
     """Write the report of a diagnosis to `path`.
 
-    diagnosis: the content of diagnosis.json; it may have besides
+    diagnosis: the content of diagnosis.json; it may also have
         tire_before, tire_after   names of the tires
         evidence      [{"effects": [name], "log_evidence": 0 for the best, "rmse" [N], "held_out_rmse" [N] or None,
                       "misfit" in noises, "remark"}]; columns that no row has are left out
-        where         as in the contract; an entry's "label" is told in place of its span
+        where         as in diagnosis.json; an entry's "label" is shown in place of its span
         reasons       one sentence for each of the verdict's alternatives
-        correction    what was learned of the unknown, one or a list of {"by", "unit", "x", "force" [N], "std" [N] or
-                      None, "repeats": sentence}
-        waveform      {"time" [s], "deflection" [m]} of the separating test
-        warnings      sentences that belong to the top
+        correction    regression of the unexplained remainder, one or a list of {"by", "unit", "x", "force" [N],
+                      "std" [N] or None, "repeats": sentence}
+        waveform      {"time" [s], "deflection" [m]} of the recommended next test
+        warnings      sentences for the top of the page
         command       the command line
-    before, after: simulated forces [N], one array for each recording; held_out: the same for the recordings that the
-    correction has not seen
+    before, after: simulated forces [N], one array for each recording; held_out: the same for the held-out
+    recordings
 
     Raises TirelabError where an array does not fit its recording, or the file cannot be written.
     """
@@ -103,7 +103,9 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         diagnosis=diagnosis,
         verdict=verdict,
         effects=[_effect(effect) for effect in verdict["effects"]],
-        rivals=list(zip(alternatives, reasons + [""] * (len(alternatives) - len(reasons)), strict=False)),
+        alternatives=list(
+            zip(alternatives, reasons + [""] * (len(alternatives) - len(reasons)), strict=False)
+        ),
         fit=_fit(diagnosis["fit"], diagnosis.get("held_out_by", ""), fitted, held_out),
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
@@ -113,12 +115,12 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         evidence=_evidence(diagnosis["evidence"] or []),
         test=_test(verdict["separating_test"], diagnosis["waveform"]),
         corrections=_corrections(diagnosis["correction"]),
-        learned=[
+        regressions=[
             (titles.dependence(c["by"]), c["after"], c["held_out_after"])
             for c in sorted(verdict.get("corrections", []), key=lambda c: -c["repeats"])[:1]
             if c["after"] is not None
         ],
-        sources=[("fitted", c.recording) for c in fitted] + [("held out", c.recording) for c in held_out],
+        sources=[("fitted", c.recording) for c in fitted] + [("held-out", c.recording) for c in held_out],
         versions=_versions(),
     )
 
@@ -173,8 +175,8 @@ def _fit(
     rows: list[tuple[str, str | None, float, float]] = [("Fitted", None, fit["before"], fit["after"])]
     if fit["held_out_before"] is not None:
         by = words.held_out_part(held_out_by)
-        rows.append((f"Not seen by the fit{by}", None, fit["held_out_before"], fit["held_out_after"]))
-    for kind, cases in (("fitted", fitted), ("not seen", held_out)):
+        rows.append((f"Held-out{by}", None, fit["held_out_before"], fit["held_out_after"]))
+    for kind, cases in (("fitted", fitted), ("held-out", held_out)):
         if len(cases) > 1:
             rows += [(kind, c.recording.name, _rmse([c], "before"), _rmse([c], "after")) for c in cases]
     finite = [v for *_, before, after in rows for v in (before, after) if math.isfinite(v)]
@@ -189,7 +191,7 @@ def _loops(fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
         draw_loops(worst, which, f"p{which[0]}", f"Force over deflection, recorded and simulated, {which}.")
         for which in (("before",) if worst.alike else ("before", "after"))
     ]
-    chosen = [("fitted", c) for c in order[1:]] + [("not seen by the fit", c) for c in held_out]
+    chosen = [("fitted", c) for c in order[1:]] + [("held-out", c) for c in held_out]
     alt = "Force over deflection, recorded and simulated before and after the correction."
     others = [
         (kind, case.recording.name, draw_loops(case, "both", f"o{i}x", alt))
@@ -199,7 +201,7 @@ def _loops(fitted: Sequence[Case], held_out: Sequence[Case]) -> dict[str, Any]:
         "name": worst.recording.name,
         "pair": pair,
         "difference": draw_difference(worst, "df"),
-        "alike": worst.alike,
+        "alike": all(c.alike for c in fitted),
         "others": others,
         "missing": len(chosen) - len(others),
         "several": len(chosen) > 0,
@@ -223,10 +225,10 @@ def _maps(cases: Sequence[Case], noise: float) -> dict[str, Any]:
 
 
 _EVIDENCE_COLUMNS = (
-    ("log_evidence", "Log evidence below the best"),
-    ("misfit", "What it leaves / noise"),
-    ("rmse", "Error [N]"),
-    ("held_out_rmse", "Error held out [N]"),
+    ("log_evidence", "Log evidence, relative to the best"),
+    ("misfit", "Residual / noise"),
+    ("rmse", "RMS error [N]"),
+    ("held_out_rmse", "Held-out RMS error [N]"),
     ("remark", "Remark"),
 )
 
@@ -251,7 +253,7 @@ _TEST_FACTS = (
     ("amplitude", "Largest deflection", "m", ""),
     ("rate_max", "Fastest rate", "m/s", ""),
     ("duration", "Duration", "s", ""),
-    ("separation", "Predicted separation", "1", "times the noise, over all samples"),
+    ("separation", "Predicted difference", "1", "times the noise, over all samples"),
     ("file", "File for the rig", "", ""),
 )
 

@@ -1,35 +1,41 @@
-"""Where simulation and recording part: the residual over time, deflection, rate, and over two of them at once."""
+"""Where simulation and recording differ: the residual over time, deflection, rate, and over two of them at once."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from ..errors import TirelabError
 from .course import loading, rate_of
-from .loops import Case
-from .svg import AFTER, BAND, BEFORE, GRID, INK, drawing, inline_svg
+from .loops import VISIBLE, Case
+from .palette import PAGE, PLAIN, Palette
+from .svg import drawing, inline_svg
 from .thinning import envelope
 from .words import number
 
 FloatArray = NDArray[np.float64]
 
 BINS, FINE = 32, 64
-"""Bins of a coordinate, and of the deflection, whose ripples are finer: a mean in each."""
+"""Bins of a coordinate, and of the deflection, which needs finer ones: each shows a mean."""
 
 CELLS = (40, 28)
 """Cells of a map, across and up."""
 
 NARROWEST = 0.1
-"""Rates closer than this part of themselves are one."""
+"""Rates that differ by less than this part of themselves share a bin."""
 
 FEWEST = 5
-"""Samples without which a bin or cell shows nothing."""
+"""A bin or cell with fewer samples stays empty."""
 
 DIVERGING = LinearSegmentedColormap.from_list(
     "over_and_under",
@@ -41,12 +47,12 @@ DIVERGING = LinearSegmentedColormap.from_list(
         (1.0, (0.72, 0.27, 0.00, 1.0)),
     ],
 )
-"""Blue below, orange above: told apart by every kind of colour vision; nearly clear about zero, on any paper."""
+"""Blue below, orange above: distinct for every kind of colour vision; nearly transparent about zero."""
 
 
 @dataclass(frozen=True)
 class Misfit:
-    """All recordings end to end: time counted on [s], deflection [m], rate [m/s], residuals [N].
+    """All recordings end to end: continued time [s], deflection [m], rate [m/s], residuals [N].
 
     ends: samples at which a recording ends
     """
@@ -62,7 +68,7 @@ class Misfit:
     @property
     def alike(self) -> bool:
         """Whether the correction changes nothing that a picture could show."""
-        return bool(np.max(np.abs(self.before - self.after)) <= 1e-3 * np.max(np.abs(self.before)))
+        return bool(np.max(np.abs(self.before - self.after)) <= VISIBLE * np.max(np.abs(self.before)))
 
 
 def misfit_of(cases: Sequence[Case]) -> Misfit:
@@ -84,72 +90,101 @@ def misfit_of(cases: Sequence[Case]) -> Misfit:
     )
 
 
+def plot_residuals(cases: Sequence[Case], noise: float, axes: Axes | None, over: str) -> Axes:
+    """Draw the residuals over a coordinate, with a legend, on `axes` or on those of a new figure, and return them.
+
+    noise [N]: of one sample; over: one of OVER. Raises TirelabError for another one.
+    """
+    if over not in OVER:
+        raise TirelabError(f"residuals cannot be drawn over {over!r}; choose one of {', '.join(OVER)}")
+    drawn: Axes = Figure(layout="constrained").subplots() if axes is None else axes
+    m = misfit_of(cases)
+    OVER[over](drawn, m, noise, PLAIN)
+    handles = [Line2D([], [], color=colour, label=label) for _, colour, label in _courses(m, PLAIN)]
+    drawn.legend(handles=[*handles, Patch(color=PLAIN.band, label="noise of one sample")], frameon=False)
+    return drawn
+
+
 def draw_over_time(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the residual over time, every sample in it, before and after."""
     with drawing() as (figure, axes):
-        _noise_band(axes, noise)
-        for residual, colour in _courses(m):
-            start = 0
-            for end in m.ends:
-                axes.plot(*envelope(m.time[start:end], residual[start:end]), color=colour, lw=0.7)
-                start = end
-        _time_axis(axes, m)
-        axes.set(ylabel="recorded − simulated [N]", title="Over time, every sample")
+        _over_time(axes, m, noise, PAGE)
         return inline_svg(figure, "Residual over time before and after the correction, with the noise.", mark)
 
 
 def draw_over_deflection(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the mean residual over the deflection, loading and unloading apart."""
-    edges = np.linspace(m.deflection.min(), m.deflection.max(), FINE + 1)
     with drawing() as (figure, axes):
-        _noise_band(axes, noise)
-        for residual, colour in _courses(m):
-            for branch, style, marker in ((m.loading, "-", "^"), (~m.loading, (0, (3, 2)), "v")):
-                at, mean = _means(m.deflection[branch], residual[branch], edges)
-                axes.plot(1e3 * at, mean, color=colour, ls=style, marker=marker, ms=3.2, lw=1.2)
-        axes.set(
-            xlabel="deflection [mm]",
-            ylabel="mean residual [N]",
-            title="Over the deflection (▲ loading, ▼ unloading)",
-        )
-        alt = (
-            "Mean residual over the deflection, loading and unloading apart, before and after the correction."
-        )
+        _over_deflection(axes, m, noise, PAGE)
+        alt = "Mean residual over deflection, for loading and unloading, before and after the correction."
         return inline_svg(figure, alt, mark)
 
 
 def draw_over_rate(m: Misfit, noise: float, mark: str) -> Markup:
     """Return the mean residual over the rate of deflection."""
-    edges = _rate_edges(m.rate, BINS)
     with drawing() as (figure, axes):
-        _noise_band(axes, noise)
-        for residual, colour in _courses(m):
-            at, mean = _means(m.rate, residual, edges)
-            axes.plot(1e3 * at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
-        axes.set(
-            xlabel="rate [mm/s], unloading < 0 < loading", ylabel="mean residual [N]", title="Over the rate"
-        )
-        slow, fast = 1e3 * float(np.quantile(np.abs(m.rate), 0.25)), 1e3 * float(np.max(np.abs(m.rate)))
-        if fast > 20.0 * slow > 0.0:
-            decade = 10.0 ** np.floor(np.log10(max(slow, 1e-3 * fast)))
-            ticks = decade * 10.0 ** np.arange(np.ceil(np.log10(fast / decade)) + 1)
-            axes.set_xscale("asinh", linear_width=decade)
-            axes.set_xticks(
-                [*-ticks[::-1], 0.0, *ticks],
-                labels=[*(f"−{t:g}" for t in ticks[::-1]), "0", *(f"{t:g}" for t in ticks)],
-            )
-            axes.set_xticks([], minor=True)
-            axes.set_xlim(-1.3 * fast, 1.3 * fast)
+        _over_rate(axes, m, noise, PAGE)
         alt = "Mean residual over the rate of deflection, before and after the correction."
         return inline_svg(figure, alt, mark)
 
 
+def _over_time(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
+    _noise_band(axes, noise, palette)
+    for residual, colour, _ in _courses(m, palette):
+        start = 0
+        for end in m.ends:
+            axes.plot(*envelope(m.time[start:end], residual[start:end]), color=colour, lw=0.7)
+            start = end
+    _time_axis(axes, m, palette)
+    axes.set(ylabel="recorded − simulated [N]", title="Over time, every sample")
+
+
+def _over_deflection(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
+    edges = np.linspace(m.deflection.min(), m.deflection.max(), FINE + 1)
+    _noise_band(axes, noise, palette)
+    for residual, colour, _ in _courses(m, palette):
+        for branch, style, marker in ((m.loading, "-", "^"), (~m.loading, (0, (3, 2)), "v")):
+            at, mean = _means(m.deflection[branch], residual[branch], edges)
+            axes.plot(1e3 * at, mean, color=colour, ls=style, marker=marker, ms=3.2, lw=1.2)
+    axes.set(
+        xlabel="deflection [mm]",
+        ylabel="mean residual [N]",
+        title="Over deflection (▲ loading, ▼ unloading)",
+    )
+
+
+def _over_rate(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
+    edges = _rate_edges(m.rate, BINS)
+    _noise_band(axes, noise, palette)
+    for residual, colour, _ in _courses(m, palette):
+        at, mean = _means(m.rate, residual, edges)
+        axes.plot(1e3 * at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
+    axes.set(xlabel="rate [mm/s], unloading < 0 < loading", ylabel="mean residual [N]", title="Over the rate")
+    slow, fast = 1e3 * float(np.quantile(np.abs(m.rate), 0.25)), 1e3 * float(np.max(np.abs(m.rate)))
+    if fast > 20.0 * slow > 0.0:
+        decade = 10.0 ** np.floor(np.log10(max(slow, 1e-3 * fast)))
+        ticks = decade * 10.0 ** np.arange(np.ceil(np.log10(fast / decade)) + 1)
+        axes.set_xscale("asinh", linear_width=decade)
+        axes.set_xticks(
+            [*-ticks[::-1], 0.0, *ticks],
+            labels=[*(f"−{t:g}" for t in ticks[::-1]), "0", *(f"{t:g}" for t in ticks)],
+        )
+        axes.set_xticks([], minor=True)
+        axes.set_xlim(-1.3 * fast, 1.3 * fast)
+
+
+OVER: Mapping[str, Callable[[Axes, Misfit, float, Palette], None]] = MappingProxyType(
+    {"time": _over_time, "deflection": _over_deflection, "rate": _over_rate}
+)
+"""The coordinates over which `plot_residuals` draws."""
+
+
 def draw_slow_changes(m: Misfit, noise: float, mark: str) -> Markup:
-    """Return the mean residual of whole cycles over time: what drifts, leaks or warms up."""
+    """Return the mean residual of whole cycles over time, which shows drift, a leak or warming."""
     blocks = max(BINS // len(m.ends), 4)
     with drawing() as (figure, axes):
-        _noise_band(axes, noise)
-        for residual, colour in _courses(m):
+        _noise_band(axes, noise, PAGE)
+        for residual, colour, _ in _courses(m, PAGE):
             start = 0
             for end in m.ends:
                 time = m.time[start:end]
@@ -158,17 +193,17 @@ def draw_slow_changes(m: Misfit, noise: float, mark: str) -> Markup:
                 at, mean = _means(time[whole], residual[start:end][whole], edges)
                 axes.plot(at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
                 start = end
-        _time_axis(axes, m)
-        axes.set(ylabel="mean residual [N]", title="Slow changes: means of whole cycles")
+        _time_axis(axes, m, PAGE)
+        axes.set(ylabel="mean residual [N]", title="Slow changes: means over whole cycles")
         return inline_svg(
             figure, "Mean residual of whole cycles over time, before and after the correction.", mark
         )
 
 
 def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
-    """Return maps of the mean residual over deflection and a second coordinate, and what that one is called.
+    """Return maps of the mean residual over deflection and a second coordinate, and the name of that one.
 
-    The second coordinate, rate or time, is the one over which the residual before the correction is more ordered.
+    The second coordinate, rate or time, is the one that orders the residual before the correction better.
     """
     x_edges = np.linspace(m.deflection.min(), m.deflection.max(), CELLS[0] + 1)
     choices = []
@@ -211,13 +246,15 @@ def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
     return maps, name
 
 
-def _courses(m: Misfit) -> list[tuple[FloatArray, str]]:
-    before = (m.before, BEFORE)
-    return [before] if m.alike else [before, (m.after, AFTER)]
+def _courses(m: Misfit, palette: Palette) -> list[tuple[FloatArray, str, str]]:
+    """Return the residuals to draw, each with its colour and its label."""
+    if m.alike:
+        return [(m.before, palette.before, "simulated")]
+    return [(m.before, palette.before, "before"), (m.after, palette.after, "after")]
 
 
 def _cycles(time: FloatArray, loading: NDArray[np.bool_], most: int) -> FloatArray:
-    """Return times [s] between which whole cycles lie, at most so many; even spans where there are hardly cycles."""
+    """Return times [s] that bound whole cycles, at most `most` spans; even spans where there are few cycles."""
     starts = np.flatnonzero(~loading[:-1] & loading[1:]) + 1
     if loading[0]:
         starts = np.append(0, starts)
@@ -226,16 +263,16 @@ def _cycles(time: FloatArray, loading: NDArray[np.bool_], most: int) -> FloatArr
     return np.asarray(time[starts[np.unique(np.linspace(0, starts.size - 1, most + 1).astype(int))]])
 
 
-def _time_axis(axes: Axes, m: Misfit) -> None:
+def _time_axis(axes: Axes, m: Misfit, palette: Palette) -> None:
     for end in m.ends[:-1]:
-        axes.axvline(m.time[end], color=INK, lw=0.8, ls=(0, (2, 2)))
+        axes.axvline(m.time[end], color=palette.ink, lw=0.8, ls=(0, (2, 2)))
     axes.set_xlabel("time, recordings one after another [s]" if len(m.ends) > 1 else "time [s]")
     axes.set_xlim(m.time[0] - 0.01 * m.time[-1], 1.01 * m.time[-1])
 
 
-def _noise_band(axes: Axes, noise: float) -> None:
-    axes.axhspan(-noise, noise, color=BAND, lw=0, zorder=0.5)
-    axes.axhline(0.0, color=GRID, lw=1.0)
+def _noise_band(axes: Axes, noise: float, palette: Palette) -> None:
+    axes.axhspan(-noise, noise, color=palette.band, lw=0, zorder=0.5)
+    axes.axhline(0.0, color=palette.grid, lw=1.0)
 
 
 def _means(values: FloatArray, residual: FloatArray, edges: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -270,7 +307,7 @@ def _row_rates(rate: FloatArray, edges: FloatArray) -> FloatArray:
 
 
 def _rate_edges(rate: FloatArray, count: int) -> FloatArray:
-    """Return at most `count` + 1 edges between which about as many samples lie, none closer than rates can be told."""
+    """Return at most `count` + 1 edges between which about as many samples lie, none closer than NARROWEST."""
     edges = np.unique(np.quantile(rate, np.linspace(0.0, 1.0, count + 1)))
     kept = [float(edges[0])]
     for edge in edges[1:-1]:

@@ -7,6 +7,7 @@ import itertools
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from html import escape
 from typing import Any
 
@@ -15,17 +16,10 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-INK, GRID, RECORDED, BEFORE, AFTER, BAND = "#010101", "#020202", "#030303", "#040404", "#050505", "#060606"
-"""Stand-ins that become the variables of the page's style sheet."""
+from .palette import PAGE
 
-_VARIABLES = {
-    INK: "var(--ink)",
-    GRID: "var(--grid)",
-    RECORDED: "var(--recorded)",
-    BEFORE: "var(--before)",
-    AFTER: "var(--after)",
-    BAND: "var(--band)",
-}
+_VARIABLES = {colour: f"var(--{name})" for name, colour in asdict(PAGE).items()}
+"""The variable of the page's style sheet for each stand-in."""
 
 WIDTH = 4.6
 """Width of a figure [in]: two stand side by side on a desktop, one fills a phone with its text still legible."""
@@ -39,8 +33,8 @@ _SETTINGS: dict[Any, Any] = {
     "text.parse_math": False,
     "axes.unicode_minus": True,
     "font.size": 10.0,
-    "axes.edgecolor": INK,
-    "axes.labelcolor": INK,
+    "axes.edgecolor": PAGE.ink,
+    "axes.labelcolor": PAGE.ink,
     "axes.titlesize": 10.5,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
@@ -50,10 +44,10 @@ _SETTINGS: dict[Any, Any] = {
     "axes.facecolor": "none",
     "figure.facecolor": "none",
     "savefig.facecolor": "none",
-    "text.color": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "grid.color": GRID,
+    "text.color": PAGE.ink,
+    "xtick.color": PAGE.ink,
+    "ytick.color": PAGE.ink,
+    "grid.color": PAGE.grid,
     "grid.linewidth": 0.6,
     "axes.grid": True,
     "axes.axisbelow": True,
@@ -73,7 +67,7 @@ _reference = re.compile(r'url\(#([^)]+)\)|href="#([^"]+)"')
 
 @contextmanager
 def drawing(height: float = 3.2) -> Iterator[tuple[Figure, Axes]]:
-    """Give a figure `height` [in] high with its axes, in the page's look; everything drawn belongs inside."""
+    """Give a figure `height` [in] high with its axes, in the page's style; draw inside the context."""
     with mpl.rc_context(_SETTINGS):
         figure = Figure(figsize=(WIDTH, height))
         figure.subplots_adjust(
@@ -83,9 +77,9 @@ def drawing(height: float = 3.2) -> Iterator[tuple[Figure, Axes]]:
 
 
 def inline_svg(figure: Figure, alt: str, mark: str) -> Markup:
-    """Return the figure as an SVG element, told to those who cannot see it by `alt`.
+    """Return the figure as an SVG element with the description `alt` for a screen reader.
 
-    mark: a word of its own for each figure of the page, to keep their inner references apart
+    mark: a word that no other figure of the page has, to keep their inner references apart
     """
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", dpi=160, metadata={"Date": None})

@@ -13,7 +13,7 @@ from rich.text import Text
 from . import titles, words
 
 MOST_PLACES = 6
-"""Places that are told."""
+"""Rows of the table of places."""
 
 
 def print_diagnosis(
@@ -21,7 +21,7 @@ def print_diagnosis(
     diagnosis: Mapping[str, Any],
     out: Path,
 ) -> None:
-    """Print the verdict with its rivals, the errors, where, parameters, what was learned, the test and the files.
+    """Print the verdict, its alternatives, the errors, the places, the parameters, the next test and the files.
 
     diagnosis: the content of diagnosis.json
     """
@@ -29,21 +29,21 @@ def print_diagnosis(
     console.print(Text(words.headline(verdict), style="bold"))
     console.print(Text(words.besides(verdict)))
     console.print()
-    errors = _table("error [N]", "before", "after", "noise")
+    errors = _table("RMS error [N]", "before", "after", "noise")
     noise = words.number(fit["noise"])
     errors.add_row("fitted", words.number(fit["before"]), words.number(fit["after"]), noise)
     if fit["held_out_before"] is not None:
         kept = (words.number(fit["held_out_before"]), words.number(fit["held_out_after"]))
         by = diagnosis.get("held_out_by", "")
-        errors.add_row(f"not seen by the fit{words.held_out_part(by)}", *kept, noise)
+        errors.add_row(f"held-out{words.held_out_part(by)}", *kept, noise)
     console.print(errors)
     console.print()
 
     if diagnosis["where"]:
         places = _table(
-            "where they part",
-            "with the law corrected" if words.law_apart(verdict) else "",
-            "part of the error",
+            "where they differ",
+            "with the law refitted" if words.law_apart(verdict) else "",
+            "share of the error",
             "mean residual [N]",
         )
         for place in words.foremost(diagnosis["where"], MOST_PLACES):
@@ -69,23 +69,25 @@ def print_diagnosis(
         console.print()
 
     if verdict.get("corrections"):
-        learned = _table("what is left, learned over", "error [N]", "not seen [N]", "explained, not seen")
+        regressed = _table(
+            "regression of the remainder over", "RMS error [N]", "held-out [N]", "explained, held-out"
+        )
         for c in verdict["corrections"]:
             errors_with = (words.number(c["after"]), words.number(c["held_out_after"]))
-            learned.add_row(titles.dependence(c["by"]), *errors_with, words.percent(max(c["repeats"], 0.0)))
-        console.print(learned)
+            regressed.add_row(titles.dependence(c["by"]), *errors_with, words.percent(max(c["repeats"], 0.0)))
+        console.print(regressed)
         console.print()
 
     if verdict["separating_test"] is not None:
-        console.print(Text(f"the test that would tell: {verdict['separating_test']['sentence']}"))
+        console.print(Text(f"Recommended next test: {verdict['separating_test']['sentence']}"))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
     if verdict["separating_test"] is not None:
         files.append(verdict["separating_test"]["file"])
-    console.print(Text(f"written into {printable(str(out))}: {', '.join(files)}"))
+    console.print(Text(f"Written to {printable(str(out))}: {', '.join(files)}"))
 
 
 def printable(text: str) -> str:
-    """Return `text` with what could steer a terminal, as the escape character, shown as a question mark."""
+    """Return `text` with a question mark for every character that could control a terminal."""
     return "".join(c if c.isprintable() else "?" for c in text)
 
 

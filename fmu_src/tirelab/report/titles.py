@@ -1,4 +1,4 @@
-"""What effects, sets of them and coordinates are called in a sentence."""
+"""The names of effects, sets of effects and coordinates in a sentence."""
 
 from __future__ import annotations
 
@@ -15,22 +15,24 @@ DEPENDENCE = {
     "rate and deflection": "rate and deflection",
     "acceleration": "the acceleration",
     "resonance": "the acceleration (a resonance)",
-    "history": "the way since the last reversal",
+    "history": "the distance since the last reversal",
     "surface": "deflection and surface",
-    "span": "time (within a span)",
-    "way": "the whole way travelled",
+    "span": "time (within a segment)",
+    "way": "the total distance travelled",
     "time, added": "time (an added force)",
-    "jump": "time (a jump)",
-    "period": "time (a period)",
-    "period, added": "time (a period of an added force)",
+    "jump": "time (a step)",
+    "period": "time (periodic)",
+    "period, added": "time (a periodic added force)",
 }
-"""Coordinates of something unknown as a reader calls them; what is not here is called by its name."""
+"""Names for a reader of the coordinates of something unknown; a coordinate that is not here keeps its name."""
 
 
 def effect_title(name: str) -> str:
-    """Return the name of an effect, or of one of its parameters, as a reader says it."""
+    """Return the name of an effect, or of one of its parameters, for a reader."""
     if name == UNKNOWN:
         return "something unknown"
+    if name == REFITTED_LAW:
+        return "refitted law"
     return (
         name.replace("_", " ").replace("rate independent", "rate-independent").replace("mullins", "Mullins")
     )
@@ -44,7 +46,7 @@ def set_title(names: Sequence[str]) -> str:
 
 
 def dependence(by: str) -> str:
-    """Return the coordinate of something unknown as a reader calls it."""
+    """Return the name of a coordinate of something unknown for a reader."""
     return DEPENDENCE.get(by, by)
 
 
@@ -55,11 +57,16 @@ def listed(words: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
-def headline(names: Sequence[str], unexplained: bool, rivalled: bool) -> str:
-    """Return the verdict in one line, from the names of its effects."""
+def headline(names: Sequence[str], unexplained: bool, alternatives: bool) -> str:
+    """Return the verdict in one line.
+
+    names: of its effects; unexplained: whether something unknown acts; alternatives: whether there are any
+    """
     physics = [name for name in names if name != REFITTED_LAW]
     if not physics and not unexplained:
-        told = "No physics is missing: the elastic law is another tire's" if names else "Nothing is missing"
+        told = (
+            "No physics is missing: the elastic law has other coefficients" if names else "Nothing is missing"
+        )
     elif not names:
         told = "Something is missing that no known effect explains"
     else:
@@ -68,9 +75,9 @@ def headline(names: Sequence[str], unexplained: bool, rivalled: bool) -> str:
             parts.append("something that no known effect explains")
         told = f"Left out: {listed(parts)}"
         if REFITTED_LAW in names:
-            told += ", and the elastic law is another tire's"
-    if rivalled:
-        told += " – or something that these recordings cannot tell from it"
+            told += ", and the elastic law has other coefficients"
+    if alternatives:
+        told += " – but these recordings cannot rule out alternatives"
     return f"{told}."
 
 

@@ -1,4 +1,4 @@
-"""What the contract's names, numbers and spans are called in a report."""
+"""The names, numbers and spans of diagnosis.json as a report prints them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from radialtire import CATALOGUE, FLAT_RADIUS
 from ..names import REFITTED_LAW
 from . import titles
 
-LAW_STATEMENT = "the coefficients of the elastic law are another tire's; no physics is missing"
+LAW_STATEMENT = (
+    "the elastic law has other coefficients than in the baseline tire; a refitted law is not missing physics"
+)
 
 _SCALES = {
     "m": (1e3, "mm"),
@@ -22,18 +24,17 @@ _SCALES = {
     "m/s^2": (1.0, "m/s²"),
     "1": (1.0, ""),
 }
-"""Units of the contract that read better in others: factor and name."""
+"""Units of diagnosis.json that a report replaces: factor and name of the unit in the report."""
 
 _COORDINATES = {
     "history": "largest deflection so far",
-    "direction": "loading or unloading",
     "radius": "surface",
     "rate": "rate of deflection",
 }
 
 
 def meaning(effect: str, parameter: str) -> str:
-    """Return what a parameter means, from the catalogue, or nothing where it has none."""
+    """Return the meaning of a parameter from the catalogue; empty where the catalogue has none."""
     owner = CATALOGUE.get("elastic_shape" if effect == REFITTED_LAW else effect)
     found = [p.meaning for p in owner.parameters if p.name == parameter] if owner else []
     return found[0] if found else ""
@@ -79,7 +80,7 @@ def estimate(value: float, std: float | None, unit: str) -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share as percent; what is less than half of one is said to be so."""
+    """Return a share as percent; less than half a percent is shown as "< 1 %"."""
     if 0.0 < share < 0.005:
         return "< 1 %"
     return f"{100.0 * share:.0f} %".replace("-", "−")
@@ -94,20 +95,20 @@ def confidence_word(confidence: float) -> str:
 
 
 def coordinate(by: str) -> str:
-    """Return what a coordinate of the misfit is called."""
+    """Return the name of a coordinate of the misfit for a reader."""
     return _COORDINATES.get(by, by)
 
 
 def law_apart(verdict: Mapping[str, Any]) -> bool:
-    """Return whether the places of a verdict are those that the corrected law leaves (`locate.beyond_law`)."""
+    """Return whether the places of a verdict are those of the residual with the law refitted."""
     names = [effect["name"] for effect in verdict["effects"]]
     return REFITTED_LAW in names and len(names) > 1
 
 
 def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
-    """Return the first entries of `where`, at most so many; beyond `of_one` over one coordinate only to fill up.
+    """Return the first `most` entries of `where`; more than `of_one` over one coordinate only to fill up.
 
-    The elastic force is left out where the deflection tells the same.
+    Places over the elastic force are dropped where there are places over the deflection, which show the same.
     """
     by = {place["by"] for place in where}
     shown = [place for place in where if not (place["by"] == "force" and "deflection" in by)]
@@ -161,10 +162,10 @@ def headline(verdict: Mapping[str, Any]) -> str:
 
 
 def besides(verdict: Mapping[str, Any], but: str = "") -> str:
-    """Return what the summary says after the headline, without the sentence `but`."""
+    """Return the summary after its headline, without the sentence `but`."""
     return " ".join(str(verdict["summary"]).removeprefix(headline(verdict)).replace(but, "").split())
 
 
 def held_out_part(by: str) -> str:
-    """Return in brackets what a fit of its own left out, or nothing where recordings were held out."""
+    """Return in brackets which part of the recordings was held out; empty where whole recordings were."""
     return f" ({by})" if by and by != "recordings given" else ""
