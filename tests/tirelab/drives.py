@@ -1,9 +1,11 @@
-"""Recordings for tests, written out with numpy alone: the article's flat tire, driven in a few ways."""
+"""Recordings for tests, made with numpy alone: the article's flat tire, driven in a few ways."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from tirelab.recordings.recording import Recording, write_recording
 
 FloatArray = NDArray[np.float64]
 
@@ -52,3 +54,17 @@ def read(
     return Drive(
         name, time, shown, np.full(time.size, np.inf), force + noise * rng.standard_normal(time.size)
     )
+
+
+def damped(seed: int, damping: float = 500.0, samples: int = 6000) -> Drive:
+    """A ride on a tire with viscous damping [N s/m], under 5 N of noise."""
+    time, deflection, rate = ride(seed, samples=samples)
+    return read(f"ride {seed}", time, deflection, flat_force(deflection) + damping * rate, seed)
+
+
+def saved(drive: Drive, file: Path) -> Path:
+    """Write a drive as a recording file."""
+    write_recording(
+        Recording(file.stem, drive.time, drive.deflection, drive.surface_radius, drive.force), file
+    )
+    return file

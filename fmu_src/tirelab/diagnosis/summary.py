@@ -65,8 +65,8 @@ def _errors(corrected: bool, unexplained: bool, fit: Fit) -> list[str]:
     found.append(f"On held-out data it {change}.")
     if fit.held_out_after > AMPLIFIED * fit.held_out_noise_free:
         found.append(
-            f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the remainder is reading "
-            "noise amplified by differentiation."
+            f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the remainder is "
+            "reading noise amplified by differentiation."
         )
     return found
 

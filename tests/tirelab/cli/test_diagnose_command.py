@@ -10,29 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from drives import Drive, flat_force, read, ride, triangle
+from drives import Drive, flat_force, read, ride, saved
 from radialtire import CATALOGUE, TireModel, read_tire
 from tirelab.cli import diagnose as diagnose_command
 from tirelab.diagnosis import diagnosis_run
 from tirelab.diagnosis.verdict import Verdict
 from tirelab.fmu.replay import replay
-from tirelab.recordings.recording import Recording, read_recording, write_recording
+from tirelab.recordings.recording import Recording, read_recording
 
 NUMBER = (int, float)
-
-
-def saved(drive: Drive, folder: Path) -> Path:
-    path = folder / f"{drive.name}.csv"
-    write_recording(
-        Recording(drive.name, drive.time, drive.deflection, drive.surface_radius, drive.force), path
-    )
-    return path
-
-
-def damped(name: str, seed: int) -> Drive:
-    """A ride with 500 N s/m of damping, under 5 N of noise."""
-    time, deflection, rate = ride(seed, samples=4000)
-    return read(name, time, deflection, flat_force(deflection) + 500.0 * rate, seed)
 
 
 def run(*arguments: str | Path) -> Result:
@@ -42,31 +28,25 @@ def run(*arguments: str | Path) -> Result:
 
 
 @pytest.fixture(scope="module")
-def rides(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def rides(damped_run: Any) -> Path:
     """A folder with a recording to be fitted and one to be held out."""
-    folder = tmp_path_factory.mktemp("rides")
-    saved(damped("ride", 1), folder)
-    saved(damped("kept", 2), folder)
-    return folder
+    return damped_run.rides
 
 
 @pytest.fixture(scope="module")
-def done(rides: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path, Verdict]:
-    """A diagnosis with a recording held out: what was printed, the folder, and the verdict."""
-    out = tmp_path_factory.mktemp("damped") / "deep" / "out"
-    found: list[Verdict] = []
+def done(damped_run: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path]:
+    """A diagnosis with a recording held out, its verdict already known: what was printed, and the folder."""
+    rides, out = damped_run.rides, tmp_path_factory.mktemp("command") / "deep" / "out"
     with pytest.MonkeyPatch.context() as patch:
-        genuine = diagnosis_run.diagnose
-        patch.setattr(diagnosis_run, "diagnose", lambda *a, **k: found.append(genuine(*a, **k)) or found[0])
+        patch.setattr(diagnosis_run, "diagnose", lambda *_, **__: damped_run.verdict)
         result = run(rides / "ride.csv", "--held-out", rides / "kept.csv", "--out", out)
-    return result, out, found[0]
+    return result, out
 
 
 @pytest.fixture
-def known(done: tuple[Result, Path, Verdict], monkeypatch: pytest.MonkeyPatch) -> Verdict:
-    """The verdict of `done`, which the command is given without thinking again."""
-    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: done[2])
-    return done[2]
+def known(damped_run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The verdict is already known."""
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: damped_run.verdict)
 
 
 def check_contract(content: Any) -> None:
@@ -122,8 +102,8 @@ def rmse(recording: Recording, force: Any) -> float:
     return float(np.sqrt(np.mean((recording.force - force) ** 2)))
 
 
-def test_the_files_are_written_and_keep_the_contract(done: tuple[Result, Path, Verdict]) -> None:
-    result, out, _ = done
+def test_the_files_are_written_and_keep_the_contract(done: tuple[Result, Path]) -> None:
+    result, out = done
     assert result.exit_code == 0, result.output
     names = {"tire.json", "BicycleTire.fmu", "diagnosis.json", "report.html"}
     assert {f.name for f in out.iterdir()} == names
@@ -132,9 +112,9 @@ def test_the_files_are_written_and_keep_the_contract(done: tuple[Result, Path, V
     assert [e["name"] for e in content["verdict"]["effects"]] == ["viscous_damping"]
 
 
-def test_the_errors_are_those_of_the_corrected_fmu(done: tuple[Result, Path, Verdict], rides: Path) -> None:
+def test_the_errors_are_those_of_the_corrected_fmu(done: tuple[Result, Path], rides: Path) -> None:
     """Before: the article's law by hand (its file is written to 12 digits). After: the FMU that was written."""
-    _, out, _ = done
+    _, out = done
     fit = json.loads((out / "diagnosis.json").read_text())["fit"]
     for name, prefix in (("ride", ""), ("kept", "held_out_")):
         recording = read_recording(rides / f"{name}.csv")
@@ -146,41 +126,64 @@ def test_the_errors_are_those_of_the_corrected_fmu(done: tuple[Result, Path, Ver
         assert fit[f"{prefix}after"] < 0.5 * fit[f"{prefix}before"]
 
 
-def test_the_corrected_tire_says_what_it_is(done: tuple[Result, Path, Verdict]) -> None:
-    _, out, _ = done
+def test_the_corrected_tire_says_what_it_is(done: tuple[Result, Path]) -> None:
+    _, out = done
     tire = read_tire(out / "tire.json")
     assert tire.name == f"{TireModel().name}, corrected"
     assert "tirelab diagnose with ride" in tire.source
     assert [effect.name for effect, _ in tire.effects] == ["viscous_damping"]
 
 
-def test_the_terminal_report_is_short_and_plain(done: tuple[Result, Path, Verdict]) -> None:
-    result, _, _ = done
+def test_the_terminal_report_is_short_and_plain(done: tuple[Result, Path]) -> None:
+    result, _ = done
     lines = result.stdout.splitlines()
     assert lines[0] == "Left out: viscous damping."
     assert len(lines) < 50
     assert "\x1b" not in result.output
     assert max(map(len, lines)) <= diagnose_command.COLUMNS
     told = " ".join(" ".join(lines).split())
-    for words in ("not seen by the fit", "where they part", "N·s/m", "force for each m/s", "report.html"):
+    for words in ("held-out", "where they differ", "N·s/m", "force for each m/s", "report.html"):
         assert words in told
-    stages = result.stderr.splitlines()  # no terminal: one plain line for each stage
-    assert stages[:2] == ["reading ride.csv", "reading kept.csv"]
-    assert stages[-1] == "writing the report"
+    assert "\x1b" not in result.stderr
 
 
-def test_the_page_names_the_command_and_both_recordings(done: tuple[Result, Path, Verdict]) -> None:
+def test_progress_is_one_plain_line_for_each_stage_on_standard_error(
+    done: tuple[Result, Path], damped_run: Any, tmp_path: Path
+) -> None:
+    """The verdict is known here, so that the stages of reading, building and replaying are left."""
+    shown = [
+        "reading ride.csv",
+        "reading kept.csv",
+        "building the corrected FMU",
+        "replaying the corrected FMU on ride",
+        "replaying the corrected FMU on kept",
+        "writing the report",
+    ]
+    assert done[0].stderr.splitlines() == shown
+    # The whole diagnosis says the same, and the stages between.
+    assert [s for s in damped_run.stages if s in shown] == shown
+    between = damped_run.stages[2 : damped_run.stages.index("building the corrected FMU")]
+    assert {"estimating the noise", "fitting the parameters"} < set(between)
+    assert all("\n" not in s and s == s.strip() for s in damped_run.stages)
+
+
+def test_quiet_shows_no_progress(known: None, rides: Path, tmp_path: Path) -> None:
+    result = run(rides / "ride.csv", "--quiet", "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    assert result.stderr == ""
+
+
+def test_the_page_names_the_command_and_both_recordings(done: tuple[Result, Path]) -> None:
     page = (done[1] / "report.html").read_text(encoding="utf-8")
     for words in ("tirelab diagnose", "--held-out", "ride.csv", "kept.csv", "Hull, Wang &amp; Moore 1996"):
         assert words in page
 
 
-def test_rivals_come_with_a_test_that_the_rig_can_run(tmp_path: Path) -> None:
-    """Friction on a triangle at one rate on one surface: no recording of this kind tells it from viscosity."""
-    time, deflection = triangle()
-    way = np.where(time / 4.0 % 1.0 < 0.5, 1.0, -1.0)
-    force = np.maximum(flat_force(deflection) + 28.0 * way * np.minimum(deflection / 1e-3, 1.0), 0.0)
-    file = saved(read("press", time, deflection, force, 4), tmp_path)
+def test_alternatives_come_with_a_test_that_the_rig_can_run(
+    one_rate_press: Drive, one_rate_verdict: Verdict, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: one_rate_verdict)
+    file = saved(one_rate_press, tmp_path / "press.csv")
     result = run(file, "--out", tmp_path / "out", "--json", "--quiet")
     assert result.exit_code == 0, result.output
     content = json.loads(result.stdout, parse_constant=pytest.fail)
@@ -195,10 +198,10 @@ def test_rivals_come_with_a_test_that_the_rig_can_run(tmp_path: Path) -> None:
     assert table.dtype.names == ("time_[s]", "deflection_[cm]", "radius_[cm]")
     assert np.all(np.diff(table["time_[s]"]) > 0.0)
     assert table["deflection_[cm]"].max() == pytest.approx(100.0 * test["amplitude"], abs=1e-6)
-    assert "The test that would tell" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Recommended next test" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_folder_means_its_recordings(known: Verdict, rides: Path, tmp_path: Path) -> None:
+def test_a_folder_means_its_recordings(known: None, rides: Path, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "separating_test.csv").write_text("of an earlier diagnosis")
     result = run(rides, "--out", tmp_path / "out")
@@ -209,19 +212,19 @@ def test_a_folder_means_its_recordings(known: Verdict, rides: Path, tmp_path: Pa
     assert not (tmp_path / "out" / "separating_test.csv").exists()
 
 
-def test_an_fmu_that_does_something_else_is_told(
-    known: Verdict, rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_an_fmu_that_does_something_else_is_reported(
+    known: None, rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(diagnosis_run, "replay", lambda fmu, r: replay(fmu, r) + 3.0)
     result = run(rides / "ride.csv", "--out", tmp_path)
     assert result.exit_code == 0
-    assert "on ride the corrected FMU differs by up to 3 N from the simulation" in " ".join(
+    assert "on ride the corrected FMU differs by up to 3 N from the fitted simulation" in " ".join(
         result.stdout.split()
     )
     assert "differs by up to 3 N" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
-def test_what_reading_did_is_told(known: Verdict, rides: Path, tmp_path: Path) -> None:
+def test_changes_made_while_reading_are_reported(known: None, rides: Path, tmp_path: Path) -> None:
     turned = tmp_path / "turned.csv"
     rows = (rides / "ride.csv").read_text().splitlines()
     pairs = [row.rsplit(",", 1) for row in rows[1:]]
@@ -236,7 +239,7 @@ def test_bad_input_ends_with_one_sentence(rides: Path, tmp_path: Path) -> None:
     empty.mkdir()
     short = tmp_path / "short.csv"
     short.write_text("\n".join((rides / "ride.csv").read_text().splitlines()[:40]) + "\n")
-    silent = saved(_silent(), tmp_path)
+    silent = saved(_silent(), tmp_path / "silent.csv")
     for arguments, words in (
         ([rides / "none.csv"], "there is no such file"),
         ([empty], "holds no recording"),
@@ -260,7 +263,7 @@ def _silent() -> Drive:
     return read("silent", time, deflection, np.full(time.size, 50.0), 3)
 
 
-def test_a_folder_that_cannot_be_written_is_told_at_once(
+def test_a_folder_that_cannot_be_written_is_reported_at_once(
     rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: pytest.fail("it began to work"))
@@ -283,7 +286,7 @@ def test_each_gives_a_verdict_for_every_recording(rides: Path, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("options", [("--each", "--json"), ("--jobs", "2"), ("--dask", "tcp://nowhere:1")])
-def test_options_that_do_not_go_together_are_told(
+def test_options_that_cannot_be_combined_are_refused(
     rides: Path, tmp_path: Path, options: tuple[str, ...]
 ) -> None:
     result = run(rides, *options, "--out", tmp_path / "out")

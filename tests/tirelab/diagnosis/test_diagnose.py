@@ -5,40 +5,40 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drives import Drive, flat_force, read, ride, triangle
+from drives import Drive, damped, flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
 from tirelab.diagnosis.diagnose import CATALOGUE_NAMES, PoorRecording, diagnose
 from tirelab.simulation.simulate import simulate
 
 
-def with_damping(seed):
-    time, deflection, rate = ride(seed)
-    return read(f"ride {seed}", time, deflection, flat_force(deflection) + 500.0 * rate, seed)
+def test_nothing_is_an_answer(complete_verdict):
+    assert complete_verdict.names == ()
+    assert complete_verdict.fit.noise == pytest.approx(5.0, rel=0.06)
+    assert complete_verdict.confidence > 0.6
+    assert complete_verdict.tire.name == TireModel().name
 
 
-def test_nothing_is_an_answer():
-    time, deflection, _ = ride(11)
-    verdict = diagnose([read("ride", time, deflection, flat_force(deflection), 12)])
-    assert verdict.names == ()
-    assert verdict.fit.noise == pytest.approx(5.0, rel=0.06)
-    assert verdict.confidence > 0.6
-
-
-def test_damping_is_named_and_its_size_found():
-    verdict = diagnose([with_damping(1)], held_out=[with_damping(2)])
+def test_damping_is_named_and_its_size_found(damped_run):
+    verdict = damped_run.verdict
     assert verdict.names == ("viscous_damping",)
     damping = verdict.effects[0].parameters["damping"]
-    # 6000 samples know it to half a percent; the smoothed rate is a percent of it off.
+    # 4000 samples know it to a percent; the smoothed rate is a percent of it off.
     assert damping.value == pytest.approx(500.0, rel=0.03)
     assert verdict.fit.held_out_after < 0.5 * verdict.fit.held_out_before
+    (kept,) = verdict.held_out
     assert verdict.fit.held_out_after == pytest.approx(
-        float(np.sqrt(np.mean((with_damping(2).force - simulate(verdict.tire, with_damping(2))) ** 2)))
+        float(np.sqrt(np.mean((kept.force - simulate(verdict.tire, kept)) ** 2)))
     )
 
 
+def test_the_corrected_tire_has_a_name_of_its_own(unequal_verdict):
+    assert unequal_verdict.tire.name == f"{TireModel().name}, corrected"
+    assert unequal_verdict.tire.source.endswith("corrected by tirelab diagnose with ride 1, ride 2")
+
+
 @pytest.mark.parametrize("zero", [0.0, -100.0])
-def test_a_ceiling_above_all_that_the_believed_tire_can_do_is_found(zero):
-    # A tire stiffer by a quarter: its ceiling of 1900 N lies above the believed one's largest force of 1689 N.
+def test_a_ceiling_above_the_largest_force_of_the_baseline_is_found(zero):
+    # A tire stiffer by a quarter: its ceiling of 1900 N lies above the baseline's largest force of 1689 N.
     time, deflection, _ = ride(9)
     force = 1.25 * flat_force(deflection)
     assert 0.9 * force.max() > flat_force(deflection).max()
@@ -50,25 +50,23 @@ def test_a_ceiling_above_all_that_the_believed_tire_can_do_is_found(zero):
     assert limit == pytest.approx(0.9 * force.max() + zero, abs=2.0)
 
 
-def test_an_effect_that_the_catalogue_lacks_is_unknown_or_has_rivals():
+def test_an_effect_outside_the_catalogue_is_unknown_or_has_alternatives():
     catalogue = [n for n in CATALOGUE_NAMES if n != "viscous_damping"]
-    verdict = diagnose([with_damping(3)], catalogue=catalogue)
+    verdict = diagnose([damped(3)], catalogue=catalogue)
     assert "viscous_damping" not in verdict.names
     assert verdict.unexplained or verdict.alternatives
 
 
-def test_a_ripple_over_the_deflection_is_unknown_and_repeats():
-    time, deflection, _ = ride(5)
-    force = flat_force(deflection) + 25.0 * np.sin(2.0 * np.pi * deflection / 0.0035)
-    verdict = diagnose([read("ride", time, deflection, force, 6)])
+def test_a_ripple_over_the_deflection_is_unknown_and_repeats(rippled_verdict):
+    verdict = rippled_verdict
     assert verdict.names == ("unknown",)
     assert "deflection" in verdict.unexplained_by
     correction = next(c for c in verdict.residual_models if c.by == "deflection")
-    # 25 / sqrt(2) = 17.7 N of ripple under 5 N of noise: 93 % of the squared misfit can be foretold.
-    assert correction.repeats > 0.75
-    told = json.loads(json.dumps(verdict.to_contract(), allow_nan=False))["verdict"]["corrections"]
+    # 25 / sqrt(2) = 17.7 N of ripple under 5 N of noise: 93 % of the squared misfit can be predicted.
+    assert correction.r2 > 0.75
+    told = json.loads(json.dumps(verdict.to_dict(), allow_nan=False))["verdict"]["corrections"]
     assert {c["by"] for c in told} == set(verdict.unexplained_by)
-    # The tire cannot hold the ripple; with the learned force 5 N of noise are left, held out little more.
+    # The tire cannot hold the ripple; with the regression 5 N of noise are left, held out little more.
     assert verdict.fit.held_out_after > 15.0
     assert correction.after < 7.0
     assert correction.held_out_after < 8.0
@@ -92,19 +90,16 @@ def test_another_tire_is_a_recalibration():
     assert pytest.approx(1.08 * 550.9 * 1.2**1.40, rel=3e-3) == 1.2**B * A
 
 
-def test_at_one_rate_the_loops_are_rivals_with_the_test_that_tells():
-    time, deflection = triangle()
-    loop = 20.0 * np.sign(np.sin(2.0 * np.pi * time / 4.0))
-    force = np.maximum(flat_force(deflection) + loop, 0.0)
-    verdict = diagnose([read("triangle", time, deflection, force, 9)])
+def test_at_one_rate_the_loops_are_alternatives(one_rate_verdict):
+    verdict = one_rate_verdict
     named = {frozenset(verdict.names), *(frozenset(r.names) for r in verdict.alternatives)}
     assert frozenset({"viscous_damping"}) in named
     assert frozenset({"rate_independent_hysteresis"}) in named
     assert verdict.confidence < 0.5
 
 
-def test_the_contract_is_json():
-    content = json.loads(json.dumps(diagnose([with_damping(4)]).to_contract(), allow_nan=False))
+def test_a_verdict_is_json(unequal_verdict):
+    content = json.loads(json.dumps(unequal_verdict.to_dict(), allow_nan=False))
     assert content["schema"] == 1
     assert set(content["verdict"]) == {
         "effects",
@@ -120,7 +115,6 @@ def test_the_contract_is_json():
         "after",
         "held_out_before",
         "held_out_after",
-        "held_out_by",
     }
     assert content["verdict"]["effects"][0]["parameters"]["damping"]["unit"] == "N.s/m"
 
@@ -150,7 +144,7 @@ def test_a_poor_recording_is_refused_in_a_sentence(case):
 
 def test_an_unknown_name_in_the_catalogue_is_an_error():
     with pytest.raises(ValueError, match="phlogiston"):
-        diagnose([with_damping(1)], catalogue=["phlogiston"])
+        diagnose([damped(1)], catalogue=["phlogiston"])
 
 
 @pytest.mark.slow

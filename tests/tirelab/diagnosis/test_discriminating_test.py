@@ -49,7 +49,7 @@ def test_every_waveform_keeps_within_the_rig(name):
 
 
 def test_the_contract_of_a_test():
-    entry = fitted(6.0).to_contract()
+    entry = fitted(6.0).to_dict()
     assert entry["surfaces"] == ["inf"]
     assert "sentence" in entry
 
@@ -64,7 +64,7 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     found = discriminate(friction(), friction("viscous_damping"), 6.0, Limits())
     assert not found.sufficient
     assert found.sentence.startswith(
-        "No motion within the rig's limits would tell rate-independent hysteresis from"
+        "No motion within the rig's limits separates rate-independent hysteresis from"
     )
-    assert "5.7 are needed" in found.sentence
+    assert "5.7 times are needed" in found.sentence
     assert fitted(6.0).sufficient

@@ -165,11 +165,11 @@ def test_a_time_is_told_of_its_recording_and_by_its_own_clock():
     time = first(spans, "time")
     assert time.recording == "press 2"
     assert overlap(time, 105.0, 106.0) > 0.8
-    assert time.to_contract()["recording"] == "press 2"
+    assert time.to_dict()["recording"] == "press 2"
 
 
 def test_recordings_are_numbered_from_one():
-    entry = first(two_recordings([nothing, lambda t, x: 10.0 + 0.0 * t]), "recording").to_contract()
+    entry = first(two_recordings([nothing, lambda t, x: 10.0 + 0.0 * t]), "recording").to_dict()
     assert (entry["from"], entry["to"], entry["unit"], entry["label"]) == (2.0, 2.0, "1", "press 2")
     assert entry["share"] > 0.95
     assert entry["samples"] == pytest.approx(0.5, abs=0.02)
@@ -177,11 +177,11 @@ def test_recordings_are_numbered_from_one():
 
 def test_a_surface_is_told_by_its_radius():
     entry = first(two_recordings([nothing, lambda t, x: 10.0 + 0.0 * t], (np.inf, -0.381)), "radius")
-    contract = entry.to_contract()
+    contract = entry.to_dict()
     assert (contract["from"], contract["to"], contract["unit"]) == (-0.381, -0.381, "m")
     assert contract["label"] == "concave, radius 0.381 m"
     flat = first(two_recordings([lambda t, x: 10.0 + 0.0 * t, nothing], (np.inf, -0.381)), "radius")
-    contract = json.loads(json.dumps(flat.to_contract(), allow_nan=False))
+    contract = json.loads(json.dumps(flat.to_dict(), allow_nan=False))
     assert (contract["from"], contract["to"], contract["label"]) == ("inf", "inf", "flat")
 
 
@@ -211,10 +211,10 @@ def test_cycles_are_numbered_from_one():
     drive = read("cycles", time, deflection, flat_force(deflection), 4, noise=0.0)
     own = noise(1, time.size)
     softening = np.where(time < 3.0, 30.0 * deflection / 0.02, 0.0)
-    entry = first(places([drive], [own + softening], [own]), "cycle").to_contract()
+    entry = first(places([drive], [own + softening], [own]), "cycle").to_dict()
     assert (entry["from"], entry["to"], entry["label"]) == (1.0, 1.0, "cycle 1")
     second = np.where((time >= 9.0) & (time < 18.0), 30.0 * deflection / 0.02, 0.0)
-    entry = first(places([drive], [own + second], [own]), "cycle").to_contract()
+    entry = first(places([drive], [own + second], [own]), "cycle").to_dict()
     assert (entry["from"], entry["to"], entry["label"]) == (4.0, 6.0, "cycles 4 to 6")
 
 
@@ -259,7 +259,7 @@ def test_noise_that_wanders_is_no_place_where_the_correction_leaves_it():
 
 
 def test_the_contract_of_a_place():
-    entry = located(lambda t, x, v: 300.0 * v)[0].to_contract()
+    entry = located(lambda t, x, v: 300.0 * v)[0].to_dict()
     keys = {"by", "from", "to", "unit", "label", "share", "samples", "mean_residual", "chance"}
     assert set(entry) == keys
     json.dumps(entry, allow_nan=False)

@@ -44,14 +44,14 @@ def test_at_one_rate_every_loop_is_a_rival():
 
 def test_what_a_triangle_lacks():
     lacks = poverty(scene(*triangle()))
-    assert "there is one constant rate only" in lacks
-    assert "there is one surface only" in lacks
-    assert "nothing is held still for a second" in lacks
+    assert "one constant rate only: drive a second rate" in lacks
+    assert "one surface only: press on a second surface" in lacks
+    assert "no hold: hold 10 s at 15 mm" in lacks
 
 
 def test_the_reason_for_rivals_of_the_deflection_alone():
     reason = reason_of(("series_compliance",), ("recalibration",), scene(*ride(1)[:2]))
-    assert "deflection and surface alone" in reason
+    assert "deflection and surface only" in reason
 
 
 def test_two_sets_that_are_as_likely_share_the_confidence():

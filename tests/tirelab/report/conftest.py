@@ -176,7 +176,7 @@ def two_and_another_tire() -> Diagnosed:
     )
 
 
-def rivals() -> Diagnosed:
+def alternatives() -> Diagnosed:
     found = with_effects(rate_independent_hysteresis={"slip_force": 25.0, "reach": 1e-3})
     time = np.arange(0.0, 60.0, 5e-3)
     return diagnosed(
@@ -185,7 +185,7 @@ def rivals() -> Diagnosed:
         [effect("rate_independent_hysteresis", 0.98, slip_force=(25.0, 0.4, "N"), reach=(1e-3, 6e-5, "m"))],
         confidence=0.46,
         alternatives=[["viscous_damping"], ["viscoelastic_relaxation", "recalibration"]],
-        reasons=["there is one constant rate only", "nothing is held still for a second"],
+        reasons=["one constant rate only: drive a second rate", "no hold: hold 10 s at 14 mm"],
         separating_test={
             "waveform": "triangles at three rates",
             "duration": 60.0,
@@ -221,7 +221,7 @@ def unknown() -> Diagnosed:
             "x": x.tolist(),
             "force": ripple.tolist(),
             "std": [1.0] * 40,
-            "repeats": "It explains 88 % of what is left on blocks of time that it has not seen.",
+            "repeats": "It repeats: it explains 88 % of the remainder on held-out blocks of time.",
         },
         warnings=["the corrected FMU and the simulation differ by 3.1 N at most"],
     )
@@ -244,7 +244,7 @@ KINDS: dict[str, Callable[[], Diagnosed]] = {
     "nothing": nothing_missing,
     "one": one_effect,
     "two": two_and_another_tire,
-    "rivals": rivals,
+    "alternatives": alternatives,
     "unknown": unknown,
 }
 

@@ -11,7 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from tirelab.report import write_report
+from tirelab.report.page import write_report
 
 CHROMIUM = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))),
@@ -74,14 +74,14 @@ def test_requests_and_complaints_would_be_seen(tmp_path: Path) -> None:
         (
             "two",
             (
-                "The loops before and after",
+                "Force loops before and after the correction",
                 "How large the error is",
                 "What was left out",
-                "What else it could be",
+                "Alternative models",
             ),
         ),
-        ("rivals", ("The test that would tell", "What was compared", "Where this comes from")),
-        ("unknown", ("Where simulation and recording part", "Something that no known effect explains")),
+        ("alternatives", ("Recommended next test", "Models compared", "Data and software")),
+        ("unknown", ("Where simulation and recording differ", "Something that no known effect explains")),
     ],
 )
 def test_the_report_opens_without_requests_or_complaints(
@@ -103,7 +103,7 @@ def test_the_report_opens_without_requests_or_complaints(
 
 def test_a_phone_is_wide_enough(kinds: dict[str, Any], tmp_path: Path) -> None:
     """A frame as wide as a phone tells by its title by how much the page in it would have to be wider."""
-    made = kinds["rivals"]
+    made = kinds["alternatives"]
     page = tmp_path / "report.html"
     write_report(page, made.diagnosis, made.recordings, made.before, made.after, held_out=made.held_out)
     around = tmp_path / "around.html"

@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import Recording
-from tirelab.report import write_report
+from tirelab.report.page import write_report
 
 HOSTILE = (
     "<script>alert(1)</script> \"'& $x_y$ <img src=http://a.invalid onerror=alert(2)> {{ 7*7 }} 轮胎 \x1b[31m"
 )
 """A name that would run, load, compute or colour something wherever it is not escaped."""
 
-KINDS = ("nothing", "one", "two", "rivals", "unknown")
+KINDS = ("nothing", "one", "two", "alternatives", "unknown")
 
 
 class Elements(HTMLParser):
@@ -115,24 +115,24 @@ def test_each_kind_says_its_verdict_in_plain_words(pages: dict[str, str]) -> Non
     assert said["nothing"] == "Nothing is missing."
     assert said["one"] == "Left out: viscous damping."
     assert said["two"] == (
-        "Left out: rate-independent hysteresis and deflection offset, and the elastic law is another tire's."
+        "Left out: rate-independent hysteresis and deflection offset, and the elastic law has other coefficients."
     )
-    assert said["rivals"].startswith(
-        "Left out: rate-independent hysteresis – or something that these recordings"
+    assert said["alternatives"] == (
+        "Left out: rate-independent hysteresis – but these recordings cannot rule out alternatives."
     )
     assert said["unknown"] == "Something is missing that no known effect explains."
 
 
-def test_rivals_have_reasons_and_a_test(pages: dict[str, str]) -> None:
-    page = Elements(pages["rivals"])
+def test_alternatives_have_reasons_and_a_test(pages: dict[str, str]) -> None:
+    page = Elements(pages["alternatives"])
     assert [" ".join(item.split()) for item in page.texts["li"]] == [
-        "viscous damping: there is one constant rate only",
-        "viscoelastic relaxation and recalibration: nothing is held still for a second",
+        "viscous damping (one constant rate only: drive a second rate)",
+        "viscoelastic relaxation and refitted law (no hold: hold 10 s at 14 mm)",
     ]
     text = page.texts["main"][0]
-    for words in ("The test that would tell", "22.0 mm", "250 mm/s", "flat ground", "separating_test.csv"):
+    for words in ("Recommended next test", "22.0 mm", "250 mm/s", "flat ground", "separating_test.csv"):
         assert words in text
-    assert "The test that would tell" not in Elements(pages["one"]).texts["main"][0]
+    assert "Recommended next test" not in Elements(pages["one"]).texts["main"][0]
 
 
 def test_parameters_have_value_deviation_unit_and_meaning(pages: dict[str, str]) -> None:
@@ -143,7 +143,9 @@ def test_parameters_have_value_deviation_unit_and_meaning(pages: dict[str, str])
 
 def test_what_is_unknown_is_shown_with_its_warning(pages: dict[str, str]) -> None:
     text = Elements(pages["unknown"]).texts["main"][0]
-    assert "learned over the deflection: a description, not physics." in text
+    assert (
+        "A regression of the remaining force over the deflection. It is a description, not physics." in text
+    )
     assert "88 %" in text
     assert "differ by 3.1 N" in text
 
@@ -151,12 +153,12 @@ def test_what_is_unknown_is_shown_with_its_warning(pages: dict[str, str]) -> Non
 def test_held_out_recordings_are_told_apart(kinds: dict[str, Any], tmp_path: Path) -> None:
     made = kinds["one"]
     kept = Elements(written(tmp_path / "kept.html", made)).texts["main"][0]
-    assert "Not seen by the fit" in kept
+    assert "Held-out\n" in kept
     fit = {**made.diagnosis["fit"], "held_out_before": None, "held_out_after": None}
     without = replace(made, diagnosis={**made.diagnosis, "fit": fit}, held_out=None)
     text = Elements(written(tmp_path / "none.html", without)).texts["main"][0]
-    assert "Not seen by the fit" not in text
-    assert "Nothing was kept from the fit" in text
+    assert "Held-out\n" not in text
+    assert "No data was held out" in text
 
 
 def test_names_notes_and_files_cannot_become_markup(kinds: dict[str, Any], tmp_path: Path) -> None:
@@ -209,7 +211,7 @@ def test_file_names_that_are_no_text_are_written_all_the_same(kinds: dict[str, A
 
 
 def test_the_same_diagnosis_gives_the_same_bytes(kinds: dict[str, Any], tmp_path: Path) -> None:
-    made = kinds["rivals"]
+    made = kinds["alternatives"]
     assert written(tmp_path / "a.html", made) == written(tmp_path / "b.html", made)
 
 

@@ -1,0 +1,117 @@
+"""A whole diagnosis of files: what it writes, and what it refuses in one sentence before it begins to work."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+from radialtire import TireModel, read_tire
+from tirelab.diagnosis import diagnosis_run
+from tirelab.diagnosis.diagnosis_run import command_line, run_diagnosis
+from tirelab.errors import TirelabError
+from tirelab.recordings.reading import Reading
+
+
+@pytest.fixture
+def idle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No diagnosis may begin."""
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: pytest.fail("it began to work"))
+
+
+def refused(said: str, *arguments: Any, **options: Any) -> None:
+    with pytest.raises(TirelabError, match=said) as caught:
+        run_diagnosis(*arguments, **options)
+    sentence = str(caught.value)
+    assert "\n" not in sentence
+    assert "Traceback" not in sentence
+    assert not sentence.endswith(".")
+
+
+def test_a_file_that_is_not_there_is_refused(idle: None, tmp_path: Path) -> None:
+    refused("none.csv.*there is no such file", [tmp_path / "none.csv"], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_without_recordings_is_refused(idle: None, tmp_path: Path) -> None:
+    (tmp_path / "notes.md").write_text("no recording")
+    refused("holds no recording; a recording ends in one of .*csv", [tmp_path], tmp_path / "out")
+
+
+def test_a_file_given_twice_is_refused(idle: None, damped_run: Any, tmp_path: Path) -> None:
+    ride = damped_run.rides / "ride.csv"
+    refused("ride.csv is given twice; give each recording once", [ride, damped_run.rides], tmp_path / "out")
+    refused("ride.csv is given twice", [ride], tmp_path / "out", held_out=[ride])
+    detour = damped_run.rides / ".." / damped_run.rides.name / "ride.csv"
+    refused("ride.csv is given twice", [ride, detour], tmp_path / "out")
+
+
+def test_a_folder_that_cannot_be_written_is_refused(
+    idle: None, damped_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("a file")
+    ride = damped_run.rides / "ride.csv"
+    refused("cannot be written, .*taken is a file; name another folder with --out", [ride], taken / "deeper")
+    # Root may write everywhere, so the answer of the system is given by hand.
+    monkeypatch.setattr(diagnosis_run.os, "access", lambda path, mode: False)
+    refused("is not writable; name another folder with --out", [ride], tmp_path / "new")
+
+
+@pytest.mark.parametrize("content", ["no json", "[1, 2]", '{"schema": 1, "law": {"name": "phlogiston"}}'])
+def test_a_broken_tire_file_is_refused(idle: None, damped_run: Any, tmp_path: Path, content: str) -> None:
+    broken = tmp_path / "broken.json"
+    broken.write_text(content)
+    refused("broken.json", [damped_run.rides / "ride.csv"], tmp_path / "out", tire=broken)
+    refused("none.json", [damped_run.rides / "ride.csv"], tmp_path / "out", tire=tmp_path / "none.json")
+
+
+def test_a_recording_that_cannot_be_diagnosed_leaves_no_folder(damped_run: Any, tmp_path: Path) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join((damped_run.rides / "ride.csv").read_text().splitlines()[:40]) + "\n")
+    refused("has 39 samples; at least 100 are needed", [short], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_everything_is_written(damped_run: Any) -> None:
+    files = {f.name for f in damped_run.out.iterdir()}
+    assert files == {"tire.json", "BicycleTire.fmu", "diagnosis.json", "report.html"}
+    assert json.loads((damped_run.out / "diagnosis.json").read_text()) == damped_run.run.content
+    tire = read_tire(damped_run.out / "tire.json")
+    assert tire.name == f"{TireModel().name}, corrected"
+    assert tire.effects == damped_run.verdict.tire.effects
+    assert damped_run.run.warnings == ()
+
+
+def test_the_stages_are_said_in_their_order(damped_run: Any) -> None:
+    stages = list(damped_run.stages)
+    assert stages[:3] == ["reading ride.csv", "reading kept.csv", "estimating the noise"]
+    assert stages[-3:] == [
+        "replaying the corrected FMU on ride",
+        "replaying the corrected FMU on kept",
+        "writing the report",
+    ]
+    assert stages.index("fitting the parameters") < stages.index("validating the correction on held-out data")
+
+
+def test_the_command_line_repeats_the_diagnosis() -> None:
+    reading = Reading()
+    line = command_line(
+        [Path("a b.csv"), Path("c.csv")], Path("out"), Path("t.json"), [Path("k.csv")], reading
+    )
+    assert shlex.split(line) == [
+        *("tirelab", "diagnose", "a b.csv", "c.csv"),
+        *("--tire", "t.json", "--out", "out", "--held-out", "k.csv"),
+    ]
+    assert "--tire" not in command_line([Path("a.csv")], Path("out"), None, [], reading)
+
+
+def test_diagnose_files_writes_the_same(
+    damped_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: damped_run.verdict)
+    diagnosis_run.diagnose_files([damped_run.rides / "ride.csv"], None, tmp_path / "out")
+    assert (tmp_path / "out" / "diagnosis.json").is_file()
+    assert (tmp_path / "out" / "report.html").is_file()

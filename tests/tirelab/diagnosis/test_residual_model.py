@@ -1,0 +1,57 @@
+"""The regression of an unexplained residual over one coordinate."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drives import flat_force, read, ride
+from radialtire import TireModel
+from tirelab.diagnosis.held_out import HeldOut, Part
+from tirelab.diagnosis.residual_model import residual_models
+from tirelab.preprocessing.dataset import dataset_of
+
+LEVEL = 5.0
+
+
+def regressed(by: str, force, seed: int = 3):
+    """Regress `force`(time, deflection) under noise over a coordinate; the last third is held out."""
+    time, deflection, _ = ride(seed)
+    own = force(time, deflection) + LEVEL * np.random.default_rng(1).standard_normal(time.size)
+    dataset = dataset_of([read("ride", time, deflection, flat_force(deflection), seed)], TireModel())
+    kept = time < 20.0
+    (experiment,) = dataset.experiments
+    parts = [(Part(experiment, own, own, own, chosen),) for chosen in (kept, ~kept)]
+    (found,) = residual_models((by,), dataset, [own], HeldOut("time block 20-30 s", *parts))
+    return found
+
+
+def test_a_force_over_the_deflection_is_found_and_repeats():
+    found = regressed("deflection", lambda t, x: 25.0 * np.sin(2.0 * np.pi * x / 0.007))
+    # 25 / sqrt(2) = 17.7 N under 5 N of noise: R^2 is 1 - 25 / (25 + 312) = 0.926 at best.
+    assert 0.90 < found.r2 < 0.93
+    assert found.unit == "m"
+    middle = (found.at > 0.006) & (found.at < 0.017)
+    true = 25.0 * np.sin(2.0 * np.pi * found.at[middle] / 0.007)
+    assert np.abs(found.force[middle] - true).max() < 4.0
+    # The noise is left on fitted and on held-out data.
+    assert found.after == pytest.approx(LEVEL, rel=0.03)
+    assert found.held_out_after == pytest.approx(LEVEL, rel=0.06)
+
+
+def test_noise_does_not_repeat():
+    found = regressed("deflection", lambda t, x: 0.0 * t)
+    assert found.r2 < 0.01
+    assert found.held_out_after > found.after
+
+
+def test_a_coordinate_without_a_name_is_time():
+    found = regressed("jump", lambda t, x: np.where(t > 12.0, 20.0, 0.0))
+    assert found.unit == "s"
+    assert found.force[found.at < 10.0] == pytest.approx(0.0, abs=3.0)
+    assert found.force[found.at > 14.0] == pytest.approx(20.0, abs=3.0)
+
+
+def test_the_entry_of_diagnosis_json_keeps_its_keys():
+    entry = regressed("rate", lambda t, x: 0.0 * t).to_dict()
+    assert list(entry) == ["by", "unit", "repeats", "after", "held_out_after"]
+    assert entry["unit"] == "m/s"

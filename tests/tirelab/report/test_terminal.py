@@ -1,0 +1,61 @@
+"""The screenful that a diagnosis prints."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.console import Console
+from tirelab.report.terminal import print_diagnosis, printable
+
+
+def printed(diagnosis: dict[str, Any]) -> str:
+    text = io.StringIO()
+    print_diagnosis(Console(file=text, width=100, color_system=None), diagnosis, Path("out"))
+    return " ".join(text.getvalue().split())
+
+
+@pytest.mark.parametrize("kind", ["nothing", "one", "two", "alternatives", "unknown"])
+def test_every_kind_begins_with_its_verdict_and_ends_with_its_files(kinds: dict[str, Any], kind: str) -> None:
+    text = printed(kinds[kind].diagnosis)
+    assert text.startswith(("Nothing is missing.", "Left out: ", "Something is missing that no known effect"))
+    files = "report.html, tire.json, BicycleTire.fmu, diagnosis.json"
+    assert text.endswith(
+        f"Written to out: {files}" + (", separating_test.csv" if kind == "alternatives" else "")
+    )
+    assert "held-out" in text
+    assert "where they differ" in text
+
+
+def test_parameters_are_printed_with_their_meaning(kinds: dict[str, Any]) -> None:
+    text = printed(kinds["two"].diagnosis)
+    assert "refitted law, 61 % of the error" in text
+    assert "with the law refitted" in text
+    assert "slip force 30.10 ± 0.60 N half the loop's height" in text
+
+
+def test_the_next_test_is_recommended(kinds: dict[str, Any]) -> None:
+    said = "Recommended next test: Drive triangles at three rates to 22 mm on flat ground."
+    assert said in printed(kinds["alternatives"].diagnosis)
+    assert "Recommended next test" not in printed(kinds["one"].diagnosis)
+
+
+def test_a_regression_is_printed_with_its_errors(kinds: dict[str, Any]) -> None:
+    diagnosis = kinds["unknown"].diagnosis
+    regression = {"by": "deflection", "unit": "m", "repeats": 0.88, "after": 6.4, "held_out_after": None}
+    content = {**diagnosis, "verdict": {**diagnosis["verdict"], "corrections": [regression]}}
+    assert "the deflection 6.40 – 88 %" in printed(content)
+
+
+def test_without_places_and_held_out_data_their_tables_are_left_out(kinds: dict[str, Any]) -> None:
+    diagnosis = kinds["one"].diagnosis
+    fit = {**diagnosis["fit"], "held_out_before": None, "held_out_after": None}
+    text = printed({**diagnosis, "where": [], "fit": fit})
+    assert "where they differ" not in text
+    assert "held-out" not in text
+
+
+def test_what_could_control_a_terminal_is_a_question_mark() -> None:
+    assert printable("a\x1b[31mb\tc\n轮胎") == "a?[31mb?c?轮胎"

@@ -1,0 +1,51 @@
+"""The names of effects, sets and coordinates in a sentence."""
+
+from __future__ import annotations
+
+import pytest
+from radialtire import CATALOGUE
+from tirelab.engine.naming import BEYOND
+from tirelab.report import titles
+
+
+@pytest.mark.parametrize(
+    ("name", "title"),
+    [
+        ("rate_independent_hysteresis", "rate-independent hysteresis"),
+        ("mullins_softening", "Mullins softening"),
+        ("recalibration", "refitted law"),
+        ("unknown", "something unknown"),
+        ("relaxation_time_1", "relaxation time 1"),
+    ],
+)
+def test_effects_and_parameters_have_titles(name: str, title: str) -> None:
+    assert titles.effect_title(name) == title
+
+
+def test_no_title_of_the_catalogue_is_code() -> None:
+    for name in (*CATALOGUE, *BEYOND):
+        assert "_" not in titles.set_title([name])
+
+
+def test_every_coordinate_of_something_unknown_has_a_name_for_a_reader() -> None:
+    assert titles.DEPENDENCE.keys() <= {*BEYOND}
+    assert titles.dependence("history") == "the distance since the last reversal"
+    assert titles.dependence("humidity") == "humidity"
+
+
+@pytest.mark.parametrize(
+    ("words", "text"), [([], ""), (["a"], "a"), (["a", "b"], "a or b"), (["a", "b", "c"], "a, b or c")]
+)
+def test_lists(words: list[str], text: str) -> None:
+    assert titles.listed(words, "or") == text
+
+
+def test_forces_and_confidence() -> None:
+    assert [titles.newtons(f) for f in (6.0, 0.01234, 999.4, 999.6, -1500.0)] == [
+        "6.00 N",
+        "0.0123 N",
+        "999 N",
+        "1000 N",
+        "-1500 N",
+    ]
+    assert titles.sure(0.946) == "Confidence 95 %."
