@@ -82,8 +82,8 @@ def draw_loops(case: Case, which: str, mark: str, alt: str) -> Markup:
     """Return the recorded loop with the simulated one: `which` is "before", "after" or "both"."""
     with drawing() as (figure, axes):
         _loops(axes, case, which, PAGE)
-        if not case.alike:
-            axes.set_title(f"{'Before and after' if which == 'both' else which.capitalize()} the correction")
+        before_after = "Before and after" if which == "both" else which.capitalize()
+        axes.set_title("Recorded and simulated" if case.alike else f"{before_after} the correction")
         return inline_svg(figure, alt, mark)
 
 

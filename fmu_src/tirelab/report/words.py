@@ -33,8 +33,17 @@ _COORDINATES = {
 }
 
 
+_OF_THE_LAW = {
+    "log factor on A": "natural logarithm of the factor on the coefficient A of F = A x^B",
+    "change of B": "added to the exponent B of F = A x^B",
+}
+"""Parameters of a refitted law, each on one surface."""
+
+
 def meaning(effect: str, parameter: str) -> str:
     """Return the meaning of a parameter from the catalogue; empty where the catalogue has none."""
+    if effect == REFITTED_LAW and (kind := parameter.partition(",")[0]) in _OF_THE_LAW:
+        return _OF_THE_LAW[kind]
     owner = CATALOGUE.get("elastic_shape" if effect == REFITTED_LAW else effect)
     found = [p.meaning for p in owner.parameters if p.name == parameter] if owner else []
     return found[0] if found else ""

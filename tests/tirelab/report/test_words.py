@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from tirelab.engine.refit import knobs_of
 from tirelab.report import titles, words
 
 
@@ -107,6 +108,17 @@ def test_sets_are_named_whether_known_or_not() -> None:
     assert titles.set_title(["recalibration"]) == "refitted law"
     assert titles.set_title(["unknown", "inertia"]) == "something unknown and inertia"
     assert titles.set_title(["rate"]) == "something unknown over the rate of deflection"
+
+
+def test_every_parameter_of_a_refitted_law_has_a_meaning() -> None:
+    """ "log factor on A" and "change of B", by which the law of each surface is fitted, had none."""
+    labels = [knob.label for knob in knobs_of(("recalibration",), (float("inf"), -0.381), True, 0.02)]
+    assert len(labels) >= 5
+    for label in labels:
+        assert words.meaning("recalibration", label), label
+    assert "coefficient A" in words.meaning("recalibration", "log factor on A, flat")
+    assert words.meaning("force_offset", "offset") == "added to the force"
+    assert words.meaning("phlogiston", "mass") == ""
 
 
 def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
