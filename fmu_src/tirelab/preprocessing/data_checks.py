@@ -38,7 +38,7 @@ def check_recordings(recordings: Sequence[Recorded]) -> None:
         distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
         if distinct < FEWEST_STEPS:
             raise PoorRecording(
-                f"{where} has only {distinct} deflections; sample each cycle at {FEWEST_STEPS} or more points"
+                f"{where} has only {distinct} distinct deflections; sample each cycle at {FEWEST_STEPS} or more points"
             )
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -171,6 +173,24 @@ def test_quiet_shows_no_progress(known: None, rides: Path, tmp_path: Path) -> No
     result = run(rides / "ride.csv", "--quiet", "--out", tmp_path / "out")
     assert result.exit_code == 0, result.output
     assert result.stderr == ""
+
+
+def test_a_terminal_shows_one_live_line_and_a_report_of_its_own_width(
+    damped_run: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    screen = io.StringIO()
+    genuine = diagnose_command.Console
+    options = {"file": screen, "force_terminal": True, "width": 160, "_environ": {}}
+    monkeypatch.setattr(diagnose_command, "Console", lambda **given: genuine(**{**given, **options}))
+    with diagnose_command._progress(False) as progress:
+        progress("reading \x1b]0;ride.csv")
+    # The escape character of a file's name does not reach the terminal.
+    assert "reading ?]0;ride.csv" in screen.getvalue()
+    screen.truncate(0)
+    monkeypatch.setattr(diagnose_command.sys, "stdout", SimpleNamespace(isatty=lambda: True))
+    diagnose_command._print(damped_run.run, damped_run.out)
+    assert max(map(len, screen.getvalue().splitlines())) > diagnose_command.COLUMNS
+    assert "\x1b[1mLeft out: viscous damping." in screen.getvalue()
 
 
 def test_the_page_names_the_command_and_both_recordings(done: tuple[Result, Path]) -> None:

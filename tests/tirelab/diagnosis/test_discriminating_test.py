@@ -1,5 +1,7 @@
 """The test that tells alternatives apart."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
@@ -52,6 +54,24 @@ def test_the_contract_of_a_test():
     entry = fitted(6.0).to_dict()
     assert entry["surfaces"] == ["inf"]
     assert "sentence" in entry
+
+
+def test_the_sentence_says_what_to_drive_and_on_which_surface():
+    """Limits and noise are round numbers, so that the sentence can be worked out by hand."""
+    concave = dataclasses.replace(friction(), radii=(-0.381,))
+    found = discriminate(viscous(), concave, 6.0, Limits(deepest=0.02, fastest=0.1, longest=60.0))
+    assert found.sentence.startswith(f"Drive {found.test.name} to ")
+    assert "on a concave surface of radius 38.1 cm, at up to " in found.sentence
+    assert "Then viscous damping and rate-independent hysteresis differ by " in found.sentence
+    assert discriminate(viscous(), friction(), 6.0, Limits()).sentence.count("on flat ground") == 1
+
+
+def test_the_baseline_is_called_so():
+    bare = FittedModel((), TireModel(), TireModel(), (), np.zeros(0), (np.inf,))
+    assert (
+        "Then the baseline tire and rate-independent hysteresis differ"
+        in discriminate(bare, friction(), 6.0, Limits()).sentence
+    )
 
 
 def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_thousand():

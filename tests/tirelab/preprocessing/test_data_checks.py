@@ -57,19 +57,17 @@ def test_nothing_is_refused() -> None:
     ("channels", "reason"),
     [
         (first(FEWEST_SAMPLES - 1), "has 99 samples; at least 100"),
-        ({"deflection": np.full(2000, 0.01)}, "one constant deflection"),
-        ({"force": np.full(2000, 10.0)}, "one constant force"),
+        ({"deflection": np.full(2000, 0.01)}, "has one constant deflection"),
+        ({"force": np.full(2000, 10.0)}, "has one constant force"),
         ({"deflection": DEFLECTION - 0.03}, "never loads the tire"),
         (
             {"deflection": np.where(TIME < 10.0, 0.0, 0.01)},
-            f"2 distinct deflections only; sample each cycle at {FEWEST_STEPS}",
+            f"has only 2 distinct deflections; sample each cycle at {FEWEST_STEPS} or more points",
         ),
     ],
 )
 def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason: str) -> None:
-    assert f"recording a {reason}" in refused(recording(), recording(**channels)).replace(
-        "holds ", ""
-    ).replace("shows ", "")
+    assert f"recording a {reason}" in refused(recording(), recording(**channels))
 
 
 @pytest.mark.parametrize(
@@ -83,7 +81,7 @@ def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason:
             {"force": np.random.default_rng(2).standard_normal(2000)},
             "does not follow its deflection (correlation",
         ),
-        ({"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 13.0 * TIME))}, "about one sample to a cycle"),
+        ({"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 13.0 * TIME))}, "about one sample per cycle"),
     ],
 )
 def test_a_signal_without_a_tire_in_it_is_refused(channels: dict[str, np.ndarray], reason: str) -> None:
