@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rich.console
 from click.testing import CliRunner, Result
 from drives import Drive, flat_force, read, ride, saved
 from radialtire import CATALOGUE, TireModel, read_tire
@@ -179,9 +180,9 @@ def test_a_terminal_shows_one_live_line_and_a_report_of_its_own_width(
     damped_run: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     screen = io.StringIO()
-    genuine = diagnose_command.Console
+    genuine = rich.console.Console
     options = {"file": screen, "force_terminal": True, "width": 160, "_environ": {}}
-    monkeypatch.setattr(diagnose_command, "Console", lambda **given: genuine(**{**given, **options}))
+    monkeypatch.setattr(rich.console, "Console", lambda **given: genuine(**{**given, **options}))
     with diagnose_command._progress(False) as progress:
         progress("reading \x1b]0;ride.csv")
     # The escape character of a file's name does not reach the terminal.
