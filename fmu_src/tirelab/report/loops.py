@@ -73,7 +73,9 @@ def plot_loops(case: Case, axes: Axes | None) -> Axes:
     )
     dots = Line2D([], [], color=PLAIN.recorded, marker="o", ls="none", label="recorded")
     drawn.legend(
-        handles=[dots, *(Line2D([], [], color=colour, label=label) for colour, label in lines)], frameon=False
+        handles=[dots, *(Line2D([], [], color=colour, label=label) for colour, label in lines)],
+        frameon=False,
+        loc="upper left",
     )
     return drawn
 

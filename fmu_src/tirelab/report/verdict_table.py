@@ -18,7 +18,7 @@ _TABLE = Markup(
 _ROW = Markup(
     '<tr style="border-top:1px solid rgba(128,128,128,0.4);background:transparent">'
     '<th scope="row" style="text-align:left;vertical-align:top;font-weight:normal;opacity:0.7">{title}</th>'
-    '<td style="text-align:left">{text}</td></tr>'
+    '<td style="text-align:left;padding-left:12px">{text}</td></tr>'
 )
 """Colours come from the notebook, light or dark."""
 
@@ -35,7 +35,7 @@ def verdict_table(diagnosis: Mapping[str, Any]) -> str:
     ]
     if fit["held_out_before"] is not None:
         held_out = _change(fit["held_out_before"], fit["held_out_after"])
-        rows.append(("held-out RMS error", f"{held_out} ({diagnosis['held_out_by']})"))
+        rows.append(("held-out RMS error", f"{held_out}{words.held_out_part(diagnosis['held_out_by'])}"))
     rows += [
         (
             titles.effect_title(effect["name"]),

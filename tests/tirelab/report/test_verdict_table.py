@@ -21,7 +21,10 @@ def test_every_kind_has_verdict_confidence_and_errors(kinds: dict[str, Any], kin
     text = shown(diagnosis)
     assert f"|confidence|{100 * diagnosis['verdict']['confidence']:.0f} %: " in text
     assert f"|RMS error|{diagnosis['fit']['before']:.3g}" in text
-    assert "(recordings given)|" in text
+    assert f"|held-out RMS error|{diagnosis['fit']['held_out_before']:.3g}" in text
+    part = shown({**diagnosis, "held_out_by": "time block 21-30 s"})
+    assert " N (time block 21-30 s)|" in part
+    assert "(" not in text.split("held-out RMS error|")[1].split("|")[0]
 
 
 def test_effects_have_their_parameters(kinds: dict[str, Any]) -> None:
