@@ -98,5 +98,5 @@ def inline_svg(figure: Figure, alt: str, mark: str) -> Markup:
 
 
 def _opening(alt: str) -> str:
-    told = escape(alt).replace("\\", r"\\")
-    return rf'<svg viewBox="\1" role="img" aria-label="{told}">'
+    label = escape(alt).replace("\\", r"\\")
+    return rf'<svg viewBox="\1" role="img" aria-label="{label}">'

@@ -64,21 +64,21 @@ def headline(names: Sequence[str], unexplained: bool, alternatives: bool) -> str
     """
     physics = [name for name in names if name != REFITTED_LAW]
     if not physics and not unexplained:
-        told = (
+        text = (
             "No physics is missing: the elastic law has other coefficients" if names else "Nothing is missing"
         )
     elif not names:
-        told = "Something is missing that no known effect explains"
+        text = "Something is missing that no known effect explains"
     else:
         parts = [effect_title(name) for name in physics]
         if unexplained:
             parts.append("something that no known effect explains")
-        told = f"Left out: {listed(parts)}"
+        text = f"Left out: {listed(parts)}"
         if REFITTED_LAW in names:
-            told += ", and the elastic law has other coefficients"
+            text += ", and the elastic law has other coefficients"
     if alternatives:
-        told += " – but these recordings cannot rule out alternatives"
-    return f"{told}."
+        text += " – but these recordings cannot rule out alternatives"
+    return f"{text}."
 
 
 def sure(confidence: float) -> str:
