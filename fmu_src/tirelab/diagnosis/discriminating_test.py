@@ -1,9 +1,9 @@
 """The discriminating test: the waveform on which two fitted models differ most, whatever their parameters then do.
 
 For every waveform that the rig can drive, both tires are simulated; what a refit of the alternative's own parameters
-could take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). The remainder over the
-noise and times the root of the number of samples, is the separation: the square root of twice the expected gain in log
-likelihood.
+could take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). The remainder,
+over the noise and times the root of the number of samples, is the separation: the square root of twice the expected
+gain in log likelihood.
 """
 
 from __future__ import annotations
