@@ -37,7 +37,7 @@ DEFLECTION_LAG = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="the deflection is read late",
+    statement="the deflection signal lags behind the deflection",
     tell_tale="a loop whose height grows with the rate and with the stiffness, so with the mean deflection",
     imitators=("viscous_damping", "viscoelastic_relaxation"),
     source="the inverse of a first-order lag; table of tell-tales: 5 ms at 0.5 Hz make a loop of 2.2 %; bounds wide",

@@ -27,7 +27,7 @@ FORCE_DRIFT = Effect(
     initial_state=(),
     respond=respond,
     statement="the force's zero drifts with time",
-    tell_tale="the residual grows with time by the same amount at every deflection, in the air too",
+    tell_tale="the residual grows with time by the same amount at every deflection, also without contact",
     imitators=("pressure_leak", "warm_up", "force_offset"),
     source="straight-line drift of an amplifier; magnitudes are in the gauge's data sheet, bounds wide",
 )

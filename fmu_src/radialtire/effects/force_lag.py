@@ -117,8 +117,8 @@ FORCE_LAG = Effect(
     ),
     initial_state=(0.0,) * (3 + 2 * KEPT),
     respond=respond,
-    statement="the force is read late",
-    tell_tale="the loop runs the wrong way round: unloading reads higher than loading",
+    statement="the force signal lags behind the force",
+    tell_tale="the loop is reversed: unloading reads higher than loading",
     imitators=("inertia", "viscous_damping", "viscoelastic_relaxation"),
     source="low-pass and transport delay; 5 ms at 0.5 Hz make a loop of -2.2 %; magnitudes are an estimate",
 )

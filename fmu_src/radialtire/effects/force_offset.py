@@ -25,7 +25,7 @@ FORCE_OFFSET = Effect(
     initial_state=(),
     respond=respond,
     statement="the force's zero is shifted",
-    tell_tale="the residual is one constant at every deflection and time, in the air too",
+    tell_tale="the residual is one constant at every deflection and time, also without contact",
     imitators=("deflection_offset", "force_drift", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 22 N of preload, or 1 mm, between two rigs",
 )

@@ -54,7 +54,7 @@ PRESSURE_LEAK = Effect(
     initial_state=(),
     respond=respond,
     statement="air leaks: the force falls with time at every deflection",
-    tell_tale="the first cycle repeated last is lower, in proportion to the force",
+    tell_tale="a cycle that is repeated at the end is lower, in proportion to the force",
     imitators=("warm_up", "mullins_softening", "force_drift"),
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
 )

@@ -39,7 +39,7 @@ SATURATION = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="the force channel has a ceiling",
+    statement="the force channel saturates",
     tell_tale="a flat top: the residual is one-sided above one force, on every surface",
     imitators=("series_compliance", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: load cell rated at 4480 N; limits are set by the rig",

@@ -108,7 +108,7 @@ SERIES_COMPLIANCE = Effect(
     initial_state=(),
     respond=respond,
     statement="the wheel or the machine gives way in series with the tire",
-    tell_tale="the force falls behind at large forces, on every surface as one function of the force",
+    tell_tale="large forces are too low, on every surface by the same function of the force",
     imitators=("recalibration", "deflection_offset", "gas_compression", "saturation"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Hopkins & Principe 1990: 2e6 N/m",
 )

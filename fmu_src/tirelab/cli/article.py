@@ -7,14 +7,14 @@ from pathlib import Path
 import click
 
 from ..errors import TirelabError
-from .options import SentenceCommand, out
+from .options import SentenceCommand, out_option
 
 WIDTH = 120
 """Columns of the table where the output is no terminal."""
 
 
 @click.command("article", cls=SentenceCommand)
-@out("article")
+@out_option("article")
 def command(out: Path) -> None:
     """Compute what Hull, Wang & Moore (1996) claim, say what is reproduced, and redraw figures 1 to 3.
 

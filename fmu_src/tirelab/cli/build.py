@@ -7,12 +7,12 @@ from pathlib import Path
 import click
 from radialtire import TireModel, read_tire
 
-from .options import FILE, SentenceCommand, out
+from .options import FILE, SentenceCommand, out_option
 
 
 @click.command("build", cls=SentenceCommand)
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
-@out("dist")
+@out_option("dist")
 def command(tire: Path | None, out: Path) -> None:
     """Pack a tire as DIR/BicycleTire.fmu, an FMI 2.0 Co-Simulation unit, and validate it."""
     from ..fmu.build import build_fmu

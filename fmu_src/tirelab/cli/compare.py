@@ -10,7 +10,7 @@ from radialtire import TireModel, read_tire
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, out, reading
+from .options import FILE, SentenceCommand, out_option, reading_options
 
 
 @click.command("compare", cls=SentenceCommand)
@@ -19,8 +19,8 @@ from .options import FILE, SentenceCommand, out, reading
 @click.option(
     "--tire", type=FILE, help="The tire as a tire file, instead of an FMU.  [default: the article's tire]"
 )
-@out("out")
-@reading
+@out_option("out")
+@reading_options
 def command(recording: Path, fmu: Path | None, tire: Path | None, out: Path, reading: Reading) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
     from ..fmu.build import build_fmu

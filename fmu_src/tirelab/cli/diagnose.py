@@ -14,7 +14,7 @@ import click
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, check_files, out, reading
+from .options import FILE, SentenceCommand, check_files, out_option, reading_options
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnosis_run import DiagnosisRun
@@ -33,8 +33,8 @@ COLUMNS = 100
     metavar="RECORDING",
     help="Recording that is not fitted, only used to check the correction; may be repeated.",
 )
-@out("diagnosis")
-@reading
+@out_option("diagnosis")
+@reading_options
 @click.option("--json", "as_json", is_flag=True, help="Print only diagnosis.json.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(

@@ -11,7 +11,7 @@ from radialtire.tirefile import LAWS
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, reading
+from .options import FILE, SentenceCommand, reading_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -42,7 +42,7 @@ WIDTH_LEAST = 100
     help="The form of A(R) and B(R).",
 )
 @click.option("--name", default="", help="The tire's name.")
-@reading
+@reading_options
 def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, reading: Reading) -> None:
     """Identify the tire that RECORDING..., files or folders of them, show, and say how sure that is.
 

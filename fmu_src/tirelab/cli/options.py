@@ -42,7 +42,7 @@ class SentenceCommand(click.Command):
             raise Refusal(str(error)) from None
 
 
-def reading(command: Callable[..., Any]) -> Callable[..., Any]:
+def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say how a recording is to be read; the command gets them as `reading`."""
 
     @click.option(
@@ -66,7 +66,7 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_reading
 
 
-def out(default: str) -> Callable[[Command], Command]:
+def out_option(default: str) -> Callable[[Command], Command]:
     """Add the option --out DIR."""
     return click.option(
         "--out",

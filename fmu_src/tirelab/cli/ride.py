@@ -12,7 +12,7 @@ from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
 from .option_group import option_group
-from .options import FILE, SentenceCommand, out
+from .options import FILE, SentenceCommand, out_option
 
 if TYPE_CHECKING:
     from ..terrain import Profile, ProfileColumns, Ride
@@ -128,7 +128,7 @@ class Passage:
     ),
 )
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
-@out("ride")
+@out_option("ride")
 @click.option("--animation", is_flag=True, help="Write an animation too (ride.gif).")
 def command(
     profile: Path | None, terrain: Terrain, passage: Passage, tire: Path | None, out: Path, animation: bool

@@ -10,7 +10,7 @@ import click
 from radialtire import TireModel, read_tire
 
 from ..errors import TirelabError
-from .options import FILE, SentenceCommand, out
+from .options import FILE, SentenceCommand, out_option
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
@@ -35,7 +35,7 @@ def quantity(unit: str) -> Callable[[click.Context, click.Parameter, str], float
 
 
 @click.command("rig", cls=SentenceCommand)
-@out("recordings")
+@out_option("recordings")
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
 @click.option(
     "--noise",
