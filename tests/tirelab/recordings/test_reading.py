@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from house_form import loading, write_rows
 from hypothesis import given
 from hypothesis import strategies as st
-from tirelab.cli.options import SentenceCommand, reading
+from tirelab.cli.options import SentenceCommand, reading_options
 from tirelab.recordings.channels import assignments_text, parse_columns, parse_units
 from tirelab.recordings.reading import Reading
 from tirelab.recordings.units import parse_radius
