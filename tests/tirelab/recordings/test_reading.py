@@ -80,4 +80,4 @@ def test_a_command_gets_its_options_as_one_value() -> None:
 def SentenceCommandOf(function: object) -> SentenceCommand:
     import click
 
-    return click.command(cls=SentenceCommand)(reading(function))  # type: ignore[arg-type]
+    return click.command(cls=SentenceCommand)(reading_options(function))  # type: ignore[arg-type]
