@@ -5,19 +5,22 @@ formulation than theirs. `draw` a Trial from a seed, `write` its recordings, `wr
 makes another test on the same rig.
 """
 
-from .drawing import draw
 from .files import answer_json, baseline_table, write, write_answer, write_baseline
+from .kinds import derived_right, draw
 from .scenario import KINDS
 from .trial import Answer, FileTruth, Record, Trial, rerun
+from .wide.drawing import WIDE_KINDS
 
 __all__ = [
     "KINDS",
+    "WIDE_KINDS",
     "Answer",
     "FileTruth",
     "Record",
     "Trial",
     "answer_json",
     "baseline_table",
+    "derived_right",
     "draw",
     "rerun",
     "write",

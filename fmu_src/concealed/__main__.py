@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from . import KINDS, draw, write, write_answer, write_baseline
+from . import KINDS, WIDE_KINDS, draw, write, write_answer, write_baseline
 
 
 def trial_seed(seed: int, number: int) -> int:
@@ -19,7 +19,7 @@ def trial_seed(seed: int, number: int) -> int:
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), required=True, help="Folder to write to."
 )
-@click.option("--kind", type=click.Choice(list(KINDS)), help="Write trials of this kind only.")
+@click.option("--kind", type=click.Choice([*KINDS, *WIDE_KINDS]), help="Write trials of this kind only.")
 def main(seed: int, trials: int, out: Path, kind: str | None) -> None:
     """Write trial_0000/ ... with the recordings alone, baseline/ with the baseline tires, and sealed/ with the
     answers.

@@ -79,9 +79,9 @@ def explanations(
     """Prepare the losses of all sets.
 
     bench: the tire with its effects; the regressors use the tire alone. Samples at which contact is lost have no
-    weight, because the regressors do not model that. residuals [N]: noise-free residuals of the baseline tire on the
-    recorded samples; known [N]: what each true effect adds, as a further regressor of its name; law_shape: see
-    `regressors.regressors`.
+    weight, because the regressors do not model that; nor have blurred samples. residuals [N]: noise-free residuals of
+    the baseline tire on the recorded samples; known [N]: what each true effect adds, as a further regressor of its
+    name; law_shape: see `regressors.regressors`.
     """
     common = Range.of(bench, tuple(motions))
     blocks, targets = [], []
@@ -97,8 +97,10 @@ def explanations(
             first += of_name.shape[1]
             parts.append(of_name)
         stiffness = _stiffness(bench, motion)
-        pressed = ~motion.recorded(bench.contact_lost(motion))
-        stacked = np.concatenate([*parts, residuals[k][:, None]], axis=1) * pressed[:, None]
+        counted = ~motion.recorded(bench.contact_lost(motion))
+        if motion.blurred is not None:
+            counted &= ~motion.recorded(motion.blurred)
+        stacked = np.concatenate([*parts, residuals[k][:, None]], axis=1) * counted[:, None]
         white = whitened(stacked, instrument, motion.sample_step, stiffness)
         blocks.append(white[:, :-1])
         targets.append(white[:, -1])

@@ -1,6 +1,6 @@
 """The test bench: a tire, the effects hidden in it, and the force that a motion causes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,17 @@ class Bench:
     def replacing(self, effect: Effect) -> "Bench":
         """The same bench with the effect of the same name replaced."""
         return Bench(self.tire, tuple(effect if e.name == effect.name else e for e in self.effects))
+
+    def shown(self, deflection: FloatArray) -> FloatArray:
+        """What the gauge shows [m] of the deflection [m] that the actuator makes, free of noise."""
+        for effect in self.effects:
+            deflection = effect.reading(deflection)
+        return deflection
+
+    def seen(self, motion: Motion) -> Motion:
+        """The motion as the gauge shows it."""
+        shown = self.shown(motion.deflection)
+        return motion if shown is motion.deflection else replace(motion, deflection=shown)
 
     def contact(self, motion: Motion) -> Contact:
         """Deflection of the tire [m] and its elastic force [N], before anything acts in parallel."""

@@ -1,5 +1,6 @@
 """Draw a blind trial: hide effects of the requested size, record, and state which sets of effects count as right."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -16,7 +17,7 @@ from .bench import Bench
 from .effects import BY_NAME, Conditions, Effect
 from .measurement import Instrument, drawn_instrument
 from .motion import FloatArray, Motion
-from .scenario import KINDS, Plan, Setup, drawn_alike, drawn_setup, drawn_tests, planned
+from .scenario import Plan, Setup, drawn_alike, drawn_setup, drawn_tests, planned
 from .sizing import Size, measured, misfit_size, resized
 from .tires import ContactPatchTire, PowerTire, best_power_law
 from .trial import Answer, FileTruth, Parameters, Record, Trial, recorded
@@ -45,23 +46,19 @@ def draw(seed: int, *, kind: str | None = None) -> Trial:
 
     kind: "none", "single", "masked" (one effect under another tire's coefficients), "pair", "triple" or
     "open" (outside of any catalogue); None draws it too.
-    Errors: ValueError for another kind or a negative seed.
     """
-    if kind is not None and kind not in KINDS:
-        raise ValueError(f"kind is {kind!r}, but a trial is one of {', '.join(KINDS)}")
-    if seed < 0:
-        raise ValueError(f"seed is {seed}, but seeds are not negative")
     for round_ in range(MOST_ROUNDS):
-        plan = planned(_stream(seed, round_, 0), kind)
+        plan = planned(stream(seed, round_, 0), kind)
         kind = plan.kind
         for attempt in range(1, ATTEMPTS + 1):
-            trial = _attempt(seed, plan, _stream(seed, round_, attempt))
+            trial = _attempt(seed, plan, stream(seed, round_, attempt))
             if trial is not None:
                 return trial
     raise Undrawable(f"seed {seed} gave no trial of the kind {kind} in {MOST_ROUNDS * ATTEMPTS} attempts")
 
 
-def _stream(seed: int, *key: int) -> np.random.Generator:
+def stream(seed: int, *key: int) -> np.random.Generator:
+    """The random numbers of one part of a trial."""
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
 
 
@@ -100,9 +97,9 @@ def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
         margins=margins,
         rule=rule,
         sizes=sizes,
-        where=_regions(bench, train),
+        where=regions_of(bench, train),
         noise=instrument.noise,
-        files={record.name: _file_truth(record, setup.baseline, floors) for record, floors in made},
+        files={record.name: file_truth(record, setup.baseline, floors) for record, floors in made},
         tire={"form": type(setup.tire).__name__, **asdict(setup.tire)},
         instrument=asdict(instrument),
     )
@@ -117,6 +114,7 @@ def _attempt(seed: int, plan: Plan, rng: np.random.Generator) -> Trial | None:
         instrument.noise,
         bench,
         instrument,
+        train,
     )
 
 
@@ -161,8 +159,20 @@ def _hidden(
     forms = [BY_NAME[n][int(rng.integers(len(BY_NAME[n])))] for n in plan.wanted if n in BY_NAME]
     if plan.open_form is not None:
         forms.append(plan.open_form)
+    return hidden_effects(rng, bare, forms, conditions, SIZES)
+
+
+def hidden_effects(
+    rng: np.random.Generator,
+    bare: Bench,
+    forms: Sequence[type[Effect]],
+    conditions: Conditions,
+    sizes_over_noise: tuple[float, float],
+) -> tuple[Bench, dict[str, Size]]:
+    """Hide effects of some forms, each in a size [noise] drawn evenly over the logarithm between two."""
     effects: list[Effect] = [form.drawn(rng, conditions) for form in forms]
-    wanted = np.exp(rng.uniform(np.log(SIZES[0]), np.log(SIZES[1]), len(effects))).tolist()
+    least, most = np.log(sizes_over_noise)
+    wanted = np.exp(rng.uniform(least, most, len(effects))).tolist()
     bench = Bench(bare.tire, tuple(effects))
     # a second round, because the size of each effect depends on the others
     for _ in range(min(len(effects), 2)):
@@ -263,13 +273,14 @@ def _effects(bench: Bench, plan: Plan, setup: Setup) -> dict[str, Parameters]:
     return effects
 
 
-def _file_truth(record: Record, baseline: PowerTire, floors: tuple[float, float]) -> FileTruth:
+def file_truth(record: Record, baseline: PowerTire, floors: tuple[float, float]) -> FileTruth:
+    """What is known of a recording: its noise floors [N] and what the baseline leaves."""
     force = baseline.force(record.deflection, record.radius, np.ones_like(record.force))
     rmse = float(np.sqrt(np.mean((record.force - force) ** 2)))
     return FileTruth(record.time.size, record.excitation, rmse, *floors)
 
 
-def _regions(bench: Bench, train: tuple[Motion, ...]) -> tuple[Parameters, ...]:
+def regions_of(bench: Bench, train: tuple[Motion, ...]) -> tuple[Parameters, ...]:
     """Regions of the localized effects in the training recordings, with the share of samples in them."""
     regions: list[Parameters] = []
     for effect in bench.effects:

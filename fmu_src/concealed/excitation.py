@@ -39,18 +39,18 @@ Excitation = Callable[[np.random.Generator, DepthLimits], Motion]
 def article_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """The article's test: a triangle wave of 30 s, recorded at 5 Hz, some cycles on every surface."""
     cycles = int(rng.integers(2, 5)) if len(limits.surfaces) < 3 else 2
-    knots = [_cycles(deep, 30.0, cycles) for deep in limits.deepest]
-    return _polyline("article_triangle", knots, limits.surfaces, 0.2, 0.1)
+    knots = [cycles_of(deep, 30.0, cycles) for deep in limits.deepest]
+    return polyline("article_triangle", knots, limits.surfaces, 0.2, 0.1)
 
 
 def single_rate_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """A triangle wave at one constant rate, 3 to 60 mm/s (the range in which none was found to matter)."""
     rate = float(np.exp(rng.uniform(np.log(0.003), np.log(0.06))))
     cycles = int(rng.integers(3, 9))
-    knots = [_cycles(deep, 2.0 * deep / rate, cycles) for deep in limits.deepest]
+    knots = [cycles_of(deep, 2.0 * deep / rate, cycles) for deep in limits.deepest]
     period = 2.0 * limits.shallowest / rate
     step = _sample_step(rng, knots, period / 6.0)
-    return _polyline("single_rate_triangle", knots, limits.surfaces, step, 0.03 * period)
+    return polyline("single_rate_triangle", knots, limits.surfaces, step, 0.03 * period)
 
 
 def many_rates_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
@@ -64,12 +64,12 @@ def many_rates_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion
         times, values = [0.0], [0.0]
         for rate in rates:
             cycles = int(np.clip(round(20.0 * rate / (2.0 * deep)), 1, 20))
-            t, x = _cycles(deep, 2.0 * deep / rate, cycles)
+            t, x = cycles_of(deep, 2.0 * deep / rate, cycles)
             values.extend(x[1:])
             times.extend(times[-1] + t[1:])
         knots.append((np.array(times), np.array(values)))
     period = 2.0 * limits.shallowest / fastest
-    return _polyline(
+    return polyline(
         "many_rates_triangle", knots, limits.surfaces, _sample_step(rng, knots, 0.5 * period), 0.1 * period
     )
 
@@ -86,7 +86,7 @@ def growing_triangle(rng: np.random.Generator, limits: DepthLimits) -> Motion:
         knots.append((np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)) / rate)]), values))
     period = limits.shallowest / rate
     step = _sample_step(rng, knots, period / 6.0)
-    return _polyline("growing_triangle", knots, limits.surfaces, step, 0.03 * period)
+    return polyline("growing_triangle", knots, limits.surfaces, step, 0.03 * period)
 
 
 def ramp_and_hold(rng: np.random.Generator, limits: DepthLimits) -> Motion:
@@ -94,13 +94,13 @@ def ramp_and_hold(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     rate = rng.uniform(0.01, 0.05)
     hold = rng.uniform(4.0, 15.0)
     levels = int(rng.integers(3, 6))
-    return _staircase(rng, limits, "ramp_and_hold", rate, [hold] * levels)
+    return stairs(rng, limits, "ramp_and_hold", rate, [hold] * levels)
 
 
 def staircase(rng: np.random.Generator, limits: DepthLimits) -> Motion:
     """Many small steps up and down, each held for a short time."""
     holds = list(rng.uniform(0.5, 3.0, int(rng.integers(8, 15))))
-    return _staircase(rng, limits, "staircase", rng.uniform(0.01, 0.03), holds)
+    return stairs(rng, limits, "staircase", rng.uniform(0.01, 0.03), holds)
 
 
 def sine(rng: np.random.Generator, limits: DepthLimits) -> Motion:
@@ -224,15 +224,17 @@ EXCITATIONS: dict[str, Excitation] = {
 }
 
 
-def _cycles(deep: float, period: float, cycles: int) -> tuple[FloatArray, FloatArray]:
+def cycles_of(deep: float, period: float, cycles: int) -> tuple[FloatArray, FloatArray]:
+    """Times [s] and deflections [m] of the corners of some triangles."""
     values = np.zeros(2 * cycles + 1)
     values[1::2] = deep
     return even_grid(values.size, 0.5 * period), values
 
 
-def _staircase(
+def stairs(
     rng: np.random.Generator, limits: DepthLimits, name: str, rate: float, holds: Sequence[float]
 ) -> Motion:
+    """Levels up and down again, each held for a time [s], reached at a rate [m/s]."""
     up = (len(holds) + 1) // 2
     levels = np.concatenate([np.linspace(1.0 / up, 1.0, up), np.linspace(1.0, 0.1, len(holds) - up + 1)[1:]])
     if rng.random() < 0.3:
@@ -249,7 +251,7 @@ def _staircase(
         values.append(0.0)
         knots.append((np.array(times), np.array(values)))
     quickest = limits.shallowest / (up * rate)
-    return _polyline(name, knots, limits.surfaces, _sample_step(rng, knots, quickest), 0.2 * quickest)
+    return polyline(name, knots, limits.surfaces, _sample_step(rng, knots, quickest), 0.2 * quickest)
 
 
 def _sample_step(
@@ -277,13 +279,14 @@ def _dynamic_step(rng: np.random.Generator, highest: float, duration: float) -> 
     return 1.0 / (float(rng.choice(fits)) if fits else MOST_RIG_SAMPLES / duration)
 
 
-def _polyline(
+def polyline(
     name: str,
     knots: Sequence[tuple[FloatArray, FloatArray]],
     surfaces: Sequence[float],
     sample_step: float,
     blend: float,
 ) -> Motion:
+    """Straight lines through corners (times [s], deflections [m]), surface after surface, rounded over `blend` [s]."""
     times, values, ends = [], [], []
     start = 0.0
     for t, x in knots:

@@ -54,6 +54,10 @@ class Instrument:
             error[sample] += self.spike_size * self.noise * rng.choice((-1.0, 1.0)) * rng.uniform(0.5, 1.0)
         return error
 
+    def read(self, rng: np.random.Generator, deflection: FloatArray) -> FloatArray:
+        """What the gauge writes down [m] of the deflection that it shows [m]."""
+        return deflection + self.gauge * rng.standard_normal(deflection.size)
+
     def converted(self, force: FloatArray) -> FloatArray:
         """Force [N] in whole steps of the converter."""
         return force if self.quantum == 0.0 else self.quantum * np.round(force / self.quantum)
@@ -83,6 +87,22 @@ class Instrument:
         """Variance [N^2] of each cosine coefficient of the 1/f part, without a mean."""
         fall = np.concatenate([[0.0], 1.0 / np.arange(1, samples)])
         return self.pink**2 * samples * fall / float(np.sum(fall))
+
+
+@dataclass(frozen=True)
+class CoarseInstrument(Instrument):
+    """An instrument whose gauge writes whole steps: gauge_step [m]."""
+
+    gauge_step: float = 0.0
+
+    def read(self, rng: np.random.Generator, deflection: FloatArray) -> FloatArray:
+        """What the gauge writes down [m]: the noisy deflection in whole steps."""
+        noisy = super().read(rng, deflection)
+        return noisy if self.gauge_step == 0.0 else self.gauge_step * np.round(noisy / self.gauge_step)
+
+    def spectrum(self, samples: int, step: float, stiffness: float) -> FloatArray:
+        """Variance [N^2] of each coefficient of the cosine transform; a gauge step q adds (stiffness q)^2 / 12."""
+        return super().spectrum(samples, step, stiffness) + (self.gauge_step * stiffness) ** 2 / 12.0
 
 
 def drawn_instrument(rng: np.random.Generator) -> Instrument:

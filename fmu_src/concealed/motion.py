@@ -25,7 +25,8 @@ class Motion:
 
     time [s], deflection [m] as a perfect gauge would read it, radius [m] of the surface (convex > 0); all of
     one shape on an even grid. `stride`: every stride-th sample is recorded. `burst`: a span of time [s] in
-    which alone the motion is fast, if there is one.
+    which alone the motion is fast, if there is one. `blurred`: samples at which no analysis of the readings can know
+    the rate, where that was looked into (see `equivalence`).
     """
 
     name: str
@@ -34,6 +35,7 @@ class Motion:
     radius: FloatArray
     stride: int = 1
     burst: tuple[float, float] | None = None
+    blurred: BoolArray | None = None
 
     @property
     def step(self) -> float:

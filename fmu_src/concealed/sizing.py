@@ -34,9 +34,13 @@ class Size:
 
 
 def contributions(bench: Bench, name: str, motions: tuple[Motion, ...]) -> list[FloatArray]:
-    """Force with the effect less force without it [N], on the recorded samples of every motion."""
+    """Force with the effect less force without it [N], on the recorded samples of every motion.
+
+    An effect that falsifies the reading adds what the force lacks at the deflection that the gauge shows.
+    """
     less = bench.without(name)
-    return [m.recorded(bench.force(m) - less.force(m)) for m in motions]
+    gauge = Bench(bench.tire, tuple(e for e in bench.effects if e.name == name))
+    return [m.recorded(bench.force(m) - less.force(gauge.seen(m))) for m in motions]
 
 
 def measured(

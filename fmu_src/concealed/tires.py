@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import Field, dataclass
 from functools import lru_cache
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from scipy.interpolate import PPoly, make_interp_spline
@@ -112,8 +113,14 @@ class ContactPatchTire:
         return result
 
 
-#: Elastic tire: force(deflection [m], radius [m], pressure over inflation pressure [1]) -> radial force [N].
-Tire = PowerTire | ContactPatchTire
+class Tire(Protocol):
+    """An elastic tire: a frozen dataclass with a force."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def force(self, deflection: FloatArray, radius: FloatArray, pressure_ratio: FloatArray) -> FloatArray:
+        """Radial force [N] at a deflection [m], surface's radius [m], and pressure over inflation pressure [1]."""
+        ...
 
 
 def distinct(radius: FloatArray) -> set[float]:

@@ -77,7 +77,8 @@ class Trial:
 
     heldout: tests of other kinds than the training ones, then one test of a training kind.
     baseline: the tire that the user starts from; baseline_source: "hull1996" where it is the article's tire, "table"
-    where A and B were identified surface by surface. bench and instrument can make further recordings.
+    where A and B were identified surface by surface. bench and instrument can make further recordings; motions: those
+    of the training recordings.
     """
 
     seed: int
@@ -89,6 +90,7 @@ class Trial:
     noise: float
     bench: Bench
     instrument: Instrument
+    motions: tuple[Motion, ...] = ()
 
 
 def recorded(
@@ -98,13 +100,16 @@ def recorded(
     clean = bench.force(motion)
     time, true = motion.recorded(motion.time), motion.recorded(motion.deflection)
     radius = motion.recorded(motion.radius)
-    readings = true + instrument.gauge * rng.standard_normal(true.size)
+    shown = bench.shown(true)
+    readings = instrument.read(rng, shown)
     force = instrument.converted(
         motion.recorded(clean) + instrument.force_error(rng, time.size, motion.sample_step)
     )
     ones = np.ones_like(true)
-    by_stiffness = bench.tire.force(readings, radius, ones) - bench.tire.force(true, radius, ones)
-    by_rate = motion.recorded(bench.force(estimated(motion, readings)) - clean)
+    by_stiffness = bench.tire.force(readings, radius, ones) - bench.tire.force(shown, radius, ones)
+    # what a gauge shows wrongly is no noise: rate and acceleration are estimated without that error
+    near = readings if shown is true else true + (readings - shown)
+    by_rate = motion.recorded(bench.force(estimated(motion, near)) - clean)
     error = force - motion.recorded(clean) - by_stiffness
     floor, read_floor = (float(np.sqrt(np.mean(e**2))) for e in (error, error - by_rate))
     return Record(name, motion.name, time, readings, radius, force), (floor, read_floor)

@@ -113,6 +113,10 @@ class Effect(ABC):
         """Deflection [m] of wheel and tire beyond what the gauge shows."""
         return 0.0
 
+    def reading(self, deflection: FloatArray) -> FloatArray:
+        """What the gauge shows [m] of a deflection [m], free of noise."""
+        return deflection
+
     def pressure_ratio(self, motion: Motion) -> FloatArray | float:
         """Pressure over inflation pressure as a function of time."""
         return 1.0
