@@ -34,7 +34,7 @@ SIGNIFICANCE = 0.01
 #: Sum of squares, over the noise, that a set may leave beside what the truth leaves.
 TELLING = float((2.0 * norm.isf(SIGNIFICANCE)) ** 2)
 #: Sets whose generous linear fit leaves this share of the misfit are not fitted: no form of theirs comes near.
-FAR = 2e-3
+FAR = 1e-2
 #: Most sets that are fitted, most starts of one fit, and most steps of a fit.
 MOST_SETS, MOST_STARTS, MOST_STEPS = 16, 2, 30
 #: Most sets of a foreign form's family and one more name that are fitted.

@@ -20,7 +20,7 @@ FEWEST_SAMPLES, MOST_SAMPLES = 150, 12_000
 #: Speeds [m/s], gauge steps [m], force steps [N] and white noise [N] of a press.
 SPEEDS, GAUGE_STEPS, FORCE_STEPS, NOISES = (0.3e-3, 20e-3), (1e-6, 50e-6), (0.1, 5.0), (0.5, 6.0)
 #: Time in which a press turns round [s].
-TURNING = 0.2
+TURNING = 0.05
 #: Share of the largest force above which the logarithmic fit looks.
 FITTED_SHARE = 0.03
 

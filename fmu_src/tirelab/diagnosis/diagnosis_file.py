@@ -12,7 +12,8 @@ from typing import Any
 from ..errors import TirelabError
 from ..names import UNKNOWN
 
-SCHEMA = 1
+SCHEMAS = (1, 2)
+"""Versions that are read. The second states a probability of every effect, and what remains unexplained."""
 
 Names = frozenset[str]
 
@@ -47,6 +48,8 @@ class Stated:
     separating_test: file of the test that separates the alternatives, or None
     fit: noise, before, after, held_out_before, held_out_after [N], None where not known
     tire, corrected_fmu, report: the files, None where there is none
+    probabilities: of every named effect, that it is there; the confidence where the file states none (schema 1)
+    remainder: size of what stays unexplained in units of the noise, None where the file does not state it
     """
 
     names: Names
@@ -60,6 +63,8 @@ class Stated:
     tire: Path | None
     corrected_fmu: Path | None
     report: Path | None
+    probabilities: Mapping[str, float]
+    remainder: float | None
 
 
 def read_stated(folder: Path) -> Stated:
@@ -77,8 +82,8 @@ def read_stated(folder: Path) -> Stated:
 
 
 def _stated(content: Mapping[str, Any], folder: Path) -> Stated:
-    if content["schema"] != SCHEMA:
-        raise ValueError(f"schema {content['schema']!r} is not {SCHEMA}")
+    if content["schema"] not in SCHEMAS:
+        raise ValueError(f"schema {content['schema']!r} is none of {', '.join(map(str, SCHEMAS))}")
     verdict = content["verdict"]
     confidence = float(verdict["confidence"])
     if not 0.0 <= confidence <= 1.0:
@@ -97,7 +102,23 @@ def _stated(content: Mapping[str, Any], folder: Path) -> Stated:
         tire=_file(content.get("tire"), folder),
         corrected_fmu=_file(content.get("corrected_fmu"), folder),
         report=_file(content.get("report"), folder),
+        probabilities={
+            str(effect["name"]): _probability(effect.get("probability", confidence))
+            for effect in verdict["effects"]
+        },
+        remainder=_remainder(verdict.get("remainder")),
     )
+
+
+def _probability(value: object) -> float:
+    if not isinstance(value, (int, float)) or not 0.0 <= value <= 1.0:
+        raise ValueError(f"probability {value!r} does not lie between 0 and 1")
+    return float(value)
+
+
+def _remainder(content: object) -> float | None:
+    size = content.get("size") if isinstance(content, Mapping) else None
+    return None if size is None else float(size)
 
 
 def _place(place: Mapping[str, Any]) -> StatedPlace:

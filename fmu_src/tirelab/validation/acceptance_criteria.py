@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from .metrics import Mean, Rate, among, brier, exact, false_alarms, near_floor, recognised
 from .score import Score
@@ -16,26 +17,42 @@ ALIKE = "held-out RMSE within 10 % of the noise floor, tests of the diagnosed ki
 OTHER = "the same, tests of another kind"
 
 
+Result = Literal["pass", "fail", "too few trials", "not measured"]
+
+
 @dataclass(frozen=True)
 class Criterion:
-    """One figure and its limit: the value has to be at least (`at_least`) or at most the limit."""
+    """One figure and its limit: the value has to be at least (`at_least`) or at most the limit.
+
+    widest: an interval wider than this is too wide to judge by
+    """
 
     figure: str
     measured: Rate | Mean
     limit: float
     at_least: bool
+    widest: float = math.inf
 
     @property
     def passes(self) -> bool | None:
-        """Whether the measured value meets the limit; None where no trial measured it."""
-        value = self.measured.value
-        if math.isnan(value):
+        """Whether the measured value meets the limit; None where it was not measured or by too few trials."""
+        if self.result not in ("pass", "fail"):
             return None
-        return value >= self.limit if self.at_least else value <= self.limit
+        return self.result == "pass"
+
+    @property
+    def result(self) -> Result:
+        """What came out, in words."""
+        value, (low, high) = self.measured.value, self.measured.interval
+        if math.isnan(value):
+            return "not measured"
+        if high - low > self.widest:
+            return "too few trials"
+        return "pass" if (value >= self.limit if self.at_least else value <= self.limit) else "fail"
 
 
 def criteria(scores: Sequence[Score]) -> tuple[Criterion, ...]:
-    """Return every figure with its limit."""
+    """Return every figure of the drawn kinds with its limit; those of the wide kinds are in `wide_kinds`."""
     return (
         Criterion("exact set named", exact(scores), 0.90, at_least=True),
         Criterion("truth is the verdict or a stated alternative", among(scores), 0.97, at_least=True),

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import concealed
 from radialtire import read_tire
 
 from ..batch.workers import Cores, work
@@ -17,24 +18,29 @@ from ..diagnosis.diagnosis_file import Stated, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, diagnose_files
 from ..errors import TirelabError
 from ..recordings.recording import read_recording
-from .commitment import add_commitment, draw_and_commit, opened, read_commitments, trial_key
+from .commitment import add_commitment, derived_key, draw_and_commit, opened, read_commitments, trial_key
 from .figures import overview
 from .folders import Folders, read_json, write_json
 from .follow_up_test import run_recommended_test
-from .held_out import held_out
+from .held_out import errors_on, held_out
 from .overlap import RegionScore, region_scores
 from .page import Proof, numbers, page
 from .score import Score, discrimination, right_sets, sizes_over_noise
 
-SETTINGS_SCHEMA = 4
+SETTINGS_SCHEMA = 5
 """Version of the rig and of the scores; a folder of another version is not continued."""
+
+ALL_KINDS = "all"
+"""Trials of the drawn kinds and of each wide kind in turn."""
 
 Show = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class BlindTrials:
-    """The number of trials, their seed and their folders; kind: one of `concealed.KINDS` for all, None: drawn.
+    """The number of trials, their seed and their folders.
+
+    kind: one of `concealed.KINDS` or `concealed.WIDE_KINDS` for all trials, `ALL_KINDS`, or None: drawn from KINDS
 
     diagnoser: diagnoses one trial; it gets the recordings and the baseline tire only
     """
@@ -44,6 +50,13 @@ class BlindTrials:
     trials: int
     kind: str | None = None
     diagnoser: Diagnoser = diagnose_files
+
+    def kind_of(self, number: int) -> str | None:
+        """The kind of one trial, None where it is drawn."""
+        if self.kind != ALL_KINDS:
+            return self.kind
+        kinds = (None, *concealed.WIDE_KINDS)
+        return kinds[number % len(kinds)]
 
     @property
     def keys(self) -> dict[str, int]:
@@ -63,7 +76,7 @@ def prove(trials: BlindTrials, cores: Cores, show: Show) -> Proof:
     _diagnose_all(trials, cores, second=False)
     _run_tests(trials, cores)
     _diagnose_all(trials, cores, second=True)
-    proof = Proof(trials.seed, _score_all(trials, commitments, cores))
+    proof = Proof(trials.seed, _score_all(trials, commitments, cores), trials.kind)
     write_json(trials.folders.root / "proof.json", numbers(proof))
     (trials.folders.root / "proof.html").write_text(page(proof), encoding="utf-8")
     overview(proof.scores, proof.command).savefig(trials.folders.root / "proof.png", dpi=110)
@@ -95,18 +108,19 @@ def _commit_all(trials: BlindTrials, cores: Cores, show: Show) -> dict[str, str]
     folders = trials.folders
     commitments = read_commitments(folders)
     tasks = {
-        key: (folders, trials.seed, number, trials.kind)
+        key: (folders, trials.seed, number, trials.kind_of(number))
         for key, number in trials.keys.items()
         if key not in commitments
     }
     for done in work(draw_and_commit, tasks, cores, "committing to the answers"):
         if done.value is None:
             raise TirelabError(f"trial {done.key} cannot be drawn: {done.error}")
-        add_commitment(folders, done.key, done.value)
-        commitments[done.key] = done.value
+        for key, commitment in done.value.items():
+            add_commitment(folders, key, commitment)
+        commitments |= done.value
     for key in trials.keys:
         show(f"{key}  {commitments[key]}")
-    return {key: commitments[key] for key in trials.keys}
+    return commitments
 
 
 def _diagnose_all(trials: BlindTrials, cores: Cores, *, second: bool) -> None:
@@ -158,7 +172,7 @@ def _run_tests(trials: BlindTrials, cores: Cores) -> None:
         recommended = verdict.separating_test if verdict is not None else None
         tried = folders.test(key).exists() or folders.outcome(key, second=True).exists()
         if recommended is not None and not tried:
-            tasks[key] = (folders, trials.seed, number, trials.kind, recommended)
+            tasks[key] = (folders, trials.seed, number, trials.kind_of(number), recommended)
     for done in work(run_recommended_test, tasks, cores, "running recommended tests"):
         if done.error is not None:
             write_json(folders.outcome(done.key, second=True), {"error": done.error, "seconds": None})
@@ -168,36 +182,42 @@ def _score_all(trials: BlindTrials, commitments: dict[str, str], cores: Cores) -
     folders = trials.folders
     for key in trials.keys:
         opened(folders, key, commitments[key])
-    tasks = {key: (folders, key, commitments[key]) for key in trials.keys if not folders.score(key).exists()}
+    tasks = {
+        key: (folders, key, commitments[key], commitments[derived_key(key)])
+        for key in trials.keys
+        if not folders.score(key).exists()
+    }
     for done in work(score_trial, tasks, cores, "scoring"):
         if done.error is not None:
             raise TirelabError(f"trial {done.key} cannot be scored: {done.error}")
     return tuple(Score.from_json(read_json(folders.score(key))) for key in trials.keys)
 
 
-def score_trial(folders: Folders, key: str, commitment: str) -> None:
-    """Open the answer of a trial, check its commitment hash, and write the score."""
+def score_trial(folders: Folders, key: str, commitment: str, derived_commitment: str) -> None:
+    """Open the answer of a trial, check its commitment hashes, and write the score."""
     answer = opened(folders, key, commitment)
+    derived = right_sets(opened(folders, derived_key(key), derived_commitment))
     outcome = read_json(folders.outcome(key))
     verdict = _verdict(folders, key)
     error = outcome["error"]
-    errors = None
+    errors = fitted = None
     regions: tuple[RegionScore, ...] = ()
     if verdict is not None:
-        regions = region_scores(
-            answer["where"], verdict.places, [read_recording(p) for p in folders.recordings(key, "train")]
-        )
+        train = [read_recording(p) for p in folders.recordings(key, "train")]
+        regions = region_scores(answer["where"], verdict.places, train)
         try:
             baseline = read_tire(folders.tire(key))
+            corrected = baseline if verdict.tire is None else read_tire(verdict.tire)
+            fitted = errors_on(baseline, corrected, train, answer["files"])
             errors = held_out(
                 baseline,
-                baseline if verdict.tire is None else read_tire(verdict.tire),
+                corrected,
                 verdict.corrected_fmu,
                 [read_recording(p) for p in folders.recordings(key, "heldout")],
                 answer["files"],
             )
         except Exception as failure:
-            error = f"its corrected tire fails on held-out recordings: {type(failure).__name__}: {failure}"
+            error = f"its corrected tire fails on the recordings: {type(failure).__name__}: {failure}"
     decided = None
     if verdict is not None and verdict.alternatives:
         decided = discrimination(right_sets(answer), verdict, _verdict(folders, key, second=True))
@@ -214,6 +234,10 @@ def score_trial(folders: Folders, key: str, commitment: str) -> None:
         held_out=errors,
         discrimination=decided,
         seconds=outcome["seconds"] or 0.0,
+        derived=() if set(derived) == set(right_sets(answer)) else derived,
+        probabilities={} if verdict is None else verdict.probabilities,
+        remainder=None if verdict is None else verdict.remainder,
+        fitted=fitted,
     )
     write_json(folders.score(key), score.to_json())
 

@@ -12,27 +12,38 @@ from radialtire import write_tire
 
 from ..errors import TirelabError
 from .baseline import baseline_tire
-from .folders import Folders, read_json
+from .folders import Folders, read_json, write_json
 
 
 class ChangedAnswerError(TirelabError):
     """An answer whose SHA-256 is not its commitment hash."""
 
 
-def draw_and_commit(folders: Folders, seed: int, number: int, kind: str | None) -> str:
-    """Write recordings, baseline tire and answer of one trial, and return the answer's commitment hash."""
+def draw_and_commit(folders: Folders, seed: int, number: int, kind: str | None) -> dict[str, str]:
+    """Write recordings, baseline tire and answer of one trial, and return commitment hashes by the key of their file.
+
+    The sets that count as right by the rig's own fits have a file and a hash of their own, see `derived_key`.
+    """
     trial = concealed.draw(trial_seed(seed, number), kind=kind)
     key = trial_key(number)
     shutil.rmtree(folders.trial(key), ignore_errors=True)
     concealed.write(trial, folders.trial(key))
     folders.tire(key).parent.mkdir(parents=True, exist_ok=True)
     write_tire(baseline_tire(concealed.baseline_table(trial)), folders.tire(key))
-    return concealed.write_answer(trial, folders.sealed(key))
+    commitment = concealed.write_answer(trial, folders.sealed(key))
+    derived = folders.sealed(derived_key(key))
+    write_json(derived, {"right": [list(names) for names in concealed.derived_right(trial)]})
+    return {key: commitment, derived_key(key): hashlib.sha256(derived.read_bytes()).hexdigest()}
 
 
 def trial_key(number: int) -> str:
     """Return the name of a trial in all folders."""
     return f"{number:04d}"
+
+
+def derived_key(key: str) -> str:
+    """Return the key of the file with the right sets of a trial by the rig's own fits."""
+    return f"{key}.derived"
 
 
 def read_commitments(folders: Folders) -> dict[str, str]:

@@ -78,6 +78,15 @@ def reliability_diagram(points: Sequence[Point]) -> Figure:
     return figure
 
 
+def effect_reliability_diagram(points: Sequence[Point]) -> Figure:
+    """Draw how often named effects were there over their stated probability."""
+    figure = Figure(figsize=(4.6, 4.4), layout="constrained")
+    axes = figure.subplots()
+    _reliability(axes, points)
+    axes.set(xlabel="stated probability of an effect", ylabel="part of the named effects that was there")
+    return figure
+
+
 def held_out_errors(scores: Sequence[Score]) -> Figure:
     """Draw the held-out RMSE over the noise floor, corrected against baseline tire, one point for each trial."""
     figure = Figure(figsize=(5.8, 4.4), layout="constrained")

@@ -4,7 +4,7 @@ DIR/settings.json            the seed
 DIR/seals.sha256             commitment hash (SHA-256) of every answer, as `sha256sum -c` reads it
 DIR/trials/NNNN/             the recordings alone
 DIR/tires/NNNN.json          the baseline tire, a tire file
-DIR/sealed/NNNN.json         the answer
+DIR/sealed/NNNN.json         the answer; NNNN.derived.json the right sets by the rig's own fits
 DIR/verdicts/NNNN/           what the diagnosis wrote; outcomes/NNNN.json how it ended
 DIR/tests/NNNN/test.csv      the recommended test, as the rig recorded it
 DIR/second_verdicts/NNNN/    the diagnosis with that recording; second_outcomes/NNNN.json how it ended

@@ -22,7 +22,7 @@ REPLAYED_SAMPLES = 1000
 
 @dataclass(frozen=True)
 class Errors:
-    """Root mean square errors [N] over some held-out recordings of a trial, pooled by samples.
+    """Root mean square errors [N] over some recordings of a trial, pooled by samples.
 
     before: the baseline tire; after: the corrected tire; reading_noise_floor: the true tire on the same readings
     noise_free: the corrected tire given the noise-free deflection, as in a simulation; noise_floor: the true tire with
@@ -78,18 +78,19 @@ def held_out(
     alike = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] in diagnosed]
     other = [r for r in recordings if truths[f"{r.name}.csv"]["excitation"] not in diagnosed]
     return HeldOut(
-        _errors(baseline, corrected, alike, truths),
-        _errors(baseline, corrected, other, truths),
+        errors_on(baseline, corrected, alike, truths),
+        errors_on(baseline, corrected, other, truths),
         _fmu_difference(fmu, corrected, recordings),
     )
 
 
-def _errors(
+def errors_on(
     baseline: TireModel,
     corrected: TireModel,
     recordings: Sequence[Recording],
     truths: Mapping[str, Mapping[str, Any]],
 ) -> Errors:
+    """Return the errors on some recordings, pooled by samples; truths: see `held_out`."""
     sizes = np.array([len(r) for r in recordings])
     squares = np.array(
         [

@@ -141,7 +141,7 @@ def brier(scores: Sequence[Score]) -> Mean:
 def reliability(scores: Sequence[Score]) -> list[Point]:
     """How often verdicts are exact, by classes of their stated confidence."""
     pairs = [(s.confidence, s.exact) for s in scores if s.confidence is not None]
-    return _curve(pairs, CONFIDENCE_EDGES)
+    return curve(pairs, CONFIDENCE_EDGES)
 
 
 def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:
@@ -155,11 +155,11 @@ def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:
             if s.demands(effect):
                 pairs[effect].append((size, s.named(effect)))
     everything = [pair for listed in pairs.values() for pair in listed]
-    curves = {ANY_EFFECT: _curve(everything, SIZE_EDGES)} if everything else {}
-    return curves | {effect: _curve(pairs[effect], SIZE_EDGES) for effect in sorted(pairs)}
+    curves = {ANY_EFFECT: curve(everything, SIZE_EDGES)} if everything else {}
+    return curves | {effect: curve(pairs[effect], SIZE_EDGES) for effect in sorted(pairs)}
 
 
-def _curve(pairs: Sequence[tuple[float, bool]], edges: Sequence[float]) -> list[Point]:
+def curve(pairs: Sequence[tuple[float, bool]], edges: Sequence[float]) -> list[Point]:
     """Points of the classes that hold anything; a value at an edge belongs to the class below it."""
     points = []
     for low, high in pairwise(edges):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, get_args
 
 from ..diagnosis.diagnosis_file import NOTHING, Names, Stated
@@ -11,8 +11,8 @@ from ..names import UNKNOWN
 from .held_out import Errors, HeldOut
 from .overlap import RegionScore
 
-OPEN = "open"
-"""The kind of trial whose effect no catalogue names."""
+OPEN = ("open", "outside")
+"""The kinds of trial whose effect no catalogue names."""
 
 Outcome = Literal["decided rightly", "decided wrongly", "undecided", "no test", "failed"]
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
@@ -42,6 +42,9 @@ class Score:
     alternatives: the alternatives stated; confidence: as stated, None where the diagnosis failed
     sizes: size of every hidden effect over the noise (RMS over the samples in which it is active)
     seconds: duration of the diagnosis
+    derived: the sets that count as right by the rig's own fits (`concealed.derived_right`), empty where as in `right`
+    probabilities: of every named effect, as stated; remainder: its size over the noise, as stated
+    fitted: errors on the recordings that were diagnosed, None where there is no verdict
     """
 
     trial: str
@@ -56,6 +59,10 @@ class Score:
     held_out: HeldOut | None
     discrimination: Discrimination | None
     seconds: float
+    derived: tuple[Names, ...] = ()
+    probabilities: Mapping[str, float] = field(default_factory=dict)
+    remainder: float | None = None
+    fitted: Errors | None = None
 
     @property
     def exact(self) -> bool:
@@ -68,9 +75,24 @@ class Score:
         return self.exact or any(names in self.right for names in self.alternatives)
 
     @property
+    def exact_as_derived(self) -> bool:
+        """Whether the verdict is one of the sets that count as right by the rig's own fits."""
+        return self.verdict in (self.derived or self.right)
+
+    @property
+    def single_answer(self) -> bool:
+        """Whether one set alone counts as right."""
+        return len(self.right) == 1
+
+    @property
+    def single_answer_as_derived(self) -> bool:
+        """Whether one set alone counts as right by the rig's own fits."""
+        return len(self.derived or self.right) == 1
+
+    @property
     def open(self) -> bool:
         """Whether something outside the catalogue was hidden."""
-        return self.kind == OPEN
+        return self.kind in OPEN
 
     @property
     def recognised(self) -> bool:
@@ -117,6 +139,10 @@ class Score:
             "regions": [asdict(region) for region in self.regions],
             "held_out": None if self.held_out is None else asdict(self.held_out),
             "discrimination": None if self.discrimination is None else asdict(self.discrimination),
+            "derived": [sorted(names) for names in self.derived],
+            "probabilities": dict(self.probabilities),
+            "remainder": self.remainder,
+            "fitted": None if self.fitted is None else asdict(self.fitted),
             "exact": self.exact,
             "among": self.among,
         }
@@ -139,6 +165,10 @@ class Score:
             if content["discrimination"] is None
             else Discrimination(**content["discrimination"]),
             seconds=content["seconds"],
+            derived=tuple(map(frozenset, content["derived"])),
+            probabilities=content["probabilities"],
+            remainder=content["remainder"],
+            fitted=None if content["fitted"] is None else Errors(**content["fitted"]),
         )
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from rich.table import Table
 
-from .page import Proof, interval, value_text
+from .calibration import skills
+from .page import REDRAWN, Proof, interval, value_text
+from .wide_kinds import PARTS, kind_criteria
 
-VERDICTS = {True: "[green]pass[/]", False: "[red]fail[/]", None: "not measured"}
+COLOURS = {"pass": "[green]pass[/]", "fail": "[red]fail[/]"}
 
 
 def criteria_table(proof: Proof) -> Table:
@@ -20,6 +22,29 @@ def criteria_table(proof: Proof) -> Table:
             value_text(criterion.measured),
             interval(criterion.measured),
             f"{'>=' if criterion.at_least else '<='} {criterion.limit:g}",
-            VERDICTS[criterion.passes],
+            COLOURS.get(criterion.result, criterion.result),
         )
     return table
+
+
+def lines(proof: Proof) -> list[str]:
+    """Return what the table leaves open: how many answers the rig accepts, calibration, and when trials are redrawn."""
+    found = proof.answers
+    parts = [f"{c.figure}: {value_text(c.measured)}" for c in kind_criteria(proof.scores, PARTS)]
+    ruled = [
+        f"By the rig's own fits: more than one answer in {value_text(found.several_as_derived)}; exact in "
+        f"{value_text(found.exact_as_derived)}, on trials with one answer alone in "
+        f"{value_text(found.exact_single_as_derived)}."
+    ]
+    return [
+        *parts,
+        f"More than one answer counts as right in {value_text(found.several)}; right on trials with one answer alone "
+        f"in {value_text(found.exact_single)}, {interval(found.exact_single)}.",
+        *(ruled if proof.drawn else []),
+        f"Alternatives per verdict: {value_text(found.alternatives)}.",
+        *(
+            f"Brier skill of the {what} over the constant rate: {value_text(value)}, {interval(value)}."
+            for what, value in skills(proof.scores).items()
+        ),
+        REDRAWN,
+    ]

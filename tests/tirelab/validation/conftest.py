@@ -14,14 +14,20 @@ from tirelab.validation.score import Score
 def write_diagnosis(out: Path, names: Sequence[str], **more: Any) -> None:
     """Write a diagnosis.json that names a set ("none", "unknown" and effects) as the contract has it."""
     effects = [name for name in names if name not in ("none", "unknown")]
+    stated = more.get("probabilities", {})
     content = {
-        "schema": 1,
+        "schema": 2 if stated else 1,
         "verdict": {
-            "effects": [{"name": name, "parameters": {}, "share": 0.5} for name in effects],
+            "effects": [
+                {"name": name, "parameters": {}, "share": 0.5}
+                | ({"probability": stated[name]} if name in stated else {})
+                for name in effects
+            ],
             "confidence": more.get("confidence", 0.9),
             "alternatives": more.get("alternatives", []),
             "unexplained": "unknown" in names,
             "summary": "A stand-in says so.",
+            **({"remainder": {"share": 0.02, "size": more["remainder"]}} if "remainder" in more else {}),
             "separating_test": more.get("separating_test"),
         },
         "where": more.get("where", []),
@@ -83,6 +89,10 @@ def score() -> Callable[..., Score]:
             held_out=more.get("held_out"),
             discrimination=more.get("discrimination"),
             seconds=1.0,
+            derived=tuple(frozenset(s.split()) for s in more.get("derived", ())),
+            probabilities=more.get("probabilities", {}),
+            remainder=more.get("remainder"),
+            fitted=more.get("fitted"),
         )
 
     return make

@@ -261,10 +261,11 @@ def test_the_page_of_a_full_run_has_every_part(oracle_run: Run) -> None:
         "Acceptance criteria",
         "Confusion matrix",
         "Calibration of the stated confidence",
+        "What counts as right",
         "Every trial",
     ):
         assert f"{part}</" in text
-    assert text.count("<svg") == 4
+    assert text.count("<svg") == 5
     # an oracle: three of three exact, Wilson's interval of 3/3 from its closed form n / (n + z^2)
     assert "100.0 % (3 of 3)" in text
     assert f"{100.0 * 3.0 / (3.0 + 1.959964**2):.1f} to 100.0 %" in text
@@ -307,7 +308,7 @@ def test_a_corrected_tire_that_cannot_be_used_is_a_failure(
 
     (failed,) = run(undiagnosed, lost, trials=1).failures
     assert failed.held_out is None
-    assert "its corrected tire fails on held-out recordings" in str(failed.error)
+    assert "its corrected tire fails on the recordings" in str(failed.error)
     assert "lost.json" in str(failed.error)
 
 
