@@ -33,10 +33,12 @@ from .wide.laws import BentTire
 SIGNIFICANCE = 0.01
 #: Sum of squares, over the noise, that a set may leave beside what the truth leaves.
 TELLING = float((2.0 * norm.isf(SIGNIFICANCE)) ** 2)
-#: Sets whose generous linear fit leaves this share of the misfit are not fitted: no form of theirs comes near.
+#: Part of the true effects that a set replaces by others which its linear fit may leave: what its other forms may miss.
 FAR = 1e-2
 #: Most sets that are fitted, most starts of one fit, and most steps of a fit.
-MOST_SETS, MOST_STARTS, MOST_STEPS = 16, 2, 30
+MOST_SETS, MOST_STARTS, MOST_STEPS = 10, 2, 25
+#: A set of so many names is fitted from its best start alone.
+MANY_NAMES = 3
 #: Most sets of a foreign form's family and one more name that are fitted.
 MOST_COMPLETING = 4
 #: The rate is unknown where its best estimate errs by more than this part of its RMS; a motion of which more than
@@ -114,8 +116,7 @@ def equivalent(
     truth_leaves = fitted(hidden, truth, forms, 0.0) if foreign and truth else 0.0
     whole = 2.0 * linear.loss(())
     allowed = truth_leaves + TELLING
-    limit = 0.5 * allowed + FAR * 0.5 * whole
-    near = [names for names in _near(linear, base, most, limit) if not truth <= names]
+    near = [names for names in _near(linear, truth, base, most, 0.5 * allowed) if not truth <= names]
     found: dict[Names, float] = {}
     tried = skipped = 0
     for names in near:
@@ -137,8 +138,7 @@ def completing(hidden: Hidden, linear: Explanations, truth: Names) -> dict[Names
     The one more name describes what a foreign form has beside its family's: both answers are right.
     """
     forms = templates(hidden.bench, hidden.motions, hidden.instrument.noise)
-    limit = 0.5 * TELLING + FAR * linear.loss(())
-    near = [names for names in _near(linear, truth, len(truth) + 1, limit) if truth < names]
+    near = [names for names in _near(linear, truth, truth, len(truth) + 1, 0.5 * TELLING) if truth < names]
     leaves = {names: fitted(hidden, names, forms, TELLING) for names in near[:MOST_COMPLETING]}
     return {names: left for names, left in leaves.items() if left <= TELLING}
 
@@ -170,7 +170,7 @@ def fitted(hidden: Hidden, names: Names, forms: Mapping[str, tuple[Template, ...
     starts = [_Model(hidden, chosen, radii) for chosen in product(*(forms[name] for name in effects))]
     ranked = sorted((model.begun() for model in starts), key=lambda pair: pair[0])
     best = ranked[0][0]
-    for _, model, values in ranked[:MOST_STARTS]:
+    for _, model, values in ranked[: MOST_STARTS if len(names) < MANY_NAMES else 1]:
         if best <= enough:
             break
         best = min(best, model.least(values, enough))
@@ -260,15 +260,20 @@ class _Model:
         return np.array(low, dtype=np.float64), np.array(high, dtype=np.float64)
 
 
-def _near(linear: Explanations, base: Names, most: int, limit: float) -> list[Names]:
-    """The sets that hold `base` and whose linear fit loses at most `limit`, the smallest and best first."""
-    needed = base.union(name for name in NAMES if linear.loss(set(NAMES) - {name}) >= limit)
+def _near(linear: Explanations, truth: Names, base: Names, most: int, allowed: float) -> list[Names]:
+    """The sets that hold `base` and whose linear fit loses little, the smallest and best first.
+
+    Little is `allowed`, and `FAR` of what is lost where the true names in the set are all there is.
+    """
+    highest = allowed + FAR * linear.loss(())
+    needed = base.union(name for name in NAMES if linear.loss(set(NAMES) - {name}) >= highest)
     optional = [name for name in NAMES if name not in needed]
     near: list[tuple[int, float, tuple[str, ...]]] = []
     for more in range(max(most - len(needed), -1) + 1):
         for chosen in combinations(optional, more):
             names = needed.union(chosen)
-            if (loss := linear.loss(names)) <= limit:
+            loss = linear.loss(names)
+            if loss <= highest and loss <= allowed + FAR * linear.loss(names & truth):
                 near.append((len(names), loss, tuple(sorted(names))))
     return [frozenset(names) for _, _, names in sorted(near)]
 

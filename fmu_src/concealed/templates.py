@@ -93,7 +93,7 @@ class ThreeBranches(Effect):
 
 
 def templates(bench: Bench, motions: tuple[Motion, ...], noise: float) -> Mapping[str, tuple[Template, ...]]:
-    """The templates of every name but `recalibration`; of a hidden effect its own form comes first.
+    """The templates of every name but `recalibration`; a hidden effect has its own form alone, for it fits best.
 
     bench: the tire and what is hidden in it, where it has a form of `effects`; noise [N].
     """
@@ -103,7 +103,7 @@ def templates(bench: Bench, motions: tuple[Motion, ...], noise: float) -> Mappin
     for effect in bench.effects:
         if type(effect) in BY_NAME.get(effect.name, ()):
             signed = effect.name in ("deflection_offset", "force_offset")
-            found[effect.name] = (Template(effect, _own(effect), signed), *found[effect.name])
+            found[effect.name] = (Template(effect, _own(effect), signed),)
     return found
 
 

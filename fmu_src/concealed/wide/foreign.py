@@ -72,7 +72,7 @@ class QuadraticDashpot(LinearDashpot):
 
 @dataclass(frozen=True)
 class BreakawayFriction(Effect):
-    """Friction with a peak after each reversal: F = f z (1 + p u e^(1 - u)), u = s/r.
+    """Friction with a peak after each reversal: F = f z (1 + p u e^(1 - u)), u = s/(3 r).
 
     z: Dahl's state of the breakaway distance r [m]; s [m]: distance since the reversal; p [1]: height of the peak.
     Source: Dahl, Aerospace Corp. TOR-0158 (1968), for z; the peak as LuGre's sticking force over its sliding one.
@@ -104,7 +104,8 @@ class BreakawayFriction(Effect):
             since += abs(step)
             state = direction - (direction - state) * decay
             states.append((state, since))
-        z, u = np.array(states, dtype=np.float64).T
+        z, distance = np.array(states, dtype=np.float64).T
+        u = distance / 3.0
         return np.asarray(self.strength * z * (1.0 + self.peak * u * np.exp(1.0 - u)) * contact.touching)
 
 

@@ -42,7 +42,9 @@ def test_in_a_kind_that_is_drawn_a_remainder_is_no_right_name(score: Make) -> No
 
 
 def test_the_truth_of_a_first_file_may_be_an_alternative(score: Make) -> None:
-    missed = score("press", "friction recalibration", "lag", also_right=["friction"], alternatives=["friction"])
+    missed = score(
+        "press", "friction recalibration", "lag", also_right=["friction"], alternatives=["friction"]
+    )
     assert not sound(missed)
     assert sound_alternative(missed)
     assert not sound_alternative(score("press", "friction", "lag", alternatives=["gas"]))
