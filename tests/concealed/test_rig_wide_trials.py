@@ -1,7 +1,11 @@
 """Trials of the wide kinds: drawn on request only, of the sizes asked for, with answers that are fair."""
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -130,3 +134,17 @@ def test_the_rule_of_the_other_kinds_is_kept_and_the_fits_are_counted_beside_it(
     derived = derived_right(trial)
     assert derived[0] == trial.answer.right[0]
     assert set(derived) != set(trial.answer.right)
+
+
+@pytest.mark.parametrize("kind", ["press", "foreign"])
+def test_a_wide_trial_is_the_same_in_another_process(drawn: Drawn, repository: Path, kind: str) -> None:
+    """Neither the order of sets of strings nor anything else of a process may enter the answer."""
+    one = drawn(kind)[1]
+    program = (
+        f"import concealed; print(concealed.answer_json(concealed.draw({one.seed}, kind={kind!r})), end='')"
+    )
+    env = {**os.environ, "PYTHONHASHSEED": "1", "PYTHONPATH": str(repository / "fmu_src")}
+    there = subprocess.run(
+        [sys.executable, "-c", program], env=env, capture_output=True, text=True, check=True, timeout=120
+    )
+    assert there.stdout == answer_json(one)

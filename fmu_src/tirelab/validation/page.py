@@ -28,8 +28,9 @@ REDRAWN = (
     "A trial is drawn again unless every hidden effect matters: leaving it out has to lose at least 30 in "
     "log-likelihood for any amounts of all other effects in the rig's generous linear regressors, on recordings free "
     "of noise, under the noise's spectrum. An effect outside the catalogue has to leave at least a fifth of its "
-    "log-likelihood, and 150 of it, to the best pair of catalogue effects. Two exceptions: in a fifth of the trials an "
-    "elastic effect under another tire's law may stay hidden, and a press's first file is never drawn again."
+    "log-likelihood, and 150 of it, to the best pair of catalogue effects; the family of a foreign form has to explain "
+    "at least half of the misfit (root mean square) in the rig's own forms. Two exceptions: in a fifth of the drawn "
+    "trials an elastic effect under another tire's law may stay hidden, and a press's first file is never drawn again."
 )
 """By which measure trials are drawn again."""
 
@@ -130,7 +131,7 @@ def numbers(proof: Proof) -> dict[str, Any]:
         ],
         "discriminations": _rates(summary.discriminations(scores)),
         "seconds": _measured(Mean.of(s.seconds for s in scores)),
-        "scores": [s.to_json() for s in scores],
+        "scores": [{**s.to_json(), "right_verdict": sound(s)} for s in scores],
     }
 
 

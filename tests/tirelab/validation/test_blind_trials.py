@@ -344,6 +344,44 @@ def test_an_answer_that_is_gone_is_refused(undiagnosed: Folders) -> None:
         opened(undiagnosed, "0009", "0" * 64)
 
 
+def test_all_kinds_come_in_turn(tmp_path: Path) -> None:
+    trials = BlindTrials(Folders(tmp_path), SEED, 6, "all")
+    assert [trials.kind_of(n) for n in range(6)] == [None, "loud", "press", "foreign", "outside", None]
+    assert BlindTrials(Folders(tmp_path), SEED, 6, "press").kind_of(3) == "press"
+
+
+@pytest.mark.usefixtures("no_page")
+def test_a_wide_kind_is_drawn_diagnosed_and_scored(tmp_path: Path, oracle: Any) -> None:
+    proof = prove(BlindTrials(Folders(tmp_path), SEED, 2, "press", oracle), HERE, lambda line: None)
+    assert [s.kind for s in proof.scores] == ["press", "press"]
+    for s in proof.scores:
+        assert set(s.probabilities) == set(s.right[0]) - {"none"}
+        # without a corrected tire the baseline is what was written
+        assert s.fitted is not None
+        assert s.fitted.after == s.fitted.before
+        files = json.loads(Folders(tmp_path).sealed(s.trial).read_text())["files"]
+        assert s.fitted.before == pytest.approx(files["train_0.csv"]["baseline_rmse"], rel=1e-3)
+    content = json.loads((tmp_path / "proof.json").read_text())
+    figures = {c["figure"]: c["value"] for c in content["criteria"]}
+    assert figures["press: truth is the verdict or a stated alternative"] == 1.0
+    assert "Brier score of the confidence" not in figures
+
+
+@pytest.mark.usefixtures("no_page")
+def test_a_changed_derived_answer_is_refused(undiagnosed: Folders, oracle: Any) -> None:
+    derived = undiagnosed.sealed("0000.derived")
+    commitment = hashlib.sha256(derived.read_bytes()).hexdigest()
+    assert f"{commitment}  sealed/0000.derived.json" in undiagnosed.commitments.read_text().splitlines()
+    sealed = {path.name: path.read_bytes() for path in (undiagnosed.root / "sealed").glob("*.json")}
+    (undiagnosed.root / "sealed").unlink()
+    (undiagnosed.root / "sealed").mkdir()
+    for name, content in sealed.items():
+        (undiagnosed.root / "sealed" / name).write_bytes(content)
+    derived.write_text('{"right": [["gas_compression"]]}')
+    with pytest.raises(TirelabError, match=r"0000\.derived\.json.*was changed"):
+        run(undiagnosed, oracle, trials=1)
+
+
 def test_a_file_that_holds_no_object_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "list.json").write_text("[1]")
     with pytest.raises(TirelabError, match=r"list\.json: is no object"):
