@@ -9,6 +9,7 @@ from .hull1996 import FLAT_RADIUS, SECOND_READING, Hull1996
 from .model import InputError, ModelState, TestedRange, TireModel, check_inputs
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
+from .prior import Prior
 from .recalibrated import Recalibrated
 from .tirefile import TireFileError, parameters_of, read_tire, with_parameters, write_tire
 
@@ -24,6 +25,7 @@ __all__ = [
     "Parameter",
     "ParameterError",
     "PowerLaw",
+    "Prior",
     "Recalibrated",
     "State",
     "TestedRange",

@@ -21,6 +21,11 @@ from typing import NamedTuple
 
 from .parameter import Parameter
 
+TRAITS = ("static", "rate", "loop", "localized", "slow", "reading", "law")
+"""What an effect depends on or is: deflection alone; rate or acceleration; loading and unloading differ; acts in a part
+of the range only; changes with the time since the start; is of the instrument and not of the tire; is the elastic law's
+own shape."""
+
 PLACES = ("deflection", "series", "scale", "parallel", "inertia", "reading")
 
 State = tuple[float, ...]
@@ -68,7 +73,8 @@ class Effect:
     respond: the pure response (see Response)
     statement: one sentence for the verdict; tell_tale: how it shows in a recording; imitators: what looks like it
     source: where equation and magnitudes come from
-    differentiates: whether it uses rate or acceleration
+    differentiates: whether it uses rate or acceleration; traits: of TRAITS
+    form_error: part of its response by which other formulations of the same physics differ from it once fitted
     """
 
     name: str
@@ -81,6 +87,13 @@ class Effect:
     imitators: tuple[str, ...]
     source: str
     differentiates: bool = False
+    traits: tuple[str, ...] = ()
+    form_error: float = 0.02
+
+    @property
+    def signed(self) -> bool:
+        """Whether its first strength may be of either sign."""
+        return next((p.minimum < 0.0 for p in self.parameters if p.role == "strength"), False)
 
     @property
     def neutral(self) -> State:

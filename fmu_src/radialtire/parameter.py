@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from .prior import Prior
+
+ROLES = ("strength", "form", "limit", "reading")
+
 
 class ParameterError(ValueError):
     """A parameter's value is not allowed; the sentence names it, its value and what is allowed."""
@@ -22,6 +26,8 @@ class Parameter:
     meaning: one line for a reader who does not know the equation
     neutral: the value at which the effect it belongs to vanishes exactly, or None
     nominal: a value of usual size, where the start is not one
+    role: "strength" (the response vanishes with it), "limit" (it vanishes beyond it), "form", or "reading" (it follows
+    from the noise of the reading and is not fitted); prior: its distribution before any recording
     optional: whether the simplest form of the equation omits it; a fit keeps it at its start unless it is needed
     """
 
@@ -35,6 +41,8 @@ class Parameter:
     neutral: float | None = None
     nominal: float | None = None
     optional: bool = False
+    role: str = "form"
+    prior: Prior | None = None
 
     @property
     def nominal_value(self) -> float:

@@ -13,6 +13,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 from .soft_knee import FAR
 
 UNIT = 1e-3
@@ -36,10 +37,50 @@ BOTTOMING = Effect(
     name="bottoming",
     place="parallel",
     parameters=(
-        Parameter("stiffness", "K", "N/m", 0.0, 0.0, 1e8, "of the second spring", neutral=0.0, nominal=2e5),
-        Parameter("onset", "xb", "m", 0.025, 0.0, 0.2, "deflection at which it begins"),
-        Parameter("softness", "s", "m", 2e-4, 0.0, 0.01, "deflection over which it sets in"),
-        Parameter("power", "p", "1", 1.0, 1.0, 3.0, "1: linear, 1.5: rounded contact", optional=True),
+        Parameter(
+            "stiffness",
+            "K",
+            "N/m",
+            0.0,
+            0.0,
+            1e8,
+            "of the second spring",
+            neutral=0.0,
+            nominal=2e5,
+            role="strength",
+            prior=Prior("log", 1.0, math.log(6), "force/travel"),
+        ),
+        Parameter(
+            "onset",
+            "xb",
+            "m",
+            0.025,
+            0.0,
+            0.2,
+            "deflection at which it begins",
+            prior=Prior("normal", 0.8, 0.2, "travel", "where a rim is met is near the end of the travel"),
+        ),
+        Parameter(
+            "softness",
+            "s",
+            "m",
+            2e-4,
+            0.0,
+            0.01,
+            "deflection over which it sets in",
+            prior=Prior("log", 0.01, math.log(3), "travel"),
+        ),
+        Parameter(
+            "power",
+            "p",
+            "1",
+            1.0,
+            1.0,
+            3.0,
+            "1: linear, 1.5: rounded contact",
+            optional=True,
+            prior=Prior("normal", 1.0, 0.4, "1", "1 straight, 3/2 Hertz"),
+        ),
     ),
     initial_state=(),
     respond=respond,
@@ -47,4 +88,6 @@ BOTTOMING = Effect(
     tell_tale="a local knee in the force at one deflection, on every surface; nothing below it",
     imitators=("gas_compression", "recalibration", "mullins_softening"),
     source="a second spring with a soft onset; no magnitude for bicycle tires was found, bounds wide",
+    traits=("static", "localized"),
+    form_error=0.015,
 )

@@ -12,8 +12,11 @@ the force are the same; it is attributed to the gauge where tau is positive.
 
 from __future__ import annotations
 
+import math
+
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -29,10 +32,29 @@ DEFLECTION_LAG = Effect(
     place="deflection",
     parameters=(
         Parameter(
-            "lag", "tau", "s", 0.0, 0.0, 0.05, "time constant of the channel", neutral=0.0, nominal=0.005
+            "lag",
+            "tau",
+            "s",
+            0.0,
+            0.0,
+            0.05,
+            "time constant of the channel",
+            neutral=0.0,
+            nominal=0.005,
+            role="strength",
+            prior=Prior("log", 0.005, math.log(6), "1", "filters of displacement gauges: 1 to 10 ms"),
         ),
         Parameter(
-            "delay", "delta", "s", 0.0, 0.0, 0.05, "pure delay of the channel", neutral=0.0, optional=True
+            "delay",
+            "delta",
+            "s",
+            0.0,
+            0.0,
+            0.05,
+            "pure delay of the channel",
+            neutral=0.0,
+            optional=True,
+            prior=Prior("normal", 0, 0.005, "1", "as the lag"),
         ),
     ),
     initial_state=(),
@@ -42,4 +64,6 @@ DEFLECTION_LAG = Effect(
     imitators=("viscous_damping", "viscoelastic_relaxation"),
     source="the inverse of a first-order lag; table of tell-tales: 5 ms at 0.5 Hz make a loop of 2.2 %; bounds wide",
     differentiates=True,
+    traits=("rate", "loop", "reading"),
+    form_error=0.01,
 )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -30,6 +31,8 @@ DEFLECTION_OFFSET = Effect(
             "added to the measured deflection",
             neutral=0.0,
             nominal=1e-3,
+            role="strength",
+            prior=Prior("normal", 0, 0.1, "travel", "Hull, Wang & Moore 1996: 1 mm of 25"),
         ),
     ),
     initial_state=(),
@@ -38,4 +41,6 @@ DEFLECTION_OFFSET = Effect(
     tell_tale="misfit at small deflections, where the tangent of the force against the deflection is steepest",
     imitators=("recalibration", "series_compliance", "force_offset"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 1 mm, or 22 N of preload, between two rigs",
+    traits=("static", "reading"),
+    form_error=0.002,
 )

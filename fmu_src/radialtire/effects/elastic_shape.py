@@ -13,6 +13,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -30,9 +31,30 @@ ELASTIC_SHAPE = Effect(
     place="scale",
     parameters=(
         Parameter(
-            "bend", "c2", "1", 0.0, -2.0, 2.0, "curvature of ln F over ln x", neutral=0.0, nominal=0.02
+            "bend",
+            "c2",
+            "1",
+            0.0,
+            -2.0,
+            2.0,
+            "curvature of ln F over ln x",
+            neutral=0.0,
+            nominal=0.02,
+            role="strength",
+            prior=Prior("normal", 0, 0.1, "1", "Hull, Wang & Moore 1996: errors of the law up to 13.5 %"),
         ),
-        Parameter("twist", "c3", "1", 0.0, -1.0, 1.0, "change of that curvature", neutral=0.0, optional=True),
+        Parameter(
+            "twist",
+            "c3",
+            "1",
+            0.0,
+            -1.0,
+            1.0,
+            "change of that curvature",
+            neutral=0.0,
+            optional=True,
+            prior=Prior("normal", 0, 0.03),
+        ),
         Parameter(
             "reference",
             "xr",
@@ -42,6 +64,8 @@ ELASTIC_SHAPE = Effect(
             0.2,
             "deflection at which the power law holds",
             optional=True,
+            role="reading",
+            prior=Prior("log", 0.5, math.log(2), "travel", "the middle of what was measured"),
         ),
     ),
     initial_state=(),
@@ -50,4 +74,6 @@ ELASTIC_SHAPE = Effect(
     tell_tale="a smooth misfit over the deflection, the same at every rate and time",
     imitators=("gas_compression", "series_compliance", "deflection_offset", "bottoming"),
     source="Renart & Roura-Grabulosa, Am. J. Phys. 87, 102 (2019); Hull, Wang & Moore 1996: errors up to 13.5 %",
+    traits=("static", "law"),
+    form_error=0.005,
 )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -21,7 +22,17 @@ FORCE_DRIFT = Effect(
     place="reading",
     parameters=(
         Parameter(
-            "drift", "d", "N/s", 0.0, -100.0, 100.0, "added for each second", neutral=0.0, nominal=0.05
+            "drift",
+            "d",
+            "N/s",
+            0.0,
+            -100.0,
+            100.0,
+            "added for each second",
+            neutral=0.0,
+            nominal=0.05,
+            role="strength",
+            prior=Prior("normal", 0, 0.05, "force/duration"),
         ),
     ),
     initial_state=(),
@@ -30,4 +41,6 @@ FORCE_DRIFT = Effect(
     tell_tale="the residual grows with time by the same amount at every deflection, also without contact",
     imitators=("pressure_leak", "warm_up", "force_offset"),
     source="straight-line drift of an amplifier; magnitudes are in the gauge's data sheet, bounds wide",
+    traits=("slow", "reading"),
+    form_error=0.001,
 )

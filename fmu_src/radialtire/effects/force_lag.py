@@ -17,6 +17,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 KEPT = 16
 """Samples stored for the delay."""
@@ -108,12 +109,42 @@ FORCE_LAG = Effect(
     place="reading",
     parameters=(
         Parameter(
-            "lag", "tau", "s", 0.0, 0.0, 1.0, "time constant of the channel", neutral=0.0, nominal=0.005
+            "lag",
+            "tau",
+            "s",
+            0.0,
+            0.0,
+            1.0,
+            "time constant of the channel",
+            neutral=0.0,
+            nominal=0.005,
+            role="strength",
+            prior=Prior("log", 0.005, math.log(6), "1", "filters of load cells: 1 to 20 ms"),
         ),
         Parameter(
-            "delay", "delta", "s", 0.0, 0.0, 0.5, "pure delay of the channel", neutral=0.0, nominal=0.005
+            "delay",
+            "delta",
+            "s",
+            0.0,
+            0.0,
+            0.5,
+            "pure delay of the channel",
+            neutral=0.0,
+            nominal=0.005,
+            role="strength",
+            prior=Prior("normal", 0, 0.02, "1", "as the lag"),
         ),
-        Parameter("quality", "Q", "1", 0.0, 0.0, 1.0, "0: first order, above: second order", optional=True),
+        Parameter(
+            "quality",
+            "Q",
+            "1",
+            0.0,
+            0.0,
+            1.0,
+            "0: first order, above: second order",
+            optional=True,
+            prior=Prior("normal", 0.3, 0.3, "1", "0 first order, 0.58 Bessel, 0.71 Butterworth"),
+        ),
     ),
     initial_state=(0.0,) * (3 + 2 * KEPT),
     respond=respond,
@@ -121,4 +152,6 @@ FORCE_LAG = Effect(
     tell_tale="the loop is reversed: unloading reads higher than loading",
     imitators=("inertia", "viscous_damping", "viscoelastic_relaxation"),
     source="low-pass and transport delay; 5 ms at 0.5 Hz make a loop of -2.2 %; magnitudes are an estimate",
+    traits=("rate", "loop", "reading"),
+    form_error=0.01,
 )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -20,7 +21,19 @@ FORCE_OFFSET = Effect(
     name="force_offset",
     place="reading",
     parameters=(
-        Parameter("offset", "F0", "N", 0.0, -1e3, 1e3, "added to the force", neutral=0.0, nominal=20.0),
+        Parameter(
+            "offset",
+            "F0",
+            "N",
+            0.0,
+            -1e3,
+            1e3,
+            "added to the force",
+            neutral=0.0,
+            nominal=20.0,
+            role="strength",
+            prior=Prior("normal", 0, 0.05, "force", "Hull, Wang & Moore 1996: 22 N of 2240"),
+        ),
     ),
     initial_state=(),
     respond=respond,
@@ -28,4 +41,6 @@ FORCE_OFFSET = Effect(
     tell_tale="the residual is one constant at every deflection and time, also without contact",
     imitators=("deflection_offset", "force_drift", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 22 N of preload, or 1 mm, between two rigs",
+    traits=("static", "reading"),
+    form_error=0.001,
 )

@@ -11,9 +11,12 @@ add up, as in Hertz's contact) and displaces less air: s = 1/2 for that alone, s
 
 from __future__ import annotations
 
+import math
+
 from ..effect import Effect, Instant, State
 from ..hull1996 import WHEEL_RADIUS
 from ..parameter import Parameter
+from ..prior import Prior
 
 REFERENCE = 0.025
 """Deflection [m] at which the lost volume is stated."""
@@ -50,12 +53,30 @@ GAS_COMPRESSION = Effect(
             "fraction of the air volume lost at 2.5 cm",
             neutral=0.0,
             nominal=0.02,
+            role="strength",
+            prior=Prior("log", 0.02, math.log(4), "1", "work over pressure: 1 to 3 %"),
         ),
         Parameter(
-            "power", "q", "1", 2.4, 1.0, 4.0, "growth of the lost volume with the deflection", optional=True
+            "power",
+            "q",
+            "1",
+            2.4,
+            1.0,
+            4.0,
+            "growth of the lost volume with the deflection",
+            optional=True,
+            prior=Prior("normal", 2.4, 0.4, "1", "exponent of the work, 2.4"),
         ),
         Parameter(
-            "polytropic_exponent", "n", "1", 1.0, 1.0, 1.4, "1 slow, 1.4 fast compression", optional=True
+            "polytropic_exponent",
+            "n",
+            "1",
+            1.0,
+            1.0,
+            1.4,
+            "1 slow, 1.4 fast compression",
+            optional=True,
+            prior=Prior("normal", 1.2, 0.15, "1", "1 slow, 1.4 fast"),
         ),
         Parameter(
             "surface",
@@ -66,8 +87,19 @@ GAS_COMPRESSION = Effect(
             1.5,
             "0: same volume on all surfaces, 1: as their force",
             optional=True,
+            prior=Prior("normal", 0.25, 0.3, "1", "Hertz: 1/2; 0 the same everywhere"),
         ),
-        Parameter("atmosphere", "b", "1", 0.294, 0.05, 5.0, "atmospheric over gauge pressure", optional=True),
+        Parameter(
+            "atmosphere",
+            "b",
+            "1",
+            0.294,
+            0.05,
+            5.0,
+            "atmospheric over gauge pressure",
+            optional=True,
+            prior=Prior("log", 0.294, math.log(1.4), "1", "40 to 60 psi"),
+        ),
     ),
     initial_state=(),
     respond=respond,
@@ -75,4 +107,6 @@ GAS_COMPRESSION = Effect(
     tell_tale="stiffening at large deflections in one proportion on every surface; a pressure channel shows it",
     imitators=("recalibration", "bottoming", "series_compliance"),
     source="polytropic gas law; 101.3 kPa over 344.7 kPa; 3 to 4 % of pressure at 25 mm is an estimate, bounds wide",
+    traits=("static",),
+    form_error=0.01,
 )

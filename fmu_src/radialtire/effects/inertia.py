@@ -8,8 +8,11 @@ has a few kg. It acts in the air too.
 
 from __future__ import annotations
 
+import math
+
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -21,7 +24,19 @@ INERTIA = Effect(
     name="inertia",
     place="inertia",
     parameters=(
-        Parameter("mass", "m", "kg", 0.0, 0.0, 100.0, "moved with the deflection", neutral=0.0, nominal=2.0),
+        Parameter(
+            "mass",
+            "m",
+            "kg",
+            0.0,
+            0.0,
+            100.0,
+            "moved with the deflection",
+            neutral=0.0,
+            nominal=2.0,
+            role="strength",
+            prior=Prior("log", 2.0, math.log(6), "1", "fixtures of a few kg"),
+        ),
     ),
     initial_state=(),
     respond=respond,
@@ -30,4 +45,6 @@ INERTIA = Effect(
     imitators=("force_lag", "deflection_lag", "viscous_damping"),
     source="Newton's second law; masses of fixtures are not published, bounds wide",
     differentiates=True,
+    traits=("rate",),
+    form_error=0.005,
 )

@@ -27,6 +27,7 @@ import math
 from ..effect import Effect, Instant, State
 from ..hull1996 import FLAT_COEFFICIENT, FLAT_EXPONENT
 from ..parameter import Parameter
+from ..prior import Prior
 
 DEAD_ZONE = 1e-4
 """Distance [m] from the last counted position within which motion adds nothing to the path length."""
@@ -63,7 +64,17 @@ MULLINS_SOFTENING = Effect(
     place="scale",
     parameters=(
         Parameter(
-            "share", "D", "1", 0.0, 0.0, 0.9, "fraction of the stiffness lost", neutral=0.0, nominal=0.05
+            "share",
+            "D",
+            "1",
+            0.0,
+            0.0,
+            0.9,
+            "fraction of the stiffness lost",
+            neutral=0.0,
+            nominal=0.05,
+            role="strength",
+            prior=Prior("log", 0.05, math.log(4)),
         ),
         Parameter(
             "ratio",
@@ -73,11 +84,40 @@ MULLINS_SOFTENING = Effect(
             5e-3,
             10.0,
             "fraction of the largest measure over which softening sets in",
+            prior=Prior("log", 0.2, math.log(3)),
         ),
-        Parameter("width", "w", "m", 0.0, 0.0, 0.1, "fixed part of that range", optional=True),
-        Parameter("sharpness", "p", "1", 1.0, 0.5, 4.0, "1: softens at once, 2: smoothly", optional=True),
         Parameter(
-            "history", "xh", "m", 0.0, 0.0, 0.1, "largest deflection before the recording", optional=True
+            "width",
+            "w",
+            "m",
+            0.0,
+            0.0,
+            0.1,
+            "fixed part of that range",
+            optional=True,
+            prior=Prior("normal", 0, 0.05, "travel"),
+        ),
+        Parameter(
+            "sharpness",
+            "p",
+            "1",
+            1.0,
+            0.5,
+            4.0,
+            "1: softens at once, 2: smoothly",
+            optional=True,
+            prior=Prior("log", 1.2, math.log(1.6)),
+        ),
+        Parameter(
+            "history",
+            "xh",
+            "m",
+            0.0,
+            0.0,
+            0.1,
+            "largest deflection before the recording",
+            optional=True,
+            prior=Prior("normal", 0, 0.3, "travel"),
         ),
         Parameter(
             "gathering",
@@ -89,8 +129,19 @@ MULLINS_SOFTENING = Effect(
             "path length over which it builds up",
             neutral=0.0,
             optional=True,
+            prior=Prior("normal", 0, 3.0, "travel"),
         ),
-        Parameter("load", "e", "1", 0.0, -0.3, 2.0, "0: measured by deflection, 1: by energy", optional=True),
+        Parameter(
+            "load",
+            "e",
+            "1",
+            0.0,
+            -0.3,
+            2.0,
+            "0: measured by deflection, 1: by energy",
+            optional=True,
+            prior=Prior("normal", 0.5, 0.5, "1", "0 deflection, 1 energy"),
+        ),
     ),
     initial_state=(0.0, 0.0, 0.0),
     respond=respond,
@@ -98,4 +149,6 @@ MULLINS_SOFTENING = Effect(
     tell_tale="the first loading to a new largest deflection differs from every later one, however long the rest",
     imitators=("rate_independent_hysteresis", "pressure_leak", "warm_up", "bottoming"),
     source="Ogden & Roxburgh 1999; no magnitude for bicycle tires was found, bounds wide",
+    traits=("loop",),
+    form_error=0.04,
 )

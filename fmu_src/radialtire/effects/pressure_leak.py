@@ -14,6 +14,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -43,12 +44,32 @@ PRESSURE_LEAK = Effect(
             "fraction of the pressure lost each second",
             neutral=0.0,
             nominal=3e-4,
+            role="strength",
+            prior=Prior(
+                "log", 0.05, math.log(6), "1/duration", "what shows within a recording is a puncture"
+            ),
         ),
         Parameter(
-            "structural", "s", "1", 0.0, 0.0, 0.95, "fraction of the force not carried by air", optional=True
+            "structural",
+            "s",
+            "1",
+            0.0,
+            0.0,
+            0.95,
+            "fraction of the force not carried by air",
+            optional=True,
+            prior=Prior("normal", 0, 0.3),
         ),
         Parameter(
-            "flow", "n", "1", 1.0, 0.4, 2.5, "power of the pressure with which air flows", optional=True
+            "flow",
+            "n",
+            "1",
+            1.0,
+            0.4,
+            2.5,
+            "power of the pressure with which air flows",
+            optional=True,
+            prior=Prior("normal", 1.0, 0.4, "1", "1/2 hole, 1 pores, 2 capillary"),
         ),
     ),
     initial_state=(),
@@ -57,4 +78,6 @@ PRESSURE_LEAK = Effect(
     tell_tale="a cycle that is repeated at the end is lower, in proportion to the force",
     imitators=("warm_up", "mullins_softening", "force_drift"),
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
+    traits=("slow",),
+    form_error=0.005,
 )

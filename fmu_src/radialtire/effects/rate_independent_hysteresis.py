@@ -32,6 +32,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def dahl(z: float, travel: float, reach: float) -> float:
@@ -86,7 +87,25 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
     name="rate_independent_hysteresis",
     place="parallel",
     parameters=(
-        Parameter("slip_force", "S", "N", 0.0, 0.0, 1e4, "half the loop's height", neutral=0.0, nominal=30.0),
+        Parameter(
+            "slip_force",
+            "S",
+            "N",
+            0.0,
+            0.0,
+            1e4,
+            "half the loop's height",
+            neutral=0.0,
+            nominal=30.0,
+            role="strength",
+            prior=Prior(
+                "log",
+                0.02,
+                math.log(6),
+                "force",
+                "Hull, Wang & Moore 1996: 6.5 % of the peak between the ways",
+            ),
+        ),
         Parameter(
             "load_share",
             "mu",
@@ -97,6 +116,8 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             "part of it that grows with the elastic force",
             neutral=0.0,
             nominal=0.02,
+            role="strength",
+            prior=Prior("log", 0.02, math.log(6), "1", "Hull, Wang & Moore 1996: grows with the load"),
         ),
         Parameter(
             "reach",
@@ -106,6 +127,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             1e-5,
             0.1,
             "breakaway distance: deflection over which the friction changes sign",
+            prior=Prior("log", 0.05, math.log(3), "travel"),
         ),
         Parameter(
             "memory",
@@ -116,9 +138,18 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             1.0,
             "0: no memory of reversals (Dahl), 1: full memory (Iwan)",
             optional=True,
+            prior=Prior("normal", 0.5, 0.5, "1", "0 Dahl, 1 Iwan"),
         ),
         Parameter(
-            "spread", "c", "1", 0.6, 0.0, 1.0, "spread of the elements' breakaway distances", optional=True
+            "spread",
+            "c",
+            "1",
+            0.6,
+            0.0,
+            1.0,
+            "spread of the elements' breakaway distances",
+            optional=True,
+            prior=Prior("normal", 0.6, 0.3),
         ),
         Parameter(
             "play",
@@ -129,6 +160,8 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             1e-3,
             "dead zone: half of the travel after a reversal that is noise",
             optional=True,
+            role="reading",
+            prior=Prior("log", 4.0, math.log(2), "gauge", "four times the noise: see above"),
         ),
         Parameter(
             "seat",
@@ -139,6 +172,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             1.0,
             "initial preload: 1 as pressed there from 0, 0 none",
             optional=True,
+            prior=Prior("normal", 1.0, 0.7, "1", "1 as pressed there, 0 none, -1 as released"),
         ),
     ),
     initial_state=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -147,4 +181,6 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
     tell_tale="the loop stays as the frequency goes to zero, and keeps its area at every speed",
     imitators=("viscous_damping", "viscoelastic_relaxation", "mullins_softening"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 100 N, 6.5 % of the peak; Dahl 1968; Iwan 1966",
+    traits=("loop",),
+    form_error=0.02,
 )

@@ -11,6 +11,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 from .soft_knee import FAR
 
 NO_LIMIT = 1e9
@@ -33,9 +34,31 @@ SATURATION = Effect(
     place="reading",
     parameters=(
         Parameter(
-            "limit", "L", "N", NO_LIMIT, 1.0, NO_LIMIT, "largest force read", neutral=NO_LIMIT, nominal=1e3
+            "limit",
+            "L",
+            "N",
+            NO_LIMIT,
+            1.0,
+            NO_LIMIT,
+            "largest force read",
+            neutral=NO_LIMIT,
+            nominal=1e3,
+            role="limit",
+            prior=Prior(
+                "log", 0.85, math.log(1.2), "force", "a ceiling that shows lies below the largest force"
+            ),
         ),
-        Parameter("knee", "k", "N", 0.0, 0.0, 1e3, "rounding of the knee", optional=True),
+        Parameter(
+            "knee",
+            "k",
+            "N",
+            0.0,
+            0.0,
+            1e3,
+            "rounding of the knee",
+            optional=True,
+            prior=Prior("normal", 0, 0.02, "force"),
+        ),
     ),
     initial_state=(),
     respond=respond,
@@ -43,4 +66,6 @@ SATURATION = Effect(
     tell_tale="a flat top: the residual is one-sided above one force, on every surface",
     imitators=("series_compliance", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: load cell rated at 4480 N; limits are set by the rig",
+    traits=("static", "localized", "reading"),
+    form_error=0.015,
 )

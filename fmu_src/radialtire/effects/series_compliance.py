@@ -15,8 +15,11 @@ Newton's method inside a bracket.
 
 from __future__ import annotations
 
+import math
+
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 NEAR = 1e-9
 """Relative length of a step after which the next one, its square, is below rounding."""
@@ -92,6 +95,10 @@ SERIES_COMPLIANCE = Effect(
             "deflection of wheel and machine for each N; 1/k is their stiffness",
             neutral=0.0,
             nominal=5e-7,
+            role="strength",
+            prior=Prior(
+                "log", 0.02, math.log(6), "travel/force", "Hull, Wang & Moore 1996: a wheel of 2e6 N/m"
+            ),
         ),
         Parameter(
             "stiffening",
@@ -103,6 +110,7 @@ SERIES_COMPLIANCE = Effect(
             "stiffening of the spring with its deflection",
             neutral=0.0,
             optional=True,
+            prior=Prior("normal", 0, 300),
         ),
     ),
     initial_state=(),
@@ -111,4 +119,6 @@ SERIES_COMPLIANCE = Effect(
     tell_tale="large forces are too low, on every surface by the same function of the force",
     imitators=("recalibration", "deflection_offset", "gas_compression", "saturation"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Hopkins & Principe 1990: 2e6 N/m",
+    traits=("static",),
+    form_error=0.005,
 )

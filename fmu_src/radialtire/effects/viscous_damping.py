@@ -18,6 +18,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 SPEED = 0.1
 """v0 [m/s]: speed at which the exponent of the rate has no influence."""
@@ -56,9 +57,19 @@ VISCOUS_DAMPING = Effect(
             "force for each m/s of compression",
             neutral=0.0,
             nominal=300.0,
+            role="strength",
+            prior=Prior("log", 0.03, math.log(8), "force/rate"),
         ),
         Parameter(
-            "rate_exponent", "n", "1", 1.0, 0.2, 3.0, "growth of the force with the rate", optional=True
+            "rate_exponent",
+            "n",
+            "1",
+            1.0,
+            0.2,
+            3.0,
+            "growth of the force with the rate",
+            optional=True,
+            prior=Prior("log", 1.0, math.log(1.5), "1", "thinning to throttle"),
         ),
         Parameter(
             "deflection_exponent",
@@ -69,6 +80,7 @@ VISCOUS_DAMPING = Effect(
             3.0,
             "growth of the force with the deflection",
             optional=True,
+            prior=Prior("normal", 0, 0.5),
         ),
         Parameter(
             "thinning",
@@ -80,6 +92,7 @@ VISCOUS_DAMPING = Effect(
             "1/s: rate beyond which it grows less",
             neutral=0.0,
             optional=True,
+            prior=Prior("normal", 0, 0.5, "1/rate"),
         ),
     ),
     initial_state=(),
@@ -89,4 +102,6 @@ VISCOUS_DAMPING = Effect(
     imitators=("rate_independent_hysteresis", "viscoelastic_relaxation", "force_lag", "deflection_lag"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Wang & Hull on rates from 3.2 to 63.5 mm/s",
     differentiates=True,
+    traits=("rate", "loop"),
+    form_error=0.015,
 )

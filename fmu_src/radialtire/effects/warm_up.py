@@ -12,6 +12,7 @@ import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
+from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -34,8 +35,19 @@ WARM_UP = Effect(
             "final rise of the force, as a fraction of it",
             neutral=0.0,
             nominal=0.05,
+            role="strength",
+            prior=Prior("log", 0.03, math.log(4), "1", "gas law: 0.03 is 10 K"),
         ),
-        Parameter("time_constant", "tau", "s", 60.0, 0.1, 1e5, "time to 63 % of the rise"),
+        Parameter(
+            "time_constant",
+            "tau",
+            "s",
+            60.0,
+            0.1,
+            1e5,
+            "time to 63 % of the rise",
+            prior=Prior("log", 0.4, math.log(3), "duration"),
+        ),
         Parameter(
             "stretch",
             "s",
@@ -45,6 +57,7 @@ WARM_UP = Effect(
             1.0,
             "1: one time constant, below 1: spread over several",
             optional=True,
+            prior=Prior("normal", 1.0, 0.25),
         ),
     ),
     initial_state=(),
@@ -53,4 +66,6 @@ WARM_UP = Effect(
     tell_tale="a cycle that is repeated at the end is higher, in proportion to the force; the rise levels off",
     imitators=("pressure_leak", "mullins_softening", "force_drift"),
     source="gas law at constant volume: about 1 psi for 10 degF near 40 psi; time constants not found, bounds wide",
+    traits=("slow",),
+    form_error=0.01,
 )

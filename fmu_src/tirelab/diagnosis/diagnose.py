@@ -8,17 +8,18 @@ from dataclasses import replace
 import numpy as np
 from radialtire import TireModel
 
-from ..engine.explanation import CATALOGUE_NAMES, Explanation, explain_misfit
-from ..names import UNKNOWN
-from ..preprocessing.data_checks import PoorRecording, check_recordings
+from ..estimation.explanation import CATALOGUE_NAMES, Explanation, explain_misfit
+from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
+from ..preprocessing.noise_model import white_noise
 from ..simulation.simulate import simulate
 from ..simulation.threads import one_thread
+from .alternatives import Alternative, alternatives_of
 from .discriminating_test import DiscriminatingTest, Limits, discriminate
 from .held_out import HeldOut, given, rmse, split
 from .localization import law_corrected, localize
-from .residual_model import residual_models
+from .residual_model import residual_models, unexplained_by
 from .summary import summarise
 from .verdict import Fit, Verdict
 
@@ -53,35 +54,42 @@ def diagnose(
     _check_names(catalogue)
     check_recordings(fitted)
     dataset = dataset_of(fitted, baseline)
-    explanation = explain_misfit(fitted, dataset, baseline, catalogue, report)
+    explanation = explain_misfit(fitted, baseline, catalogue, report)
+    noises = [
+        white_noise(f.level, e.rows.size)
+        for f, e in zip(explanation.floors, dataset.experiments, strict=True)
+    ]
+    check_signal(dataset, noises)
+    alternatives = alternatives_of(explanation, dataset)
+    unexplained = unexplained_by(explanation.remainder)
     report("validating the correction on held-out data")
     before = [r.force - simulate(baseline, r) for r in fitted]
     validation = _validate(fitted, kept, dataset, before, baseline, explanation)
-    remainder = residual_models(explanation.unexplained_by, dataset, explanation.residuals, validation)
+    remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(
         fitted,
         dataset,
         law_corrected(fitted, before, explanation.model.baseline, explanation.model.tire),
-        explanation.noises,
-        None if explanation.unexplained_by else explanation.residuals,
+        noises,
+        None if unexplained else explanation.residuals,
     )
     fit = _figures(before, explanation, validation)
-    test = _recommend(dataset, explanation, fit.noise, limits, report)
+    report("searching for a test that separates the alternatives")
+    test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset))
     return Verdict(
         effects=explanation.effects,
-        confidence=explanation.confidence,
-        alternatives=explanation.alternatives,
-        unexplained_by=explanation.unexplained_by,
+        confidence=explanation.probability,
+        alternatives=alternatives,
+        remainder=explanation.remainder,
+        unexplained_by=unexplained,
         residual_models=remainder,
-        summary=summarise(
-            explanation.effects, explanation.alternatives, remainder, explanation.confidence, fit, test
-        ),
+        summary=summarise(explanation.effects, alternatives, remainder, explanation.probability, fit, test),
         where=places,
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
         evidence=explanation.evidence,
         test=test if test is not None and test.sufficient else None,
-        compared=explanation.compared,
+        compared=len(explanation.evidence),
         evaluations=explanation.evaluations,
         recordings=tuple(fitted),
         held_out=tuple(kept),
@@ -128,7 +136,7 @@ def _validate(
 
 def _figures(before: Sequence[FloatArray], explanation: Explanation, validation: HeldOut) -> Fit:
     sizes = np.array([b.size for b in before], dtype=float)
-    levels = np.array([n.level for n in explanation.noises])
+    levels = np.array([f.level for f in explanation.floors])
     return Fit(
         float(np.sqrt(np.sum(sizes * levels**2) / sizes.sum())),
         rmse(before),
@@ -141,29 +149,26 @@ def _figures(before: Sequence[FloatArray], explanation: Explanation, validation:
 
 
 def _recommend(
-    dataset: Dataset,
-    explanation: Explanation,
-    noise: float,
-    limits: Limits | None,
-    progress: Callable[[str], None],
+    explanation: Explanation, alternatives: Sequence[Alternative], noise: float, limits: Limits
 ) -> DiscriminatingTest | None:
     """Return the test that separates the likeliest alternative that a test can; else the one that comes nearest."""
-    if not explanation.alternatives:
-        return None
-    progress("searching for a test that separates the alternatives")
-    fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in dataset.experiments)
-    rig = limits or Limits(deepest=dataset.max_deflection, fastest=max(FASTEST, fastest))
     nearest: DiscriminatingTest | None = None
-    for alternative in explanation.alternatives[:MOST_TESTED]:
-        model = None if UNKNOWN in alternative.names else explanation.alternative_model(alternative.names)
+    for alternative in alternatives[:MOST_TESTED]:
+        model = explanation.alternative_model(alternative.names)
         if model is None:
             continue
-        test = discriminate(explanation.model, model, noise, rig)
+        test = discriminate(explanation.model, model, noise, limits)
         if nearest is None or test.separation > nearest.separation:
             nearest = test
         if test.sufficient:
             break
     return nearest
+
+
+def _limits_of(dataset: Dataset) -> Limits:
+    """Return the limits of a rig that did what was recorded, and may drive twice as fast."""
+    fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in dataset.experiments)
+    return Limits(deepest=dataset.max_deflection, fastest=max(FASTEST, fastest))
 
 
 __all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose"]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.findings import FittedModel
+from ..estimation.findings import FittedModel
 from ..preprocessing.kinematics import FloatArray
 from ..report.titles import set_title
 from ..simulation.simulate import simulate

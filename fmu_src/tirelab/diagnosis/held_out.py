@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from radialtire import TireModel
 
-from ..engine.explanation import Explanation
+from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset, Experiment, Recorded, dataset_of
 from ..preprocessing.kinematics import BoolArray, FloatArray, Motion
 from ..simulation.simulate import simulate, smoothed_motion

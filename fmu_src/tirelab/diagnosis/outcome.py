@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine.findings import Alternative, Evidence
+from ..estimation.findings import Evidence
 from ..recordings.recording import Recording
 from ..report.titles import newtons
+from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..estimation.remainder import Remainder
 from ..preprocessing.dataset import Dataset, Experiment
 from ..preprocessing.kinematics import FloatArray
 from .held_out import HeldOut, rmse
@@ -18,6 +19,9 @@ a ripple of a fifteenth of the range is followed; short recordings have fewer.""
 
 FOLDS = 5
 """Blocks of time; each is predicted from the others."""
+
+MATERIAL = 0.2
+"""A remainder is unexplained from this part of the noise on: coloured noise may leave less."""
 
 Coordinate = Callable[[Experiment], FloatArray]
 
@@ -61,6 +65,13 @@ class ResidualModel:
             "after": self.after,
             "held_out_after": self.held_out_after,
         }
+
+
+def unexplained_by(remainder: Remainder) -> tuple[str, ...]:
+    """Return the coordinates on which the remainder depends, none where it may be noise."""
+    if remainder.size < MATERIAL:
+        return ()
+    return tuple(d.coordinate for d in remainder.depends)
 
 
 def residual_models(

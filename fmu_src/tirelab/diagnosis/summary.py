@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 from radialtire import CATALOGUE
 
-from ..engine.findings import Alternative, NamedEffect
+from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW
 from ..report.titles import dependence, headline, listed, newtons, set_title, sure
+from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 from .verdict import Fit

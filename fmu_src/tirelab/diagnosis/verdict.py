@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from radialtire import TireModel
 
-from ..engine.findings import Alternative, Evidence, NamedEffect
 from ..errors import TirelabError
+from ..estimation.findings import Evidence, NamedEffect
+from ..estimation.remainder import Remainder
 from ..names import UNKNOWN
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..recordings.recording import Recording
 from ..report.titles import headline
 from ..simulation.simulate import simulate
+from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .localization import Span
 from .outcome import finite, page_content
@@ -26,6 +28,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..report.loops import Case
+
+
+SCHEMA = 2
+"""Version of the keys of diagnosis.json: all keys of 1 stay and mean what they meant."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,7 @@ class Verdict:
     effects: tuple[NamedEffect, ...]
     confidence: float
     alternatives: tuple[Alternative, ...]
+    remainder: Remainder
     unexplained_by: tuple[str, ...]
     residual_models: tuple[ResidualModel, ...]
     summary: str
@@ -110,7 +117,7 @@ class Verdict:
         )
         return finite(
             {
-                "schema": 1,
+                "schema": SCHEMA,
                 "verdict": {
                     "effects": [
                         {
@@ -120,12 +127,14 @@ class Verdict:
                                 for p, v in e.parameters.items()
                             },
                             "share": e.share,
+                            "probability": e.probability,
                         }
                         for e in self.effects
                     ],
                     "confidence": self.confidence,
                     "alternatives": [list(r.names) for r in self.alternatives],
                     "unexplained": self.unexplained,
+                    "remainder": self.remainder.to_dict(),
                     "summary": self.summary,
                     "separating_test": None if self.test is None else self.test.to_dict(),
                     **regressed,

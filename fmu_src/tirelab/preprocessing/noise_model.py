@@ -82,6 +82,12 @@ class Noise:
         return constant / length, more / (1.0 + more)
 
 
+def white_noise(level: float, samples: int) -> Noise:
+    """Return white noise of a level [N] in so many samples, none of them a spike."""
+    ones = np.ones(samples)
+    return Noise(level, level, np.ones(1), ones, ones)
+
+
 def first_guess(residual: FloatArray) -> Noise:
     """Return white noise of the size that the second differences of a residual [N] show."""
     sigma = robust_sigma(np.diff(residual, 2)) / np.sqrt(6.0)

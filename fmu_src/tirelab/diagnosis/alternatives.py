@@ -1,0 +1,98 @@
+"""Which other sets the recordings cannot rule out, and what they lack to do so."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from radialtire import CATALOGUE
+
+from ..estimation.explanation import Explanation
+from ..preprocessing.dataset import Dataset
+from ..preprocessing.kinematics import BoolArray, FloatArray
+
+LEAST = 0.01
+"""Probability from which a set is an alternative: one that is excluded at 99 % is none."""
+
+MOST = 10
+"""So many alternatives are listed, the likeliest first."""
+
+STILL, LONG_ENOUGH = 0.02, 1.0
+"""A hold: less than this part of the root mean square rate, for at least so many seconds."""
+
+LAW_TRAITS = ("static",)
+"""Traits of a refitted law: it depends on deflection and surface only."""
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another set of effects that the recordings cannot rule out: its probability, and what the recordings lack.
+
+    log_odds: of the verdict against it, not tempered
+    """
+
+    names: tuple[str, ...]
+    log_odds: float
+    reason: str
+    probability: float
+
+
+def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alternative, ...]:
+    """Return the sets that are at least LEAST likely beside the verdict, the likeliest first.
+
+    An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
+    """
+    best = explanation.model.names
+    found = [
+        Alternative(e.names, -e.log_evidence, reason_of(best, e.names, explanation, dataset), e.probability)
+        for e in explanation.evidence[1:]
+        if e.probability >= LEAST
+    ]
+    unseen = [
+        Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden
+    ]
+    return (*found[:MOST], *unseen)
+
+
+def reason_of(names: Sequence[str], other: Sequence[str], explanation: Explanation, dataset: Dataset) -> str:
+    """Return what the recordings lack to tell two sets apart, as an action."""
+    differing = [set(_traits(n)) for n in set(names) ^ set(other)]
+    common = set.intersection(*differing) if differing else set()
+    lacks = insufficient_excitation(explanation, dataset)
+    if "static" in common:
+        return "they depend on deflection and surface only: record at a second pressure or on a stiffer rig"
+    if "slow" in common:
+        return "they all change slowly with time: repeat the first cycle after a rest"
+    if {"loop", "rate"} & set.union(set(), *differing):
+        loops = [text for text in lacks if "surface" not in text]
+        return "; ".join(loops) or "their loops are alike at the recorded rates: drive slower and faster"
+    return "; ".join(lacks) or "the difference is smaller than these recordings can show"
+
+
+def insufficient_excitation(explanation: Explanation, dataset: Dataset) -> list[str]:
+    """Return what the recordings lack that tells effects apart, each as an action."""
+    lacks = []
+    if explanation.excitation.one_speed:
+        lacks.append("one speed only: drive a second speed")
+    if len(dataset.radii) == 1:
+        lacks.append("one surface only: press on a second surface")
+    rates = [np.abs(e.motion.rate) for e in dataset.experiments]
+    typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
+    held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
+    if held < LONG_ENOUGH:
+        lacks.append(f"no hold: hold 10 s at {650.0 * dataset.max_deflection:.0f} mm")
+    if max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
+        lacks.append("no repeated cycle: drive each cycle twice")
+    return lacks
+
+
+def _traits(name: str) -> tuple[str, ...]:
+    return CATALOGUE[name].traits if name in CATALOGUE else LAW_TRAITS
+
+
+def _longest_hold(time: FloatArray, still: BoolArray) -> float:
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
+    return max(
+        (float(time[b - 1] - time[a]) for a, b in zip(ends[::2], ends[1::2], strict=True)), default=0.0
+    )

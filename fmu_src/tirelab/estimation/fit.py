@@ -1,0 +1,129 @@
+"""One set of effects fitted in the catalogue's own forms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE, TireModel
+
+from ..regressors.dataset import Dataset
+from ..regressors.law import LAW, SHAPE
+from ..selection.discrepancy import Discrepancy
+from .laplace import laplace_evidence
+from .least_squares import Minimum, Objective, minimised
+from .problem import EstimationProblem, Values, problem_of
+
+FloatArray = NDArray[np.float64]
+
+LAW_LOOSE = 3.0
+"""Scale of the law's prior while it is fitted; the evidence finds its own."""
+
+REWEIGHTED = 4
+"""Times that a fit is repeated with the V that it led to."""
+
+OPTIONAL_GAIN = 60.0
+"""What optional forms may gain in log likelihood."""
+
+ROUNDS = 20
+ENOUGH = 0.2
+"""Rounds of a fit, and the gain (twice a log likelihood) below which it ends."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted set.
+
+    values: of every effect; log_likelihood: marginal (Laplace); variance: V of the discrepancy
+    residual (m,), jacobian (m, k): in units of the noise; sizes: root mean squares
+    of what each effect adds to the others; settled: whether the fit came to rest
+    """
+
+    problem: EstimationProblem
+    positions: FloatArray
+    log_likelihood: float
+    variance: float
+    residual: FloatArray
+    jacobian: FloatArray
+    sizes: Mapping[str, float]
+    settled: bool
+    evaluations: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the set."""
+        return self.problem.names
+
+    @property
+    def values(self) -> dict[str, tuple[float, ...]]:
+        """Values of all parameters of every effect."""
+        return self.problem.values(self.positions)
+
+    @property
+    def tire(self) -> TireModel:
+        """The fitted tire."""
+        return self.problem.tire(self.positions)
+
+    @property
+    def power(self) -> float:
+        """Sum of squares left, in units of the noise."""
+        return float(self.residual @ self.residual)
+
+
+def fitted(
+    dataset: Dataset, starts: Sequence[Values], discrepancy: Discrepancy, variance: float, wanted: float
+) -> Fit:
+    """Return a set fitted from several starts: its plain forms first, then the best of them with the optional ones.
+
+    variance: V to begin with; the fit is repeated where its own is another; wanted: a log likelihood; what is further
+    behind it than optional forms may gain is not refined
+    """
+    plain = [_climbed(problem_of(dataset, s, plain=True), s, discrepancy, variance) for s in starts]
+    best = max(plain, key=lambda f: f.log_likelihood)
+    if best.log_likelihood < wanted - OPTIONAL_GAIN:
+        return best
+    whole = problem_of(dataset, best.values, plain=False)
+    if len(whole.parameters) == len(best.problem.parameters):
+        return best
+    free = _climbed(whole, best.values, discrepancy, best.variance)
+    return max((best, free), key=lambda f: f.log_likelihood)
+
+
+def _climbed(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
+    q = problem.positions(start, awake=True)
+    width = np.where(problem.groups > 0, LAW_LOOSE, 1.0)
+    evaluations = 0
+    best: Fit | None = None
+    for _ in range(REWEIGHTED):
+        objective = Objective(problem.residual, problem.low, problem.high, width, variance)
+        found = minimised(objective, q, ROUNDS, ENOUGH)
+        evaluations += found.evaluations
+        fit = _judged(problem, found, discrepancy, evaluations)
+        if best is None or fit.log_likelihood > best.log_likelihood:
+            best = fit
+        if 0.7 < fit.variance / variance < 1.5:
+            break
+        q, variance = found.positions, fit.variance
+    assert best is not None
+    return best
+
+
+def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy, evaluations: int) -> Fit:
+    sizes = problem.sizes(found.positions)
+    errors = {n: CATALOGUE[SHAPE if n == LAW else n].form_error * size for n, size in sizes.items()}
+    own = discrepancy.above(math.sqrt(sum(e**2 for e in errors.values())))
+    evidence = laplace_evidence(found.residual, found.jacobian, found.positions, problem.groups, own)
+    return Fit(
+        problem,
+        found.positions,
+        evidence.log_likelihood,
+        evidence.variance,
+        found.residual,
+        found.jacobian,
+        sizes,
+        found.settled,
+        evaluations,
+    )

@@ -1,0 +1,100 @@
+"""Where the fit of a set begins: at the drawn forms that come nearest to what is still missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE
+
+from ..regressors.dataset import Dataset
+from ..regressors.law import LAW
+from ..regressors.signature import Signature, strengthened
+from ..selection.discrepancy import Discrepancy
+from .fit import Fit
+from .problem import law_start, with_readings
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Addition:
+    """A candidate beside a fit: values to begin at, and what it may gain in log likelihood by them."""
+
+    name: str
+    values: tuple[float, ...]
+    gain: float
+
+
+def additions(
+    signature: Signature, missing: FloatArray, slopes: FloatArray, variance: float, dataset: Dataset
+) -> list[Addition]:
+    """Return the best drawn forms of a candidate for what is `missing` (m,), the likeliest first, at most two.
+
+    slopes (m, k): of what is already fitted, which may give way; variance: V. The second one is of the other kind,
+    plain or with its optional forms, where the first is not.
+    """
+    factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
+    across = np.linalg.solve(factor, slopes.T) / np.sqrt(variance)
+
+    def beside(columns: FloatArray) -> FloatArray:
+        return columns - across.T @ (across @ columns)
+
+    target = beside(missing)
+    if signature.name == LAW:
+        basis = signature.basis
+        gram = basis.T @ beside(basis) / variance + np.eye(basis.shape[1])
+        right = basis.T @ target / variance
+        gain = 0.5 * float(right @ np.linalg.solve(gram, right))
+        return [Addition(LAW, law_start(dataset), gain)]
+    curves = signature.curves.T
+    power = np.maximum(np.einsum("ij,ij->j", curves, beside(curves)), 1e-12 * curves.shape[0])
+    size = curves.T @ target / power
+    if not signature.signed:
+        size = np.maximum(size, 0.0)
+    gains = 0.5 * size**2 * power / variance
+    effect = CATALOGUE[signature.name]
+    found: list[Addition] = []
+    kinds: set[bool] = set()
+    for k in np.argsort(-gains):
+        values = signature.values[k]
+        optional = any(
+            p.optional and p.role != "reading" and v != p.start
+            for p, v in zip(effect.parameters, values, strict=True)
+        )
+        if optional in kinds:
+            continue
+        kinds.add(optional)
+        factor_on = float(size[k] / signature.sizes[k]) if gains[k] > 0.0 else 0.02
+        scaled = strengthened(effect, values, factor_on)
+        found.append(
+            Addition(signature.name, with_readings(signature.name, scaled, dataset), float(gains[k]))
+        )
+        if len(kinds) == 2:
+            break
+    return found
+
+
+def promise(signature: Signature, base: Fit, discrepancy: Discrepancy) -> float:
+    """Return the log likelihood that a candidate may gain beside a fit, by its signature; what is fitted may give way.
+
+    Like the marginal likelihood of a set, linearised about the fit, at the best of a few sizes.
+    """
+    before, variance = discrepancy.profile(base.power)
+    slopes = base.jacobian
+    factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
+    across = np.linalg.solve(factor, slopes.T) / np.sqrt(variance)
+    columns = signature.columns
+    columns = columns - across.T @ (across @ columns)
+    gram, moment = columns.T @ columns, columns.T @ base.residual
+    left = float(np.sqrt(base.power / base.residual.size))
+    best = -np.inf
+    for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left):
+        weighted = gram * size**2
+        z = np.linalg.solve(weighted / variance + np.eye(moment.size), size * moment / variance)
+        power = base.power - 2.0 * size * float(z @ moment) + float(z @ weighted @ z)
+        after, new = discrepancy.profile(power)
+        determinant = float(np.log1p(np.maximum(np.linalg.eigvalsh(weighted), 0.0) / new).sum())
+        best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))
+    return float(best)

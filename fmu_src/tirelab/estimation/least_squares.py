@@ -1,0 +1,113 @@
+"""Penalised least squares in bounds: Levenberg's and Marquardt's steps on the axes of the priors.
+
+Minimised is |r(q)|^2 / V + sum (q_i / w_i)^2. Steps are cut at the bounds; what stands at a bound and would leave it is
+held for a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+STEP = 2e-3
+"""Step of the difference quotients, in standard deviations of the prior."""
+
+LONGEST = 1.5
+"""Longest step, in standard deviations of the prior."""
+
+DAMPING = (1e-3, 1e-7, 1e7)
+"""Damping at first, least and most."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """residual: (k,) -> (m,); low, high, width (k,): bounds and standard deviations of the prior; variance: V."""
+
+    residual: Callable[[FloatArray], FloatArray]
+    low: FloatArray
+    high: FloatArray
+    width: FloatArray
+    variance: float
+
+    def cost(self, residual: FloatArray, q: FloatArray) -> float:
+        """Return what is minimised."""
+        return float(residual @ residual) / self.variance + float(np.sum((q / self.width) ** 2))
+
+    def jacobian(self, q: FloatArray, at: FloatArray) -> FloatArray:
+        """Return the slopes (m, k) of the residual `at` the positions q."""
+        columns = []
+        for i in range(q.size):
+            aside = q.copy()
+            aside[i] += STEP if q[i] + STEP <= self.high[i] else -STEP
+            columns.append((self.residual(aside) - at) / (aside[i] - q[i]))
+        return np.stack(columns, axis=1) if columns else np.zeros((at.size, 0))
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """positions (k,), the residual there (m,) and its slopes (m, k); settled: whether the last steps gained nothing."""
+
+    positions: FloatArray
+    residual: FloatArray
+    jacobian: FloatArray
+    settled: bool
+    evaluations: int
+
+
+def minimised(objective: Objective, start: FloatArray, rounds: int, enough: float) -> Minimum:
+    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last."""
+    q = np.clip(start, objective.low, objective.high)
+    residual = objective.residual(q)
+    cost = objective.cost(residual, q)
+    damping, evaluations, settled = DAMPING[0], 1, False
+    jacobian = objective.jacobian(q, residual)
+    for _ in range(rounds):
+        if not q.size:
+            settled = True
+            break
+        evaluations += q.size
+        before = cost
+        moved = False
+        for _ in range(8):
+            step = _step(objective, q, residual, jacobian, damping)
+            trial = np.clip(q + step, objective.low, objective.high)
+            left = objective.residual(trial)
+            evaluations += 1
+            new = objective.cost(left, trial)
+            if new < cost:
+                q, residual, cost, moved = trial, left, new, True
+                damping = max(damping / 10.0, DAMPING[1])
+                break
+            damping *= 10.0
+            if damping > DAMPING[2]:
+                break
+        if not moved:
+            settled = True
+            break
+        jacobian = objective.jacobian(q, residual)
+        if before - cost < enough:
+            settled = True
+            break
+    return Minimum(q, residual, jacobian, settled, evaluations)
+
+
+def _step(
+    objective: Objective, q: FloatArray, residual: FloatArray, jacobian: FloatArray, damping: float
+) -> FloatArray:
+    gradient = jacobian.T @ residual / objective.variance + q / objective.width**2
+    held = ((q <= objective.low) & (gradient > 0.0)) | ((q >= objective.high) & (gradient < 0.0))
+    free = ~held
+    step = np.zeros_like(q)
+    if not free.any():
+        return step
+    own = jacobian[:, free]
+    curvature = own.T @ own / objective.variance + np.diag(1.0 / objective.width[free] ** 2)
+    curvature[np.diag_indices_from(curvature)] *= 1.0 + damping
+    step[free] = -np.linalg.solve(curvature, gradient[free])
+    longest = float(np.max(np.abs(step)))
+    return step * min(1.0, LONGEST / longest) if longest > 0.0 else step

@@ -1,0 +1,31 @@
+"""The noise of the averaged misfit, from what a model with every freedom at once leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..regressors.dataset import Dataset
+from ..regressors.noise_floor import white_level
+from ..regressors.signature import Signature
+from ..selection.marginal_likelihood import NormalEquations, normal_equations
+
+
+def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
+    """Return the dataset with the noise that all signatures together leave, block by block."""
+    equations = normal_equations(signatures, dataset.misfit)
+    left = dataset.misfit - _saturated(equations)
+    levels, begin = [], 0
+    for e in dataset.experiments:
+        own = left[begin : begin + int(e.counts.sum())]
+        begin += own.size
+        levels.append(e.noise * max(white_level(own), 1e-3))
+    return dataset.with_noise(levels)
+
+
+def _saturated(equations: NormalEquations) -> np.ndarray:
+    """Return the misfit as all columns follow it, each with a weak prior of the misfit's own size."""
+    size = equations.power / equations.columns.shape[0]
+    gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
+    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))

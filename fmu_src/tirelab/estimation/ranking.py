@@ -1,0 +1,180 @@
+"""Sets of effects ranked by what they leave when they are fitted in the catalogue's own forms.
+
+Sets that the signatures find likely are fitted first. From the best of them on, one candidate is taken out and one put in
+in turn, as long as that may win: what is left out begins at the optimum of the larger set, what is put in at that of the
+smaller one, so no set is judged worse than its own subset.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..regressors.dataset import Dataset
+from ..regressors.law import LAW
+from ..regressors.signature import Signature
+from ..selection.discrepancy import Discrepancy
+from ..selection.search import PRIOR_ODDS
+from .fit import Fit, fitted
+from .initial_values import additions, promise
+from .problem import Values, law_start
+
+FloatArray = NDArray[np.float64]
+
+BEGUN = 3
+"""Sets of the selection that are fitted before anything else, beside the best one of each size."""
+
+REACH = 12.0
+"""A fitted set this far behind the best in log posterior is not followed up."""
+
+MOST_FITS = 40
+"""Budget: fits of one diagnosis."""
+
+MOST_EFFECTS = 6
+
+PROMISING, SWAPPED = 3, 2
+"""Candidates put in beside a fitted set, and in the place of one of its own, the most promising first."""
+
+HOPE = 8.0
+"""A promise may err by this much in log posterior before it is not followed."""
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Fits by their log posterior (not normalised), the likeliest first."""
+
+    fits: tuple[Fit, ...]
+    posteriors: tuple[float, ...]
+
+    @property
+    def best(self) -> Fit:
+        """The likeliest."""
+        return self.fits[0]
+
+
+@dataclass
+class _Board:
+    """What was fitted so far; only `ranked` makes and fills it."""
+
+    dataset: Dataset
+    signatures: Mapping[str, Signature]
+    discrepancy: Discrepancy
+    fits: dict[frozenset[str], Fit] = field(default_factory=dict)
+    tried: set[tuple[frozenset[str], str]] = field(default_factory=set)
+    count: int = 0
+
+    def posterior(self, names: frozenset[str]) -> float:
+        return self.fits[names].log_likelihood - PRIOR_ODDS * len(names)
+
+    def best(self) -> frozenset[str]:
+        return max(self.fits, key=self.posterior)
+
+    def fit(self, starts: Sequence[Values], variance: float) -> Fit:
+        key = frozenset(starts[0])
+        wanted = self.posterior(self.best()) + PRIOR_ODDS * len(key) if self.fits else -np.inf
+        found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
+        self.count += 1
+        if key not in self.fits or found.log_likelihood > self.fits[key].log_likelihood:
+            self.fits[key] = found
+        return found
+
+    def put_in(self, base: Fit, name: str) -> None:
+        """Fit a set with one more candidate, from the optimum of the smaller one."""
+        key = (frozenset(base.names), name)
+        if key in self.tried:
+            return
+        self.tried.add(key)
+        found = additions(self.signatures[name], base.residual, base.jacobian, base.variance, self.dataset)
+        self.fit([{**base.values, name: a.values} for a in found], base.variance)
+
+    def take_out(self, base: Fit, name: str) -> None:
+        """Fit a set without one of its candidates, from the optimum of the larger one."""
+        key = (frozenset(base.names) - {name}, "-" + name)
+        if key in self.tried:
+            return
+        self.tried.add(key)
+        self.fit([{n: v for n, v in base.values.items() if n != name}], base.variance)
+
+
+def ranked(
+    dataset: Dataset,
+    signatures: Sequence[Signature],
+    discrepancy: Discrepancy,
+    starts: Sequence[tuple[float, Mapping[str, FloatArray]]],
+) -> Ranking:
+    """Return the sets that can still win, fitted and ranked.
+
+    starts: sets to begin with, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
+    """
+    board = _Board(dataset, {s.name: s for s in signatures}, discrepancy)
+    board.fit([{}], discrepancy.highest)
+    for variance, parts in starts:
+        if parts and len(parts) <= MOST_EFFECTS:
+            board.fit([_start(parts, board)], variance)
+    followed: set[frozenset[str]] = set()
+    while board.count < MOST_FITS:
+        best = board.posterior(board.best())
+        open_sets = [n for n in board.fits if n not in followed and board.posterior(n) > best - REACH]
+        if not open_sets:
+            break
+        names = max(open_sets, key=board.posterior)
+        followed.add(names)
+        _follow(board, names)
+    _nested(board)
+    order = sorted(board.fits, key=lambda n: -board.posterior(n))
+    return Ranking(tuple(board.fits[n] for n in order), tuple(board.posterior(n) for n in order))
+
+
+def _follow(board: _Board, names: frozenset[str]) -> None:
+    """Fit the neighbours of a set that may win against the best: one candidate out, one in, one for another."""
+    base = board.fits[names]
+    for name in sorted(names):
+        board.take_out(base, name)
+    if len(names) < MOST_EFFECTS:
+        _promising(board, names, names, PROMISING)
+    for name in sorted(names):
+        _promising(board, names - {name}, names, SWAPPED)
+
+
+def _promising(board: _Board, names: frozenset[str], beside: frozenset[str], most: int) -> None:
+    """Put in what may bring a fitted set within reach of the best; not what is in `beside`."""
+    base = board.fits[names]
+    found = [(promise(s, base, board.discrepancy), n) for n, s in board.signatures.items() if n not in beside]
+    for gain, name in sorted(found, reverse=True)[:most]:
+        behind = board.posterior(board.best()) - board.posterior(names)
+        if gain - PRIOR_ODDS - behind > -HOPE and board.count < MOST_FITS:
+            board.put_in(base, name)
+
+
+def _start(parts: Mapping[str, FloatArray], board: _Board) -> dict[str, tuple[float, ...]]:
+    """Return values for what each candidate is to explain."""
+    none = np.zeros((board.dataset.misfit.size, 0))
+    values: dict[str, tuple[float, ...]] = {}
+    for name, part in parts.items():
+        if name == LAW:
+            values[name] = law_start(board.dataset)
+            continue
+        values[name] = additions(board.signatures[name], part, none, 1.0, board.dataset)[0].values
+    return values
+
+
+def _nested(board: _Board) -> None:
+    """Fit every set again that leaves more than a subset of it."""
+    for names in sorted(board.fits, key=len):
+        for less in list(board.fits):
+            if less < names and board.fits[less].power < 0.999 * board.fits[names].power:
+                if board.posterior(names) < board.posterior(board.best()) - REACH:
+                    continue
+                start = dict(board.fits[less].values)
+                for name in names - less:
+                    own = board.fits[less]
+                    if name == LAW:
+                        start[name] = law_start(board.dataset)
+                    else:
+                        start[name] = additions(
+                            board.signatures[name], own.residual, own.jacobian, own.variance, board.dataset
+                        )[0].values
+                board.fit([start], board.fits[less].variance)

@@ -1,0 +1,222 @@
+"""Recordings brought to the form in which every set of effects is compared with them.
+
+A recording is averaged over blocks of neighbouring samples, as long as the motion allows. What is averaged is the misfit
+of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. Blocks whose
+motion turns within a sample do not count. All comparisons are made in units of the noise of the averaged misfit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE, TireModel
+from radialtire.effect import PLACES
+
+from ..preprocessing.dataset import Recorded
+from ..preprocessing.kinematics import motion_of
+from ..simulation.simulate import simulate
+from .gauge import destepped
+from .noise_floor import NoiseFloor, gauge_step, noise_floor, white_level
+from .scales import Scales
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+ROWS = 6000
+"""Blocks of all recordings together, where the motion allows: signatures and fits cost in proportion."""
+
+FEWEST_ROWS = 600
+"""Blocks that a recording keeps at least, where it has as many samples."""
+
+TURN = 0.5
+"""Phase p [rad] that a block spans at most, of a motion whose frequency is that of its acceleration over its rate."""
+
+BLURRED = 0.3
+"""Part of the noise that blocks may add: straight lines over a phase p miss p^2 / 12 of what changes."""
+
+LONE = 8.0
+"""A sample this many noises off both its neighbours is a spike."""
+
+COUNTED = 0.6
+"""Part of the blocks that must remain: where the motion is resolved in fewer, all count."""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One recording in blocks; arrays (n,).
+
+    time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
+    baseline [N]: force of the baseline tire there; misfit [N]: force read less the baseline's, averaged over the block
+    counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
+    floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
+    """
+
+    name: str
+    time: FloatArray
+    deflection: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+    surface_radius: FloatArray
+    baseline: FloatArray
+    misfit: FloatArray
+    counts: BoolArray
+    noise: float
+    floor: NoiseFloor
+    gauge: float
+    size: int
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """All recordings of a diagnosis and the baseline tire."""
+
+    experiments: tuple[Experiment, ...]
+    tire: TireModel
+    scales: Scales
+
+    @cached_property
+    def misfit(self) -> FloatArray:
+        """Misfit of the baseline tire in units of the noise, all counted blocks in a row (m,)."""
+        return self.stacked([e.misfit for e in self.experiments])
+
+    @cached_property
+    def radii(self) -> tuple[float, ...]:
+        """Radii [m] of the surfaces, the flattest first."""
+        found = np.unique(np.concatenate([np.unique(e.surface_radius) for e in self.experiments]))
+        return tuple(sorted((float(r) for r in found), key=lambda r: abs(1.0 / r)))
+
+    def stacked(self, values: Sequence[FloatArray]) -> FloatArray:
+        """Return forces (n,) or (n, k) [N] of each experiment in units of its noise, counted blocks in a row."""
+        return np.concatenate([v[e.counts] / e.noise for e, v in zip(self.experiments, values, strict=True)])
+
+    def gathered(self, values: Sequence[FloatArray]) -> FloatArray:
+        """Return any values (n,) of each experiment at the counted blocks in a row."""
+        return np.concatenate([v[e.counts] for e, v in zip(self.experiments, values, strict=True)])
+
+    def response(self, tire: TireModel) -> FloatArray:
+        """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
+        return self.stacked([simulate(tire, e, e) - e.baseline for e in self.experiments])
+
+    def with_noise(self, levels: Sequence[float]) -> Dataset:
+        """Return the dataset with other noise levels [N] of the averaged misfits."""
+        pairs = zip(self.experiments, levels, strict=True)
+        return replace(self, experiments=tuple(replace(e, noise=float(level)) for e, level in pairs))
+
+
+def dataset_of(recordings: Sequence[Recorded], tire: TireModel) -> Dataset:
+    """Return the recordings in blocks and what `tire`, the baseline, misses of them."""
+    total = sum(r.time.size for r in recordings)
+    experiments = tuple(_experiment(r, tire, max(1, -(-total // ROWS))) for r in recordings)
+    gauge = float(np.median([e.gauge for e in experiments]))
+    return Dataset(
+        experiments, replace(tire, reading_noise=min(gauge, 0.01)), _scales(experiments, recordings)
+    )
+
+
+def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:
+    """Return `tire` with the effects of these names and values, in the order of the signal's way."""
+    chosen = {e.name: (e, v) for e, v in tire.effects} | {n: (CATALOGUE[n], v) for n, v in effects}
+    names = list(CATALOGUE)
+    order = sorted(chosen.values(), key=lambda p: (PLACES.index(p[0].place), names.index(p[0].name)))
+    return replace(tire, effects=tuple(order))
+
+
+def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
+    step = gauge_step(recording.deflection)
+    read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
+    motion = motion_of(recording.time, read)
+    gauge = 0.0 if step > 0.0 else motion.noise
+    moved = _Moved(
+        recording.time, motion.deflection, recording.surface_radius, motion.rate, motion.acceleration
+    )
+    baseline = simulate(replace(tire, reading_noise=min(gauge, 0.01)), moved, moved)
+    misfit = recording.force - baseline
+    stiffness = _stiffness(motion.deflection, baseline)
+    floor = noise_floor(misfit, stiffness, gauge, step)
+    resolved = motion.resolved & ~_spikes(misfit)
+    interval = float(np.median(np.diff(recording.time)))
+    loudness = float(np.std(misfit)) / max(white_level(misfit), 1e-300)
+    turn = min(TURN, float(np.sqrt(12.0 * BLURRED / max(loudness, 1e-300))))
+    quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
+    slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
+    longest = turn * slow / max(quick * interval, 1e-300)
+    size = int(max(1, min(size, longest, recording.time.size // FEWEST_ROWS)))
+    whole = recording.time.size // size * size
+    middle = np.arange(size // 2, whole, size)
+    good = resolved[:whole].reshape(-1, size)
+    counts = good.mean(axis=1) > 0.5
+    if counts.mean() < COUNTED:
+        good, counts = np.ones_like(good), np.ones_like(counts)
+    kept = np.maximum(good.sum(axis=1), 1)
+    averaged = np.where(good, misfit[:whole].reshape(-1, size), 0.0).sum(axis=1) / kept
+    averaged = np.where(counts, averaged, misfit[middle])
+    # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
+    noise = (
+        min(white_level(misfit) / np.sqrt(size), white_level(averaged)) if size > 1 else white_level(misfit)
+    )
+    return Experiment(
+        recording.name,
+        recording.time[middle],
+        motion.deflection[middle],
+        motion.rate[middle],
+        motion.acceleration[middle],
+        recording.surface_radius[middle],
+        baseline[middle],
+        averaged,
+        counts,
+        max(noise, 1e-6 * float(np.ptp(recording.force)), 1e-12),
+        floor,
+        gauge,
+        size,
+    )
+
+
+@dataclass(frozen=True)
+class _Moved:
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
+    """Return the tangent [N/m] of the baseline force over the deflection, from bins of the deflection."""
+    edges = np.quantile(deflection, np.linspace(0.0, 1.0, 41))
+    which = np.clip(np.searchsorted(edges, deflection, side="right") - 1, 0, 39)
+    count = np.maximum(np.bincount(which, minlength=40), 1)
+    x, f = (np.bincount(which, v, 40) / count for v in (deflection, force))
+    occupied = np.append(True, np.diff(x) > 1e-12)
+    x, f = x[occupied], f[occupied]
+    if x.size < 3:
+        return np.zeros_like(deflection)
+    return np.asarray(np.interp(deflection, x, np.gradient(f, x)))
+
+
+def _spikes(misfit: FloatArray) -> BoolArray:
+    """Return where a single sample stands out of both its neighbours."""
+    level = white_level(misfit)
+    lone = np.zeros(misfit.size, dtype=bool)
+    before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
+    lone[1:-1] = (np.abs(before) > LONE * level) & (np.abs(after) > LONE * level) & (before * after > 0.0)
+    return lone
+
+
+def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:
+    rate = np.concatenate([e.rate[e.counts] for e in experiments])
+    acceleration = np.concatenate([e.acceleration[e.counts] for e in experiments])
+    force = np.concatenate([np.abs(r.force) for r in recordings])
+    deflection = np.concatenate([e.deflection for e in experiments])
+    return Scales(
+        force=max(float(np.quantile(force, 0.999)), 1e-12),
+        travel=max(float(np.ptp(deflection)), 1e-9),
+        duration=max(float(r.time[-1] - r.time[0]) for r in recordings),
+        interval=min(float(np.median(np.diff(r.time))) for r in recordings),
+        rate=max(float(np.sqrt(np.mean(rate**2))), 1e-12),
+        acceleration=max(float(np.sqrt(np.mean(acceleration**2))), 1e-12),
+        gauge=max(float(np.median([e.gauge for e in experiments])), 1e-12),
+    )

@@ -1,0 +1,55 @@
+"""The signature of the elastic law itself: how a refitted law, or one of another shape, would differ.
+
+    dF / F = a + b l + c l^2 + d l^3 + hats(l),   l = ln(x / x_ref)
+
+common to all surfaces, and on each surface beside it. The hats are a static discrepancy: what no log-polynomial follows.
+Its scale is not declared: it is found by the marginal likelihood (type II), like that of the effects.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE
+
+from .dataset import Dataset
+from .signature import Signature, size_of
+
+FloatArray = NDArray[np.float64]
+
+LAW = "recalibration"
+"""The name under which a refitted law stands in a verdict."""
+
+SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)
+"""The effect in which a refitted law keeps bend and twist."""
+
+CANDIDATES = tuple(name for name in CATALOGUE if name != SHAPE)
+"""Names of the effects that may be missing; the law comes beside them."""
+
+FACTOR, EXPONENT, BEND, TWIST, HAT = 0.1, 0.07, 0.03, 0.01, 0.015
+"""Standard deviations of a, b, c, d and of a hat at the scale 1: their proportions are what counts."""
+
+HATS = 7
+
+
+def law_signature(dataset: Dataset) -> Signature:
+    """Return the law's signature; its size 1 is that of a change of A by FACTOR."""
+    gather = dataset.gathered
+    x = gather([e.deflection for e in dataset.experiments])
+    radius = gather([e.surface_radius for e in dataset.experiments])
+    force = dataset.stacked([e.baseline for e in dataset.experiments])
+    positive = x[x > 0.0]
+    middle = float(np.median(positive)) if positive.size else 1.0
+    way = np.log(np.maximum(x / middle, 0.01))
+    loaded = way[x > 0.02 * float(x.max())] if x.max() > 0.0 else way
+    knots = np.linspace(float(loaded.min()), float(loaded.max()), HATS)
+    hats = [HAT * np.interp(way, knots, row) for row in np.eye(HATS)]
+    parts = [FACTOR + 0.0 * way, EXPONENT * way, BEND * way**2, TWIST * way**3, *hats]
+    shapes = [force * part for part in parts]
+    columns = list(shapes)
+    if len(dataset.radii) > 1:
+        columns = [np.sqrt(0.5) * s for s in shapes]
+        columns += [np.sqrt(0.5) * s * (radius == r) for r in dataset.radii for s in shapes]
+    basis = np.column_stack(columns) / max(size_of(FACTOR * force), 1e-300)
+    none = np.zeros((0, force.size))
+    return Signature(LAW, np.zeros(force.size), basis, False, none, (), np.zeros(0))

@@ -1,0 +1,75 @@
+"""The noise floor of a recording, source by source.
+
+    amplifier: noise of the force's reading
+    gauge:     noise of the deflection's reading times the stiffness
+    steps:     a gauge that steps by q leaves stiffness x q / sqrt(12) (B. Widrow, Stat. theory of quantization, 1996)
+
+What is left by the best tire cannot be less than all of them together, counted on the recorded samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..preprocessing.robust_scale import MEDIAN_TO_SIGMA
+
+FloatArray = NDArray[np.float64]
+
+REPEATED = 0.3
+"""Part of neighbouring readings that are equal above which a gauge is said to step."""
+
+SMALLEST_CHANGE = 0.02
+"""Quantile of the changes of the reading that is taken for its step."""
+
+ON_GRID = 0.1
+"""Largest distance of a change from a whole number of steps, in steps."""
+
+
+@dataclass(frozen=True)
+class NoiseFloor:
+    """amplifier, gauge, steps [N]: root mean squares at the recorded samples; step [m] of the gauge, 0: none seen."""
+
+    amplifier: float
+    gauge: float
+    steps: float
+    step: float
+
+    @property
+    def level(self) -> float:
+        """All of it [N]."""
+        return float(np.sqrt(self.amplifier**2 + self.gauge**2 + self.steps**2))
+
+
+def gauge_step(deflection: FloatArray) -> float:
+    """Return the step [m] of a gauge whose readings repeat, or 0."""
+    changes = np.abs(np.diff(deflection))
+    moved = changes[changes > 1e-12]
+    if moved.size == 0 or moved.size > (1.0 - REPEATED) * changes.size:
+        return 0.0
+    # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
+    step = float(np.quantile(moved, SMALLEST_CHANGE))
+    off = np.abs(moved / step - np.round(moved / step))
+    return step if float(np.quantile(off, 0.9)) < ON_GRID else 0.0
+
+
+def white_level(residual: FloatArray) -> float:
+    """Return the standard deviation of a residual's white noise, from its third differences, robust to corners."""
+    if residual.size < 8:
+        return float(np.std(residual))
+    return MEDIAN_TO_SIGMA * float(np.median(np.abs(np.diff(residual, 3)))) / float(np.sqrt(20.0))
+
+
+def noise_floor(residual: FloatArray, stiffness: FloatArray, gauge_noise: float, step: float) -> NoiseFloor:
+    """Return the floor of a recording.
+
+    residual [N]: force less what a smooth model makes of it; stiffness [N/m] sample by sample; gauge_noise [m]
+    """
+    mean_square = float(np.sqrt(np.mean(stiffness**2)))
+    through_gauge = 0.0 if step > 0.0 else gauge_noise * mean_square
+    through_steps = step / float(np.sqrt(12.0)) * mean_square
+    whole = white_level(residual)
+    amplifier = float(np.sqrt(max(whole**2 - through_gauge**2, 0.05 * whole**2)))
+    return NoiseFloor(amplifier, through_gauge, through_steps, step)

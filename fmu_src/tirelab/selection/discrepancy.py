@@ -1,0 +1,78 @@
+"""What a set of effects may leave of a recording beyond the noise, and what that costs.
+
+A form that is not quite right leaves something smooth: over n blocks it has about e effective samples (e << n). In units
+of the noise each of them has the variance V = 1 + n tau^2 / e, with tau the root mean square of the discrepancy. What
+the set leaves beyond the noise lies in these e samples, so with a residual of the sum of squares q
+
+    2 ln p(V) = -(q - (n - e)) / V - e ln V,
+
+highest at V = (q - (n - e)) / e: a set is priced by e ln(what it leaves). V is a number of every set, found by the
+marginal likelihood. Below the floor no remainder is taken for a discrepancy of the form: a declared part of the misfit.
+
+M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Number = TypeVar("Number", float, FloatArray)
+
+EFFECTIVE = float(__import__("os").environ.get("ENG_EFF", "20"))
+"""Effective samples of a discrepancy."""
+
+FLOOR_OF_SIGNATURES = 0.01
+"""Part of the misfit that a signature's few columns may leave of a catalogue form."""
+
+GRID = 40
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """samples: n; effective: e; lowest: V at the floor, highest: V of the whole misfit."""
+
+    samples: int
+    effective: float
+    lowest: float
+    highest: float
+
+    def beside(self, variance: Number) -> Number:
+        """Return what the log likelihood holds beside -q / 2V."""
+        e = self.effective
+        return 0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance)
+
+    def above(self, form_error: float) -> Discrepancy:
+        """Return the discrepancy of a set whose forms may always miss this much, a root mean square in units of the
+        noise.
+        """
+        lowest = 1.0 + form_error**2 * self.samples / self.effective
+        return replace(self, lowest=lowest, highest=max(self.highest, 2.0 * lowest))
+
+    def grid(self) -> FloatArray:
+        """Variances V to try, from the lowest to the highest."""
+        return np.geomspace(self.lowest, self.highest, GRID)
+
+    def profile(self, power: float) -> tuple[float, float]:
+        """Return the log likelihood of a sum of squares left at its best V, and that V."""
+        best = (power - (self.samples - self.effective)) / self.effective
+        variance = min(max(best, self.lowest), self.highest)
+        return -0.5 * power / variance + self.beside(variance), variance
+
+    def size(self, variance: float) -> float:
+        """Return tau in units of the noise."""
+        return math.sqrt(max(variance - 1.0, 0.0) * self.effective / self.samples)
+
+
+def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
+    """Return the discrepancy's law for a misfit (n,) in units of the noise, and the part of it that is the floor."""
+    n = misfit.size
+    power = float(misfit @ misfit)
+    effective = min(EFFECTIVE, n / 3.0)
+    lowest = 1.0 + floor**2 * max(power - n, 0.0) / effective
+    return Discrepancy(n, effective, lowest, max(2.0 * power / effective, 2.0 * lowest))

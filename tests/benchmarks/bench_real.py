@@ -1,0 +1,236 @@
+"""The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT]
+
+REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static. Every recording is brought to
+a tire's form as there: lengths and forces times a constant, a spring of our own beside what has no stiffness.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import PowerLaw, TireModel
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
+from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
+from tirelab.estimation.diagnosis import diagnose
+from tirelab.recordings.recording import Recording, read_recording
+from tirelab.simulation.simulate import simulate
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Real:
+    """fitted: samples of `whole` that are fitted; kept: held-out ones; unit: newtons of ours to one of theirs."""
+
+    name: str
+    whole: Recording
+    fitted: slice
+    kept: slice
+    tire: TireModel
+    unit: float
+    reference: str
+    timed: bool = True
+
+
+def law(coefficient: float, exponent: float) -> TireModel:
+    """A power law."""
+    return TireModel(PowerLaw(coefficient, exponent), tested_range=None)
+
+
+def damper(folder: Path, name: str, reference: str) -> Real:
+    """A damper beside a spring of 1e5 N/m; no force of its own is believed."""
+    columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
+    units = {"time": "s", "deflection": "mm", "force": "N"}
+    own = read_recording(
+        folder / f"{name}.mat",
+        columns={k: "+" + v if k != "time" else v for k, v in columns.items()},
+        units=units,
+        radius="flat",
+    )
+    x = own.deflection - own.deflection.min() + 1e-4 + 0.01
+    r = recorded(name, own.time, x, own.force + 1e5 * x)
+    half = len(r) // 2
+    return Real(name, r, slice(0, half), slice(half, None), law(1e3, 1.0), 1.0, reference)
+
+
+def piston(folder: Path, bar: int, reference: str) -> Real:
+    """A piston at constant pressure: its mean force is believed."""
+    channels = {"time": "#1", "deflection": "+#5", "pressure": "#6", "force": "+#7"}
+    units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
+    own = read_recording(folder / f"O-ring_{bar}bar.csv", columns=channels, units=units, radius="flat")
+    half = len(own) // 2
+    spring = float(own.force[:half].mean()) / 0.02
+    x = own.deflection - own.deflection.min()
+    r = recorded(f"O-ring_{bar}bar", own.time, x + 0.02, own.force + spring * x)
+    return Real(r.name, r, slice(0, half), slice(half, None), law(spring / 100.0, 1.0), 1.0, reference)
+
+
+def spring(folder: Path) -> Iterator[Real]:
+    """Three presses of a body that behaves like 15 N/mm; samples without times."""
+    path = next(folder.glob("*.csv"))
+    rows = []
+    for line in path.read_text(encoding="latin-1").splitlines():
+        words = line.replace(";", ",").split(",")
+        try:
+            rows.append([float(w) if w.strip() else np.nan for w in words])
+        except ValueError:
+            continue
+    width = max(len(r) for r in rows)
+    table = np.array([r + [np.nan] * (width - len(r)) for r in rows])
+    for trial in range(3):
+        x, f = table[:, 2 * trial], table[:, 2 * trial + 1]
+        good = np.isfinite(x) & np.isfinite(f)
+        x, f = 1e-3 * x[good], f[good]
+        x, f = x * np.sign(x[np.argmax(np.abs(x))]), f * np.sign(f[np.argmax(np.abs(f))])
+        r = recorded(f"spring_{trial}", np.arange(x.size, dtype=float), x, f)
+        yield Real(
+            r.name,
+            r,
+            slice(0, None),
+            slice(0, None),
+            law(150.0, 1.0),
+            1.0,
+            "gap + series spring 0.214 / 0.225",
+            timed=False,
+        )
+
+
+def brain(folder: Path) -> Real:
+    """Approach, hold and half the withdrawal."""
+    found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
+    half = (found.turned + len(found.recording)) // 2
+    return Real(
+        "brain",
+        found.recording,
+        slice(0, half),
+        slice(half, None),
+        law(found.coefficient, 1.5),
+        PER_NANONEWTON,
+        "relaxation, 0.03 (approach and hold)",
+    )
+
+
+def gel(folder: Path) -> Real:
+    """Approach, hold and half the withdrawal."""
+    found = indentation(folder / "force-save-2021.06.30-13.48.08.425.txt")
+    half = (found.turned + len(found.recording)) // 2
+    return Real(
+        "gel",
+        found.recording,
+        slice(0, half),
+        slice(half, None),
+        law(found.coefficient, 1.5),
+        PER_NANONEWTON,
+        "relaxation, 0.03 (approach and hold)",
+    )
+
+
+def indenter(folder: Path) -> Real:
+    """Loading of a pyramid with a compliant machine."""
+    columns, _ = read_hysitron(folder / "Exp-50mN_0000.hld")
+    force, depth, t = columns["Force_µN"], columns["Disp_nm"], columns["Time_s"]
+    peak = int(np.argmax(force))
+    start = int(np.flatnonzero(force[:peak] < 300.0)[-1])
+    s = slice(start, peak)
+    a, b, zero = power_law_fit(depth[s] - depth[start], force[s])
+    x = (depth[s] - depth[start] - zero) * 5e-5
+    r = recorded("indenter", t[s], x, force[s] * 4e-2)
+    return Real(
+        "indenter",
+        r,
+        slice(0, None, 2),
+        slice(1, None, 2),
+        law(a * 4e-2 / (100.0 * 5e-5) ** b, b),
+        4e-2,
+        "compliance cannot be shown",
+    )
+
+
+def reals(root: Path) -> Iterator[Callable[[], Real]]:
+    """Yield what makes each."""
+    mr, air, afm = (
+        root / "mr_damper_sine",
+        root / "pneumatic_cylinder_pressure_friction",
+        root / "afm_creep_brain_gel",
+    )
+    references = {
+        "ensaio.A.1": "preload + Coulomb + viscous 81 / 106",
+        "ensaio1": "k, c, Dahl 6.5",
+        "ensaio1.2": "k, c, Dahl 18.5",
+    }
+    for path in sorted(mr.glob("*.mat")):
+        yield lambda p=path: damper(mr, p.stem, references.get(p.stem, ""))  # type: ignore[misc]
+    for bar, reference in (
+        (1, "constant + Coulomb 0.96, + pressure 0.46"),
+        (3, ""),
+        (5, "viscous 0.98 / 1.21; Dahl 1.6 / 1.9"),
+        (7, "Coulomb 1.83"),
+    ):
+        yield lambda b=bar, t=reference: piston(air, b, t)  # type: ignore[misc]
+    for i in range(3):
+        yield lambda i=i: list(spring(root / "programmed_spring_static"))[i]  # type: ignore[misc]
+    yield lambda: brain(afm)
+    yield lambda: gel(afm)
+    yield lambda: indenter(root / "nanoindent_series_compliance_drift")
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def main() -> None:
+    """Diagnose each."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("root", type=Path)
+    parser.add_argument("--only", default="")
+    given = parser.parse_args()
+    for make in reals(given.root):
+        real = make()
+        if given.only not in real.name:
+            continue
+        w, s = real.whole, real.fitted
+        part = recorded(w.name, w.time[s], w.deflection[s], w.force[s])
+        began = time.process_time()
+        found = diagnose([part], real.tire, timed=real.timed)
+        seconds = time.process_time() - began
+        u = real.unit
+        rows = [
+            (rms((w.force - simulate(t, w))[k]) / u) for k in (s, real.kept) for t in (real.tire, found.tire)
+        ]
+        floor = found.floors[0]
+        print(
+            f"{real.name:12s} {'+'.join(e.name for e in found.effects) or 'none'} p={found.confidence:.2f}  fitted {rows[0]:.4g} -> {rows[1]:.4g}  "
+            f"held-out {rows[2]:.4g} -> {rows[3]:.4g}  floor {floor.level / u:.3g} (amplifier {floor.amplifier / u:.3g} gauge {floor.gauge / u:.3g} "
+            f"steps {floor.steps / u:.3g})  remainder {found.remainder.size:.2f} x noise, {100 * found.remainder.share:.1f} % {[d.coordinate for d in found.remainder.depends]}  {seconds:.1f} s   [{real.reference}]"
+        )
+        print(
+            "     incl",
+            {n: round(p, 2) for n, p in found.inclusion.items() if p > 0.02},
+            "hidden",
+            list(found.hidden),
+        )
+        for a in found.alternatives[:3]:
+            print("     alt ", "+".join(a.names), round(a.probability, 3), "left", round(a.left, 2))
+        for e in found.effects:
+            print(
+                "     ",
+                e.name,
+                " ".join(f"{v:.3g}" for v in e.values),
+                f"share {e.share:.3f} p {e.probability:.2f}",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()
