@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from radialtire import TireModel, read_tire
-from tirelab.estimation.diagnosis import Diagnosis, diagnose
+from tirelab.diagnosis.diagnose import diagnose
+from tirelab.diagnosis.verdict import Verdict
 from tirelab.recordings.recording import Recording, read_recording
 
 NOBODY = {"none", "unknown"}
@@ -47,14 +48,14 @@ def cases(root: Path, only: str) -> Iterator[Case]:
             )
 
 
-def score(case: Case, found: Diagnosis, seconds: float) -> dict[str, object]:
+def score(case: Case, found: Verdict, seconds: float) -> dict[str, object]:
     """Return the line of a case."""
     said = {e.name for e in found.effects}
     right = [set(names) - NOBODY for names in case.key["right"]]  # type: ignore[attr-defined]
     unknown = any("unknown" in names for names in case.key["right"])  # type: ignore[attr-defined]
-    listed = [said, *(set(a.names) for a in found.alternatives if a.probability > 0.01)]
-    noise = float(case.key.get("noise") or found.figures.floor)  # type: ignore[arg-type]
-    f = found.figures
+    listed = [said, *(set(a.names) for a in found.alternatives)]
+    noise = float(case.key.get("noise") or found.fit.noise)  # type: ignore[arg-type]
+    f = found.fit
     return {
         "case": case.name,
         "said": sorted(said),
@@ -66,7 +67,7 @@ def score(case: Case, found: Diagnosis, seconds: float) -> dict[str, object]:
         "extra_sure": sorted(e.name for e in found.effects if e.name not in right[0] and e.probability > 0.5),
         "missing": sorted(right[0] - said),
         "confidence": found.confidence,
-        "inclusion": {n: round(p, 3) for n, p in found.inclusion.items() if p > 0.02},
+        "inclusion": {e.name: round(e.probability, 3) for e in found.effects},
         "shares": {e.name: round(e.share, 4) for e in found.effects},
         "remainder": found.remainder.size,
         "remainder_share": found.remainder.share,
@@ -75,11 +76,16 @@ def score(case: Case, found: Diagnosis, seconds: float) -> dict[str, object]:
         "before": f.before / noise,
         "held_before": f.held_out_before / noise,
         "held_after": f.held_out_after / noise,
-        "floor": f.floor / noise,
+        "floor": f.noise / noise,
         "unknown": unknown,
-        "fits": len(found.ranking.fits),
+        "unexplained": found.remainder.unexplained,
+        "strict": (said | ({"unknown"} if found.remainder.unexplained else set()))
+        in [set(n) - {"none"} for n in case.key["right"]],  # type: ignore[attr-defined]
+        "kind": case.key.get("kind", ""),
+        "quarter": f.held_out_after <= 0.25 * f.held_out_before + noise,
+        "fits": found.compared,
         "alternatives": [
-            [list(a.names), round(a.probability, 3), round(a.left, 3)] for a in found.alternatives[:4]
+            [list(a.names), round(a.probability, 3), round(a.log_odds, 3)] for a in found.alternatives[:4]
         ],
         "seconds": seconds,
     }
@@ -119,13 +125,14 @@ def main() -> int:
         if given.out:
             given.out.write_text(json.dumps(lines, indent=1) + "\n")
     n = max(len(lines), 1)
-    exact, named, listed = (sum(bool(x[k]) for x in lines) for k in ("exact", "all_named", "listed"))
+    keys = ("exact", "strict", "all_named", "listed")
+    exact, strict, named, listed = (sum(bool(x[k]) for x in lines) for k in keys)
     sure = sum(bool(x["extra_sure"]) for x in lines)
     brier = sum((float(x["confidence"]) - bool(x["exact"])) ** 2 for x in lines) / n  # type: ignore[arg-type]
     rate = exact / n
     seconds = sorted(float(x["seconds"]) for x in lines) or [0.0]  # type: ignore[arg-type]
     print(
-        f"{len(lines)} cases: exact {exact}, all named {named}, verdict or listed {listed}, extra above half {sure}; "
+        f"{len(lines)} cases: exact {exact} (with unknown {strict}), all named {named}, verdict or listed {listed}, extra above half {sure}; "
         f"Brier {brier:.3f} against {rate * (1 - rate):.3f}; seconds median {seconds[len(seconds) // 2]:.1f}, most {seconds[-1]:.1f}"
     )
     return 0

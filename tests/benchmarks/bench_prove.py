@@ -14,7 +14,7 @@ from pathlib import Path
 
 import joblib
 import numpy as np
-from tirelab.batch.workers import Cores
+from tirelab.computing.workers import Cores
 from tirelab.validation import BlindTrials, Folders, prove
 
 TRIALS = 12

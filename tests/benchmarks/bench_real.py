@@ -106,7 +106,7 @@ def spring(folder: Path) -> Iterator[Real]:
 def brain(folder: Path) -> Real:
     """Approach, hold and half the withdrawal."""
     found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
-    half = (found.turned + len(found.recording)) // 2
+    half = (found.since_reversal + len(found.recording)) // 2
     return Real(
         "brain",
         found.recording,
@@ -121,7 +121,7 @@ def brain(folder: Path) -> Real:
 def gel(folder: Path) -> Real:
     """Approach, hold and half the withdrawal."""
     found = indentation(folder / "force-save-2021.06.30-13.48.08.425.txt")
-    half = (found.turned + len(found.recording)) // 2
+    half = (found.since_reversal + len(found.recording)) // 2
     return Real(
         "gel",
         found.recording,
@@ -220,8 +220,15 @@ def main() -> None:
             "hidden",
             list(found.hidden),
         )
-        for a in found.alternatives[:3]:
-            print("     alt ", "+".join(a.names), round(a.probability, 3), "left", round(a.left, 2))
+        for a in found.alternatives[:6]:
+            print(
+                "     alt ",
+                "+".join(a.names),
+                round(a.probability, 3),
+                "left",
+                round(a.left, 2),
+                a.instead or "",
+            )
         for e in found.effects:
             print(
                 "     ",

@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..computing.workers import Cores, work
 from ..diagnosis.diagnosis_file import DiagnosisFileError, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, run_diagnosis
 from ..errors import TirelabError
@@ -26,7 +27,6 @@ from ..recordings.formats import LOADERS
 from ..recordings.metadata import FOLDER_SIDECAR
 from ..recordings.reading import Reading
 from .summary import BatchResult, Item, Row, summary_csv, summary_html, verdict_text
-from .workers import Cores, work
 
 OUTCOME_SCHEMA = 1
 

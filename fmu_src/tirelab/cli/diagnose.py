@@ -62,7 +62,7 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
 
     from ..batch.batch import Batch, diagnose_batch
     from ..batch.summary import summary_table
-    from ..batch.workers import Cores
+    from ..computing.workers import Cores
 
     folder: Path = options["out"]
     cores = Cores(options["jobs"], options["dask"])

@@ -45,7 +45,7 @@ def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | Non
     """
     from rich.console import Console
 
-    from ..batch.workers import Cores
+    from ..computing.workers import Cores
     from ..validation import BlindTrials, Folders, prove  # here: the rig is imported for this command only
     from ..validation.terminal import criteria_table, lines
 

@@ -46,8 +46,8 @@ def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alterna
     best = explanation.model.names
     found = [
         Alternative(e.names, -e.log_evidence, reason_of(best, e.names, explanation, dataset), e.probability)
-        for e in explanation.evidence[1:]
-        if e.probability >= LEAST
+        for e in explanation.evidence
+        if set(e.names) != set(best) and (e.probability >= LEAST or e.names in explanation.confounded)
     ]
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden

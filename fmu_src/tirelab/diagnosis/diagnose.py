@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 from radialtire import TireModel
 
+from ..computing.threads import one_thread
 from ..estimation.explanation import CATALOGUE_NAMES, Explanation, explain_misfit
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
-from ..preprocessing.noise_model import white_noise
 from ..simulation.simulate import simulate
-from ..simulation.threads import one_thread
+from .acceptance import accept
 from .alternatives import Alternative, alternatives_of
 from .discriminating_test import DiscriminatingTest, Limits, discriminate
-from .held_out import HeldOut, given, rmse, split
+from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
 from .residual_model import residual_models, unexplained_by
 from .summary import summarise
@@ -55,22 +55,19 @@ def diagnose(
     check_recordings(fitted)
     dataset = dataset_of(fitted, baseline)
     explanation = explain_misfit(fitted, baseline, catalogue, report)
-    noises = [
-        white_noise(f.level, e.rows.size)
-        for f, e in zip(explanation.floors, dataset.experiments, strict=True)
-    ]
-    check_signal(dataset, noises)
-    alternatives = alternatives_of(explanation, dataset)
-    unexplained = unexplained_by(explanation.remainder)
+    levels = [floor.level for floor in explanation.floors]
+    check_signal(dataset, levels)
     report("validating the correction on held-out data")
     before = [r.force - simulate(baseline, r) for r in fitted]
-    validation = _validate(fitted, kept, dataset, before, baseline, explanation)
+    explanation, validation = accept(explanation, fitted, kept, dataset, before)
+    alternatives = alternatives_of(explanation, dataset)
+    unexplained = unexplained_by(explanation.remainder)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(
         fitted,
         dataset,
         law_corrected(fitted, before, explanation.model.baseline, explanation.model.tire),
-        noises,
+        levels,
         None if unexplained else explanation.residuals,
     )
     fit = _figures(before, explanation, validation)
@@ -118,20 +115,6 @@ def _check_names(catalogue: Sequence[str]) -> None:
         raise ValueError(
             f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}"
         )
-
-
-def _validate(
-    recordings: Sequence[Recorded],
-    held_out: Sequence[Recorded],
-    dataset: Dataset,
-    before: Sequence[FloatArray],
-    baseline: TireModel,
-    explanation: Explanation,
-) -> HeldOut:
-    """Return the errors on held-out data: the held-out recordings, else a part of the fitted ones."""
-    if held_out:
-        return given(held_out, recordings, dataset, before, baseline, explanation)
-    return split(recordings, dataset, before, explanation)
 
 
 def _figures(before: Sequence[FloatArray], explanation: Explanation, validation: HeldOut) -> Fit:

@@ -77,11 +77,10 @@ def given(
     recordings: Sequence[Recorded],
     dataset: Dataset,
     before: Sequence[FloatArray],
-    baseline: TireModel,
     explanation: Explanation,
 ) -> HeldOut:
     """Return the errors on the held-out recordings; before [N]: residuals of the fitted ones."""
-    corrected = explanation.model.tire
+    corrected, baseline = explanation.model.tire, explanation.model.baseline
     fitted = zip(dataset.experiments, recordings, before, explanation.residuals, strict=True)
     others = zip(dataset_of(held_out, baseline).experiments, held_out, strict=True)
     return HeldOut(

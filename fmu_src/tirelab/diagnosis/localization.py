@@ -26,7 +26,6 @@ from scipy.stats import chi2
 
 from ..preprocessing.dataset import Dataset, Experiment, Recorded
 from ..preprocessing.kinematics import FloatArray, IndexArray
-from ..preprocessing.noise_model import Noise
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 
@@ -101,14 +100,15 @@ def localize(
     recordings: Sequence[Recorded],
     dataset: Dataset,
     residuals: Sequence[FloatArray],
-    noises: Sequence[Noise],
+    levels: Sequence[float],
     left: Sequence[FloatArray] | None = None,
 ) -> tuple[Span, ...]:
     """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
 
+    levels [N]: noise floor of each recording
     left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
     """
-    samples = _samples(dataset, residuals, noises, left)
+    samples = _samples(dataset, residuals, levels, left)
     axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, dataset, samples.kept)]
     looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
     # Where the noise was taken for too large, the densest span has more than all samples together.
@@ -164,24 +164,23 @@ class _Samples:
 def _samples(
     dataset: Dataset,
     residuals: Sequence[FloatArray],
-    noises: Sequence[Noise],
+    levels: Sequence[float],
     left: Sequence[FloatArray] | None,
 ) -> _Samples:
     parts, kept = [], []
-    for record, residual, noise in zip(dataset.experiments, residuals, noises, strict=True):
-        chosen = np.flatnonzero(noise.weight > 0.0)
-        spread = noise.spread[chosen]
-        variance = noise.level**2 * spread**2 / float(np.mean(spread**2))
+    for record, residual, level in zip(dataset.experiments, residuals, levels, strict=True):
+        chosen = np.arange(record.rows.size)
+        variance = np.full(chosen.size, level**2)
         own = residual[record.rows][chosen]
         excess = own**2 - variance
         parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
         kept.append(chosen)
-    own, variance, excess, alike, level = (np.concatenate(values) for values in zip(*parts, strict=True))
-    together = [(np.ones(1), np.array([n.correlation_samples])) for n in noises]
+    own, variance, excess, alike, usual = (np.concatenate(values) for values in zip(*parts, strict=True))
+    together = [(np.ones(1), np.ones(1)) for _ in levels]
     if left is not None:
         rows = zip(dataset.experiments, left, kept, strict=True)
         together = [_wander(values[record.rows][chosen]) for record, values, chosen in rows]
-    return _Samples(own, variance, excess, alike, level, tuple(together), tuple(kept))
+    return _Samples(own, variance, excess, alike, usual, tuple(together), tuple(kept))
 
 
 def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -20,9 +20,6 @@ a ripple of a fifteenth of the range is followed; short recordings have fewer.""
 FOLDS = 5
 """Blocks of time; each is predicted from the others."""
 
-MATERIAL = 0.2
-"""A remainder is unexplained from this part of the noise on: coloured noise may leave less."""
-
 Coordinate = Callable[[Experiment], FloatArray]
 
 COORDINATES: dict[str, tuple[str, Coordinate]] = {
@@ -68,10 +65,10 @@ class ResidualModel:
 
 
 def unexplained_by(remainder: Remainder) -> tuple[str, ...]:
-    """Return the coordinates on which the remainder depends, none where it may be noise."""
-    if remainder.size < MATERIAL:
+    """Return the coordinates on which an unexplained remainder depends: none where it is noise or an error of form."""
+    if not remainder.unexplained:
         return ()
-    return tuple(d.coordinate for d in remainder.depends)
+    return tuple(d.coordinate for d in remainder.depends) or ("time",)
 
 
 def residual_models(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from .fit import Fit, fitted
 from .noise import with_saturated_noise
 from .ranking import BEGUN, Ranking, ranked
 from .remainder import Remainder, remainder_of
+from .uncertainty import estimates_of
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -36,46 +38,60 @@ Progress = Callable[[str], None]
 CATALOGUE_NAMES: tuple[str, ...] = (LAW, *CANDIDATES)
 """Every effect that a verdict may name."""
 
+AS_GOOD = 0.75
+"""Part of what an effect explains that another must explain to be an alternative to it."""
+
 TEMPERATURE = 2.0
 """Tempering of the posterior odds between sets: fits that stop early and forms that are not quite right."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """What explains the misfit.
+    """What explains the misfit: the sets of effects that were fitted, and one of them, the likeliest if not said.
 
-    effects: of the likeliest set, the largest share first; probability: of that set; evidence: all sets that were
-    fitted, the likeliest first; hidden: names of effects that the excitation cannot show, and why
-    remainder: what the effects leave beyond the noise; model: the likeliest set, fitted; residuals [N]: what it leaves
-    of each recording; floors: noise floor of each recording; evaluations: simulations of the final fit
+    effects: of the set, the largest share first; probability: of the set; evidence: all sets, the likeliest first
+    confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place
+    hidden: names of effects that the excitation cannot show, and why; remainder: what the effects leave beyond the noise
+    model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
     """
 
     effects: tuple[NamedEffect, ...]
     probability: float
     evidence: tuple[Evidence, ...]
+    confounded: tuple[tuple[str, ...], ...]
     hidden: tuple[tuple[str, str], ...]
     remainder: Remainder
     model: FittedModel
     residuals: tuple[FloatArray, ...]
     floors: tuple[NoiseFloor, ...]
-    evaluations: int
     excitation: Excitation
     _ranking: Ranking = field(repr=False)
     _recordings: tuple[Recorded, ...] = field(repr=False)
 
-    def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
-        """Return the likeliest set fitted to the samples `kept` of each recording alone: a beginning, all or none."""
-        best = self._ranking.best
-        baseline = best.problem.dataset.tire
-        parts = [_part(r, k) for r, k in zip(self._recordings, kept, strict=True) if k.any()]
-        dataset = _quiet(dataset_of(parts, baseline))
-        fit = fitted(dataset, [best.values], discrepancy_of(dataset.misfit, 0.0), best.variance, -np.inf)
-        return Refitted(fit.tire, _residuals(fit.tire, self._recordings))
+    @property
+    def evaluations(self) -> int:
+        """Simulations of the final fit."""
+        return self.model.fit.evaluations
 
-    def alternative_model(self, names: tuple[str, ...]) -> FittedModel | None:
+    def of(self, names: Sequence[str]) -> Explanation:
+        """Return the explanation by another set that was fitted; raises ValueError where it was not."""
+        fit = self._ranking.of(frozenset(names))
+        if fit is None:
+            raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made")
+        return _explanation(self._recordings, self._ranking, fit, self.excitation, self.hidden)
+
+    def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
+        """Return the set fitted to the samples `kept` of each recording alone: a beginning, all or none."""
+        fit = self.model.fit
+        parts = [_part(r, k) for r, k in zip(self._recordings, kept, strict=True) if k.any()]
+        dataset = _quiet(dataset_of(parts, self.model.baseline))
+        again = fitted(dataset, [fit.values], discrepancy_of(dataset.misfit, 0.0), fit.variance, -np.inf)
+        return Refitted(again.tire, _residuals(again.tire, self._recordings))
+
+    def alternative_model(self, names: Sequence[str]) -> FittedModel | None:
         """Return the fit of another set; None where it was not fitted."""
-        wanted = frozenset(names)
-        return next((FittedModel(f) for f in self._ranking.fits if frozenset(f.names) == wanted), None)
+        fit = self._ranking.of(frozenset(names))
+        return None if fit is None else FittedModel(fit)
 
 
 def explain_misfit(
@@ -94,8 +110,8 @@ def explain_misfit(
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=timed)
     allowed = [name for name in CANDIDATES if name in catalogue]
-    hidden = tuple((name, why) for name in allowed if (why := excitation.hidden(name)))
-    shown = [name for name in allowed if name not in dict(hidden)]
+    hidden = excitation.reasons(allowed)
+    shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
     raw = (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
     quiet = with_saturated_noise(dataset, raw)
@@ -104,33 +120,38 @@ def explain_misfit(
     equations = normal_equations(signatures, quiet.misfit)
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
     progress("fitting the sets that can win")
-    ranking = ranked(quiet, signatures, discrepancy_of(quiet.misfit, 0.0), starts)
-    return _explanation(tuple(recordings), quiet, ranking, hidden, excitation)
+    ranking = ranked(
+        quiet, signatures, discrepancy_of(quiet.misfit, 0.0), starts, partial(_alike, excitation)
+    )
+    return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()))
 
 
 def _explanation(
     recordings: tuple[Recorded, ...],
-    dataset: Dataset,
     ranking: Ranking,
-    hidden: tuple[tuple[str, str], ...],
+    chosen: Fit,
     excitation: Excitation,
+    hidden: tuple[tuple[str, str], ...],
 ) -> Explanation:
     weights = np.exp((np.array(ranking.posteriors) - ranking.posteriors[0]) / TEMPERATURE)
     weights /= weights.sum()
-    best = ranking.best
     pairs = list(zip(ranking.fits, weights.tolist(), strict=True))
     effects = [
         NamedEffect(
             name,
-            _estimates(best, name),
-            _share(ranking, name),
+            {
+                e.name: Estimate(e.value, e.deviation, e.unit, e.determined)
+                for e in estimates_of(chosen)
+                if e.owner == name
+            },
+            _share(ranking, chosen, name),
             float(sum(weight for fit, weight in pairs if name in fit.names)),
         )
-        for name in best.names
+        for name in chosen.names
     ]
     return Explanation(
         tuple(sorted(effects, key=lambda e: -e.share)),
-        float(weights[0]),
+        next(weight for fit, weight in pairs if fit is chosen),
         tuple(
             Evidence(
                 fit.names,
@@ -141,16 +162,34 @@ def _explanation(
             )
             for (fit, weight), posterior in zip(pairs, ranking.posteriors, strict=True)
         ),
+        _confounded(chosen, ranking, excitation),
         hidden,
-        remainder_of(best),
-        FittedModel(best),
-        _residuals(best.tire, recordings),
-        tuple(e.floor for e in dataset.experiments),
-        best.evaluations,
+        remainder_of(chosen),
+        FittedModel(chosen),
+        _residuals(chosen.tire, recordings),
+        tuple(e.floor for e in chosen.problem.dataset.experiments),
         excitation,
         ranking,
         recordings,
     )
+
+
+def _alike(excitation: Excitation, name: str) -> tuple[str, ...]:
+    return excitation.alike(name) if name != LAW else ()
+
+
+def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[tuple[str, ...], ...]:
+    """Return the sets with an effect that the motion cannot tell from one of the chosen ones in that one's place."""
+    found = []
+    for name in chosen.names:
+        less = ranking.of(frozenset(chosen.names) - {name})
+        for other in _alike(excitation, name):
+            fit = ranking.of(frozenset(chosen.names) - {name} | {other})
+            if fit is None or less is None or other in chosen.names:
+                continue
+            if less.power - fit.power > AS_GOOD * (less.power - chosen.power):
+                found.append(fit.names)
+    return tuple(found)
 
 
 def _quiet(dataset: Dataset) -> Dataset:
@@ -159,28 +198,12 @@ def _quiet(dataset: Dataset) -> Dataset:
     return with_saturated_noise(dataset, raw)
 
 
-def _share(ranking: Ranking, name: str) -> float:
-    best = ranking.best
-    less = frozenset(best.names) - {name}
-    without = next((f.power for f in ranking.fits if frozenset(f.names) == less), best.power)
-    misfit = best.problem.dataset.misfit
-    missed = float(misfit @ misfit) - best.residual.size
-    return float(np.clip((without - best.power) / max(missed, 1e-12), 0.0, 1.0))
-
-
-def _estimates(fit: Fit, name: str) -> dict[str, Estimate]:
-    """Return what was fitted of an effect, with standard deviations that count the discrepancy and the priors."""
-    parameters = fit.problem.parameters
-    information = fit.jacobian.T @ fit.jacobian / max(fit.variance, 1.0) + np.eye(len(parameters))
-    deviations = np.sqrt(np.diag(np.linalg.inv(information)))
-    values = fit.values
-    found = {}
-    for parameter, position, deviation in zip(parameters, fit.positions, deviations, strict=True):
-        if parameter.owner == name:
-            value = values[name][parameter.index]
-            slope = parameter.spread * (value if parameter.logarithm else 1.0)
-            found[parameter.label] = Estimate(float(value), float(abs(slope) * deviation), parameter.unit)
-    return found
+def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
+    without = ranking.of(frozenset(chosen.names) - {name})
+    misfit = chosen.problem.dataset.misfit
+    missed = float(misfit @ misfit) - chosen.residual.size
+    gained = 0.0 if without is None else without.power - chosen.power
+    return float(np.clip(gained / max(missed, 1e-12), 0.0, 1.0))
 
 
 def _residuals(tire: TireModel, recordings: Sequence[Recorded]) -> tuple[FloatArray, ...]:

@@ -20,11 +20,14 @@ STEP = 1e-3
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter's value with its standard deviation and unit."""
+    """A parameter's value with its standard deviation and unit; determined: whether the recordings say more of it than
+    its prior did.
+    """
 
     value: float
     std: float
     unit: str
+    determined: bool = True
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from ..regressors.dataset import Dataset
 from ..regressors.law import LAW, SHAPE
 from ..selection.discrepancy import Discrepancy
 from .laplace import laplace_evidence
-from .least_squares import Minimum, Objective, minimised
+from .least_squares import Minimum, Objective, begun, minimised
 from .problem import EstimationProblem, Values, problem_of
 
 FloatArray = NDArray[np.float64]
@@ -93,28 +93,26 @@ def fitted(
 
 
 def _climbed(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
-    q = problem.positions(start, awake=True)
     width = np.where(problem.groups > 0, LAW_LOOSE, 1.0)
-    evaluations = 0
+    objective = Objective(problem.residual, problem.low, problem.high, width, variance)
+    found = begun(objective, problem.positions(start, awake=True))
     best: Fit | None = None
     for _ in range(REWEIGHTED):
-        objective = Objective(problem.residual, problem.low, problem.high, width, variance)
-        found = minimised(objective, q, ROUNDS, ENOUGH)
-        evaluations += found.evaluations
-        fit = _judged(problem, found, discrepancy, evaluations)
+        found = minimised(objective, found, ROUNDS, ENOUGH)
+        fit = _judged(problem, found, discrepancy)
         if best is None or fit.log_likelihood > best.log_likelihood:
             best = fit
-        if 0.7 < fit.variance / variance < 1.5:
+        if 0.7 < fit.variance / objective.variance < 1.5:
             break
-        q, variance = found.positions, fit.variance
+        objective = replace(objective, variance=fit.variance)
     assert best is not None
     return best
 
 
-def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy, evaluations: int) -> Fit:
+def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy) -> Fit:
     sizes = problem.sizes(found.positions)
     errors = {n: CATALOGUE[SHAPE if n == LAW else n].form_error * size for n, size in sizes.items()}
-    own = discrepancy.above(math.sqrt(sum(e**2 for e in errors.values())))
+    own = discrepancy.above(math.hypot(problem.dataset.gauge_error, *errors.values()))
     evidence = laplace_evidence(found.residual, found.jacobian, found.positions, problem.groups, own)
     return Fit(
         problem,
@@ -125,5 +123,5 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
         found.jacobian,
         sizes,
         found.settled,
-        evaluations,
+        found.evaluations,
     )

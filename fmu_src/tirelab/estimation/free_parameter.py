@@ -19,7 +19,8 @@ have no slope."""
 @dataclass(frozen=True)
 class FreeParameter:
     """owner: the effect's name, or LAW; index: of its parameter there; label, unit: for a reader
-    centre, spread: of the prior, of the logarithm where `logarithm`; low, high: bounds on the axis of the prior, minimum, maximum: of the value
+    centre, spread: of the prior, of the logarithm where `logarithm`
+    low, high: bounds on the axis of the prior, minimum, maximum: of the value
     optional: whether the plain form does without it; plain: its value there
     group: number of those whose prior has a scale that is found by the evidence, 0: as declared
     """

@@ -39,7 +39,7 @@ def additions(
     across = np.linalg.solve(factor, slopes.T) / np.sqrt(variance)
 
     def beside(columns: FloatArray) -> FloatArray:
-        return columns - across.T @ (across @ columns)
+        return np.asarray(columns - across.T @ (across @ columns))
 
     target = beside(missing)
     if signature.name == LAW:

@@ -1,4 +1,4 @@
-"""The evidence of a fitted set, by Laplace's approximation, with the discrepancy and the law's scale found beside it."""
+"""The evidence of a fitted set, by Laplace's approximation, with the discrepancy and the law's scales beside it."""
 
 from __future__ import annotations
 

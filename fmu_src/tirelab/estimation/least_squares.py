@@ -59,18 +59,22 @@ class Minimum:
     evaluations: int
 
 
-def minimised(objective: Objective, start: FloatArray, rounds: int, enough: float) -> Minimum:
-    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last."""
+def begun(objective: Objective, start: FloatArray) -> Minimum:
+    """Return where a search begins."""
     q = np.clip(start, objective.low, objective.high)
     residual = objective.residual(q)
+    return Minimum(q, residual, objective.jacobian(q, residual), False, 1 + q.size)
+
+
+def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) -> Minimum:
+    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last."""
+    q, residual, jacobian = start.positions, start.residual, start.jacobian
     cost = objective.cost(residual, q)
-    damping, evaluations, settled = DAMPING[0], 1, False
-    jacobian = objective.jacobian(q, residual)
+    damping, evaluations, settled = DAMPING[0], start.evaluations, False
     for _ in range(rounds):
         if not q.size:
             settled = True
             break
-        evaluations += q.size
         before = cost
         moved = False
         for _ in range(8):
@@ -90,6 +94,7 @@ def minimised(objective: Objective, start: FloatArray, rounds: int, enough: floa
             settled = True
             break
         jacobian = objective.jacobian(q, residual)
+        evaluations += q.size
         if before - cost < enough:
             settled = True
             break

@@ -1,13 +1,13 @@
 """Sets of effects ranked by what they leave when they are fitted in the catalogue's own forms.
 
-Sets that the signatures find likely are fitted first. From the best of them on, one candidate is taken out and one put in
-in turn, as long as that may win: what is left out begins at the optimum of the larger set, what is put in at that of the
-smaller one, so no set is judged worse than its own subset.
+Sets that the signatures find likely are fitted first. From the best of them on, one candidate is taken out and one put
+in in turn, as long as that may win: what is left out begins at the optimum of the larger set, what is put in at that of
+the smaller one, so no set is judged worse than its own subset.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 BEGUN = 3
 """Sets of the selection that are fitted before anything else, beside the best one of each size."""
 
-REACH = 12.0
+REACH = 20.0
 """A fitted set this far behind the best in log posterior is not followed up."""
 
 MOST_FITS = 40
@@ -35,7 +35,7 @@ MOST_FITS = 40
 
 MOST_EFFECTS = 6
 
-PROMISING, SWAPPED = 3, 2
+PROMISING, SWAPPED = 5, 2
 """Candidates put in beside a fitted set, and in the place of one of its own, the most promising first."""
 
 HOPE = 8.0
@@ -53,6 +53,10 @@ class Ranking:
     def best(self) -> Fit:
         """The likeliest."""
         return self.fits[0]
+
+    def of(self, names: frozenset[str]) -> Fit | None:
+        """Return the fit of a set, or None where it was not fitted."""
+        return next((f for f in self.fits if frozenset(f.names) == names), None)
 
 
 @dataclass
@@ -104,10 +108,12 @@ def ranked(
     signatures: Sequence[Signature],
     discrepancy: Discrepancy,
     starts: Sequence[tuple[float, Mapping[str, FloatArray]]],
+    alike: Callable[[str], Sequence[str]],
 ) -> Ranking:
     """Return the sets that can still win, fitted and ranked.
 
     starts: sets to begin with, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
+    alike: effects that the motion cannot tell from one; the best set is fitted with each of them in its place
     """
     board = _Board(dataset, {s.name: s for s in signatures}, discrepancy)
     board.fit([{}], discrepancy.highest)
@@ -124,6 +130,12 @@ def ranked(
         followed.add(names)
         _follow(board, names)
     _nested(board)
+    best_names = board.best()
+    for name in sorted(best_names - {LAW}):
+        less = board.fits.get(best_names - {name})
+        for other in alike(name):
+            if less is not None and other in board.signatures and other not in best_names:
+                board.put_in(less, other)
     order = sorted(board.fits, key=lambda n: -board.posterior(n))
     return Ranking(tuple(board.fits[n] for n in order), tuple(board.posterior(n) for n in order))
 

@@ -19,6 +19,11 @@ STRUCTURED = 6.0
 """Chi-square per bin of the mean remainder above which it depends on a coordinate: coloured noise reaches 2 to 3."""
 
 
+UNEXPLAINED_SIZE, UNEXPLAINED_SHARE = 0.75, 0.1
+"""Size over the noise, and share of the misfit, above which a remainder is something of its own: coloured noise that no
+effect follows has reached a size of 0.65, the error of the effects' forms a share of 0.05."""
+
+
 @dataclass(frozen=True)
 class Dependence:
     """share: of the remainder's power that a function of the coordinate follows; begin, end: where most of it lies, in
@@ -52,6 +57,11 @@ class Remainder:
                 {"by": d.coordinate, "share": d.share, "from": d.begin, "to": d.end} for d in self.depends
             ],
         }
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether it is something that no named effect explains, and not the error of their forms."""
+        return self.size > UNEXPLAINED_SIZE and self.share > UNEXPLAINED_SHARE
 
 
 def remainder_of(fit: Fit) -> Remainder:

@@ -17,8 +17,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..cache_folder import keep, private_folder
 from ..errors import TirelabError
+from ..simulation.cache_folder import keep, private_folder
 
 SOURCES = ("loader.c", "interpreter.c")
 OLDEST_GLIBC = "2.17"

@@ -8,7 +8,6 @@ import numpy as np
 
 from ..errors import TirelabError
 from .dataset import Dataset, Recorded
-from .noise_model import Noise
 
 FEWEST_SAMPLES = 100
 """Fewer samples cannot tell fifteen effects and the noise apart."""
@@ -42,9 +41,12 @@ def check_recordings(recordings: Sequence[Recorded]) -> None:
             )
 
 
-def check_signal(dataset: Dataset, noises: Sequence[Noise]) -> None:
-    """Raise PoorRecording where the deflection is noise, or the force does not follow it."""
-    for number, (record, noise) in enumerate(zip(dataset.experiments, noises, strict=True), start=1):
+def check_signal(dataset: Dataset, levels: Sequence[float]) -> None:
+    """Raise PoorRecording where the deflection is noise, or the force does not follow it.
+
+    levels [N]: noise floor of each recording
+    """
+    for number, (record, level) in enumerate(zip(dataset.experiments, levels, strict=True), start=1):
         motion = record.motion
         travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
         if motion.noise > 0.3 * float(np.std(motion.deflection)):
@@ -56,7 +58,7 @@ def check_signal(dataset: Dataset, noises: Sequence[Noise]) -> None:
                 f"recording {number} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
         related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
-        if not np.isfinite(related) or abs(related) < 0.2 or noise.level > 0.9 * float(np.std(record.force)):
+        if not np.isfinite(related) or abs(related) < 0.2 or level > 0.9 * float(np.std(record.force)):
             raise PoorRecording(
                 f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "
                 "check channels and units"

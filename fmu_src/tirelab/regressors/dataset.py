@@ -1,8 +1,8 @@
 """Recordings brought to the form in which every set of effects is compared with them.
 
-A recording is averaged over blocks of neighbouring samples, as long as the motion allows. What is averaged is the misfit
-of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. Blocks whose
-motion turns within a sample do not count. All comparisons are made in units of the noise of the averaged misfit.
+A recording is averaged over blocks of neighbouring samples, as long as the motion allows. What is averaged is the
+misfit of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. Blocks
+whose motion turns within a sample do not count. All comparisons are made in units of the noise of the averaged misfit.
 """
 
 from __future__ import annotations
@@ -29,6 +29,9 @@ BoolArray = NDArray[np.bool_]
 ROWS = 6000
 """Blocks of all recordings together, where the motion allows: signatures and fits cost in proportion."""
 
+MOST_ROWS = 40_000
+"""Budget: blocks of all recordings together, whatever the motion asks for."""
+
 FEWEST_ROWS = 600
 """Blocks that a recording keeps at least, where it has as many samples."""
 
@@ -38,8 +41,17 @@ TURN = 0.5
 BLURRED = 0.3
 """Part of the noise that blocks may add: straight lines over a phase p miss p^2 / 12 of what changes."""
 
+STEPS_LEFT = 0.3
+"""Part of a gauge's steps that is left of the motion behind them: smooth over a step, no average takes it out."""
+
 LONE = 8.0
 """A sample this many noises off both its neighbours is a spike."""
+
+RINGING = 6
+"""Samples on either side of a corner at which the smoothed rate rings."""
+
+GATHERED = 2.0
+"""Power of the misfit beside corners over that away from them, above which it gathers there."""
 
 COUNTED = 0.6
 """Part of the blocks that must remain: where the motion is resolved in fewer, all count."""
@@ -82,6 +94,12 @@ class Dataset:
     def misfit(self) -> FloatArray:
         """Misfit of the baseline tire in units of the noise, all counted blocks in a row (m,)."""
         return self.stacked([e.misfit for e in self.experiments])
+
+    @property
+    def gauge_error(self) -> float:
+        """Root mean square of what a gauge's steps leave of the motion behind them, in units of the noise."""
+        parts = [(e.counts.sum(), (STEPS_LEFT * e.floor.steps / e.noise) ** 2) for e in self.experiments]
+        return float(np.sqrt(sum(n * p for n, p in parts) / max(sum(n for n, _ in parts), 1)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -137,35 +155,46 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
     floor = noise_floor(misfit, stiffness, gauge, step)
-    resolved = motion.resolved & ~_spikes(misfit)
+    resolved = _away_from_corners(motion.resolved, misfit) & ~_spikes(misfit)
     interval = float(np.median(np.diff(recording.time)))
     loudness = float(np.std(misfit)) / max(white_level(misfit), 1e-300)
     turn = min(TURN, float(np.sqrt(12.0 * BLURRED / max(loudness, 1e-300))))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
     slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
     longest = turn * slow / max(quick * interval, 1e-300)
-    size = int(max(1, min(size, longest, recording.time.size // FEWEST_ROWS)))
+    least = size * ROWS // MOST_ROWS
+    size = int(max(1, least, min(size, longest, recording.time.size // FEWEST_ROWS)))
     whole = recording.time.size // size * size
-    middle = np.arange(size // 2, whole, size)
     good = resolved[:whole].reshape(-1, size)
-    counts = good.mean(axis=1) > 0.5
+    counts: BoolArray = np.asarray(good.all(axis=1))
     if counts.mean() < COUNTED:
         good, counts = np.ones_like(good), np.ones_like(counts)
-    kept = np.maximum(good.sum(axis=1), 1)
-    averaged = np.where(good, misfit[:whole].reshape(-1, size), 0.0).sum(axis=1) / kept
-    averaged = np.where(counts, averaged, misfit[middle])
+    averaged = misfit[:whole].reshape(-1, size).mean(axis=1)
+    before, after = np.arange((size - 1) // 2, whole, size), np.arange(size // 2, whole, size)
+
+    def middle(values: FloatArray) -> FloatArray:
+        # That of an even block lies between two samples: either of them would be a lag of half a sample.
+        return np.asarray(0.5 * (values[before] + values[after]))
+
+    blocks = _Moved(
+        middle(recording.time),
+        middle(motion.deflection),
+        recording.surface_radius[after],
+        middle(motion.rate),
+        middle(motion.acceleration),
+    )
     # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
     noise = (
         min(white_level(misfit) / np.sqrt(size), white_level(averaged)) if size > 1 else white_level(misfit)
     )
     return Experiment(
         recording.name,
-        recording.time[middle],
-        motion.deflection[middle],
-        motion.rate[middle],
-        motion.acceleration[middle],
-        recording.surface_radius[middle],
-        baseline[middle],
+        blocks.time,
+        blocks.deflection,
+        blocks.rate,
+        blocks.acceleration,
+        blocks.surface_radius,
+        simulate(tire, blocks, blocks),
         averaged,
         counts,
         max(noise, 1e-6 * float(np.ptp(recording.force)), 1e-12),
@@ -195,6 +224,19 @@ def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
     if x.size < 3:
         return np.zeros_like(deflection)
     return np.asarray(np.interp(deflection, x, np.gradient(f, x)))
+
+
+def _away_from_corners(resolved: BoolArray, misfit: FloatArray) -> BoolArray:
+    """Return where the motion is resolved and no corner is near: the smoothed rate rings around it.
+
+    Where the misfit gathers there (short hits), a corner is what is to be explained.
+    """
+    near = np.convolve(~resolved, np.ones(2 * RINGING + 1), "same") > 0.5
+    away, beside = resolved & ~near, resolved & near
+    if away.mean() <= COUNTED or not beside.any():
+        return resolved
+    gathers = float(np.mean(misfit[beside] ** 2)) > GATHERED * float(np.mean(misfit[away] ** 2))
+    return resolved if gathers else away
 
 
 def _spikes(misfit: FloatArray) -> BoolArray:

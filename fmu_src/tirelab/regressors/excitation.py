@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ CELLS = 12
 RETURNS = 0.02
 """Part of the variance of time that must lie between visits of one deflection in one direction."""
 
-SPEEDS = 0.15
+SPEEDS = 0.5
 """Spread of the speed, at one deflection in one direction, over its mean, below which there is one speed."""
 
 STILL = 0.02
@@ -48,6 +49,19 @@ class Excitation:
         if "slow" in traits and self.returns < RETURNS:
             return "no deflection was visited again: time cannot be told from deflection and direction"
         return ""
+
+    def reasons(self, names: Sequence[str]) -> dict[str, str]:
+        """Return why, of all the effects that cannot be shown."""
+        return {name: why for name in names if (why := self.hidden(name))}
+
+    def alike(self, name: str) -> tuple[str, ...]:
+        """Return the effects that this motion cannot tell from one of this name: loops, where each deflection is passed
+        at one speed.
+        """
+        if self.speeds >= SPEEDS or "loop" not in CATALOGUE[name].traits:
+            return ()
+        loops = (n for n, effect in CATALOGUE.items() if "loop" in effect.traits and n != name)
+        return tuple(n for n in loops if not self.hidden(n))
 
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:

@@ -2,7 +2,8 @@
 
     dF / F = a + b l + c l^2 + d l^3 + hats(l),   l = ln(x / x_ref)
 
-common to all surfaces, and on each surface beside it. The hats are a static discrepancy: what no log-polynomial follows.
+common to all surfaces, and on each surface beside it. The hats are a static discrepancy: what no log-polynomial
+follows.
 Its scale is not declared: it is found by the marginal likelihood (type II), like that of the effects.
 """
 

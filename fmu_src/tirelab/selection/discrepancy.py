@@ -1,6 +1,7 @@
 """What a set of effects may leave of a recording beyond the noise, and what that costs.
 
-A form that is not quite right leaves something smooth: over n blocks it has about e effective samples (e << n). In units
+A form that is not quite right leaves something smooth: over n blocks it has about e effective samples (e << n). In
+units
 of the noise each of them has the variance V = 1 + n tau^2 / e, with tau the root mean square of the discrepancy. What
 the set leaves beyond the noise lies in these e samples, so with a residual of the sum of squares q
 
@@ -16,15 +17,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-Number = TypeVar("Number", float, FloatArray)
 
-EFFECTIVE = float(__import__("os").environ.get("ENG_EFF", "20"))
+EFFECTIVE = 30.0
 """Effective samples of a discrepancy."""
 
 FLOOR_OF_SIGNATURES = 0.01
@@ -42,10 +41,15 @@ class Discrepancy:
     lowest: float
     highest: float
 
-    def beside(self, variance: Number) -> Number:
-        """Return what the log likelihood holds beside -q / 2V."""
+    def beside(self, variance: FloatArray) -> FloatArray:
+        """Return what the log likelihood holds beside -q / 2V, for several V."""
         e = self.effective
-        return 0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance)
+        return np.asarray(0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance))
+
+    def likelihood(self, power: float, variance: float) -> float:
+        """Return the log likelihood of a sum of squares left at one V."""
+        e = self.effective
+        return -0.5 * (power - (self.samples - e)) / variance - 0.5 * e * math.log(variance)
 
     def above(self, form_error: float) -> Discrepancy:
         """Return the discrepancy of a set whose forms may always miss this much, a root mean square in units of the
@@ -62,7 +66,7 @@ class Discrepancy:
         """Return the log likelihood of a sum of squares left at its best V, and that V."""
         best = (power - (self.samples - self.effective)) / self.effective
         variance = min(max(best, self.lowest), self.highest)
-        return -0.5 * power / variance + self.beside(variance), variance
+        return self.likelihood(power, variance), variance
 
     def size(self, variance: float) -> float:
         """Return tau in units of the noise."""

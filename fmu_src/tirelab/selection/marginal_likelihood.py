@@ -7,8 +7,9 @@ s_i is the size of candidate i, V the variance of the discrepancy: both are foun
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,8 +40,8 @@ class NormalEquations:
     gram: FloatArray
     moment: FloatArray
     power: float
-    places: dict[str, slice]
-    signed: dict[str, bool]
+    places: Mapping[str, slice]
+    signed: Mapping[str, bool]
     columns: FloatArray
 
 
@@ -86,31 +87,32 @@ def evidence_of(
     """
     known = dict(zip(start.names, start.sizes, strict=True)) if start is not None else {}
     if not names:
-        likelihoods = [-0.5 * equations.power / v + discrepancy.beside(v) for v in discrepancy.grid()]
+        likelihoods = [discrepancy.likelihood(equations.power, float(v)) for v in discrepancy.grid()]
         best = int(np.argmax(likelihoods))
         return Evidence((), float(likelihoods[best]), (), float(discrepancy.grid()[best]))
     unit = math.sqrt(equations.power / discrepancy.samples)
     begin = start.variance if start is not None else 0.25 * discrepancy.highest
     tries = []
-    for part in SIZES if any(n not in known for n in names) else (1.0,):
-        for sign in (1.0, -1.0) if any(equations.signed[n] and n not in known for n in names) else (1.0,):
-            sizes = [known.get(n, part * unit * (sign if equations.signed[n] else 1.0)) for n in names]
-            tries += [(sizes, max(begin / f, discrepancy.lowest)) for f in (1.0, 8.0, 64.0)]
+    new = [n for n in names if n not in known]
+    signs_of = [(1.0, -1.0) if equations.signed[n] and n in new else (1.0,) for n in names]
+    for part, signs in itertools.product(SIZES if new else (1.0,), itertools.product(*signs_of)):
+        chosen = [known.get(n, part * unit * sign) for n, sign in zip(names, signs, strict=True)]
+        tries += [(chosen, max(begin / f, discrepancy.lowest)) for f in (1.0, 8.0, 64.0)]
     likelihoods = [_likelihood(names, s, v, equations, discrepancy)[0] for s, v in tries]
     best = int(np.argmax(likelihoods))
     sizes, variance = tries[best]
     if not polish:
         return Evidence(tuple(names), likelihoods[best], tuple(sizes), variance)
-    signs = np.sign(sizes)
+    direction = np.sign(sizes)
 
     def cost(q: FloatArray) -> float:
-        return -_likelihood(names, signs * np.exp(q[:-1]), math.exp(q[-1]), equations, discrepancy)[0]
+        return -_likelihood(names, direction * np.exp(q[:-1]), math.exp(q[-1]), equations, discrepancy)[0]
 
     first = np.append(np.log(np.maximum(np.abs(sizes), 1e-4 * unit)), math.log(variance))
     bounds = [(math.log(NARROWEST * unit), math.log(WIDEST * unit))] * len(names)
     bounds.append((math.log(discrepancy.lowest), math.log(discrepancy.highest)))
     answer = minimize(cost, first, method="L-BFGS-B", bounds=bounds, options={"maxiter": ROUNDS})
-    found = signs * np.exp(answer.x[:-1])
+    found = direction * np.exp(answer.x[:-1])
     return Evidence(tuple(names), -float(answer.fun), tuple(found.tolist()), math.exp(answer.x[-1]))
 
 
@@ -147,13 +149,13 @@ def _likelihood(
     gram, moment = equations.gram, equations.moment
     power = equations.power - 2.0 * s @ moment[means] + s @ gram[np.ix_(means, means)] @ s
     if not free.size:
-        return -0.5 * power / variance + discrepancy.beside(variance), np.zeros(0)
+        return discrepancy.likelihood(power, variance), np.zeros(0)
     right = scale * (moment[free] - gram[np.ix_(free, means)] @ s)
     left = scale[:, None] * gram[np.ix_(free, free)] * scale / variance
     left[np.diag_indices(free.size)] += 1.0
     factor = cholesky(left, lower=True, check_finite=False)
     z = solve_triangular(factor, right, lower=True, check_finite=False)
-    quadratic = power / variance - float(z @ z) / variance**2
+    remaining = power - float(z @ z) / variance
     determinant = 2.0 * float(np.log(np.diag(factor)).sum())
     mean = scale * solve_triangular(factor.T, z, lower=False, check_finite=False) / variance
-    return -0.5 * (quadratic + determinant) + discrepancy.beside(variance), mean
+    return discrepancy.likelihood(remaining, variance) - 0.5 * determinant, mean

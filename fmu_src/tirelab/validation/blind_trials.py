@@ -13,7 +13,7 @@ from typing import Any
 import concealed
 from radialtire import read_tire
 
-from ..batch.workers import Cores, work
+from ..computing.workers import Cores, work
 from ..diagnosis.diagnosis_file import Stated, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, diagnose_files
 from ..errors import TirelabError

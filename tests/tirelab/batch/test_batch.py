@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from tirelab.batch.batch import Batch, diagnose_batch, find_items
-from tirelab.batch.workers import Cores
+from tirelab.computing.workers import Cores
 from tirelab.errors import TirelabError
 from tirelab.recordings.reading import Reading
 from tirelab.recordings.recording import read_recording

@@ -15,7 +15,7 @@ import polars as pl
 import pytest
 from matplotlib.figure import Figure
 from radialtire import TireModel
-from tirelab.batch.workers import Cores
+from tirelab.computing.workers import Cores
 from tirelab.errors import TirelabError
 from tirelab.validation import BlindTrials, Folders, Proof, blind_trials, prove
 from tirelab.validation.commitment import ChangedAnswerError, opened

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 from threadpoolctl import threadpool_info, threadpool_limits
-from tirelab.simulation.threads import one_thread
+from tirelab.computing.threads import one_thread
 
 
 def threads() -> set[int]:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from tirelab.cache_folder import cache_folder, keep, private_folder
+from tirelab.simulation.cache_folder import cache_folder, keep, private_folder
 
 pytestmark = pytest.mark.skipif(
     sys.platform == "win32", reason="Windows has no owners and modes of this kind"

@@ -8,7 +8,7 @@ import warnings
 from typing import Any
 
 import pytest
-from tirelab.batch.workers import Cores, Done, work
+from tirelab.computing.workers import Cores, Done, work
 from tirelab.errors import TirelabError
 
 

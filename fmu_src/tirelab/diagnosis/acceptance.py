@@ -1,0 +1,58 @@
+"""Which fitted set is delivered: judged by its written tire, on the recordings as they were read.
+
+Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so what it leaves may be more.
+What is ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of
+no more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..estimation.explanation import Explanation
+from ..preprocessing.dataset import Dataset, Recorded
+from ..preprocessing.kinematics import FloatArray
+from .held_out import HeldOut, given, rmse, split
+
+CONSIDERED = 6
+"""Sets, the likeliest first, whose written tires are compared."""
+
+NO_WORSE = 0.9
+"""A set is refused where one of no more effects leaves less than this part of what it leaves."""
+
+
+def accept(
+    explanation: Explanation,
+    recordings: Sequence[Recorded],
+    held_out: Sequence[Recorded],
+    dataset: Dataset,
+    before: Sequence[FloatArray],
+) -> tuple[Explanation, HeldOut]:
+    """Return the likeliest set that is not refused, and what it does on held-out data.
+
+    held_out: recordings kept from the fit; without any, a part of `recordings` is (see `held_out.split`)
+    before [N]: what the baseline leaves of each recording
+    """
+    likely = [explanation.of(e.names) for e in explanation.evidence[:CONSIDERED]]
+    left = [rmse(e.residuals) for e in likely]
+    for chosen, own in zip(likely, left, strict=True):
+        smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))
+        if min(smaller) < NO_WORSE * own:
+            continue
+        validation = _validated(chosen, recordings, held_out, dataset, before)
+        if not chosen.effects or validation.after <= validation.before:
+            return chosen, validation
+    nothing = explanation.of(())
+    return nothing, _validated(nothing, recordings, held_out, dataset, before)
+
+
+def _validated(
+    chosen: Explanation,
+    recordings: Sequence[Recorded],
+    held_out: Sequence[Recorded],
+    dataset: Dataset,
+    before: Sequence[FloatArray],
+) -> HeldOut:
+    if held_out:
+        return given(held_out, recordings, dataset, before, chosen)
+    return split(recordings, dataset, before, chosen)

@@ -1,1 +1,0 @@
-"""The catalogue against the residual."""

@@ -1,0 +1,45 @@
+"""Penalised least squares and the evidence of their result, on linear problems with known answers."""
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+from tirelab.estimation.laplace import laplace_evidence
+from tirelab.estimation.least_squares import Objective, begun, minimised
+from tirelab.selection.discrepancy import Discrepancy
+
+ROWS = 40
+RNG = np.random.default_rng(3)
+COLUMNS = RNG.normal(size=(ROWS, 3))
+DATA = COLUMNS @ np.array([0.4, -0.8, 0.2]) + 0.3 * RNG.normal(size=ROWS)
+
+
+def objective(high: float = 9.0) -> Objective:
+    """Of a linear model with the variance 0.09."""
+    ones = np.ones(3)
+    return Objective(lambda q: DATA - COLUMNS @ q, -9.0 * ones, high * ones, ones, 0.09)
+
+
+def test_minimum_of_a_linear_model_is_ridge_regression() -> None:
+    found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-12)
+    ridge = np.linalg.solve(COLUMNS.T @ COLUMNS + 0.09 * np.eye(3), COLUMNS.T @ DATA)
+    assert found.positions == pytest.approx(ridge, abs=1e-6)
+    assert found.settled
+
+
+def test_minimum_respects_a_bound_and_fits_the_rest() -> None:
+    found = minimised(objective(high=0.1), begun(objective(high=0.1), np.zeros(3)), 30, 1e-12)
+    assert found.positions[0] == pytest.approx(0.1)
+    rest = COLUMNS[:, 1]
+    left = DATA - 0.1 * COLUMNS[:, 0] - found.positions[2] * COLUMNS[:, 2]
+    assert found.positions[1] == pytest.approx(rest @ left / (rest @ rest + 0.09), abs=1e-5)
+
+
+def test_laplace_evidence_of_a_linear_model_is_exact() -> None:
+    found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-14)
+    fixed = Discrepancy(ROWS, float(ROWS), 0.09, 0.0900001)
+    evidence = laplace_evidence(
+        found.residual, found.jacobian, found.positions, np.zeros(3, dtype=int), fixed
+    )
+    covariance = 0.09 * np.eye(ROWS) + COLUMNS @ COLUMNS.T
+    density = multivariate_normal(np.zeros(ROWS), covariance).logpdf(DATA) + 0.5 * ROWS * np.log(2.0 * np.pi)
+    assert evidence.log_likelihood == pytest.approx(density, abs=1e-4)
