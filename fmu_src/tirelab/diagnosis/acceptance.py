@@ -1,8 +1,8 @@
 """Which fitted set is delivered: judged by its written tire, on the recordings as they were read.
 
-Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so what it leaves may be more.
-What is ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of
-no more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted.
+Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so it may leave more. What is
+ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of no
+more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset
 from ..preprocessing.kinematics import BoolArray, FloatArray
 
-LEAST = 0.01
-"""Probability from which a set is an alternative: one that is excluded at 99 % is none."""
+CREDIBLE = 0.97
+"""The verdict and its alternatives together hold this probability: the rate at which the truth should be among them."""
 
 MOST = 10
 """So many alternatives are listed, the likeliest first."""
@@ -39,20 +39,33 @@ class Alternative:
 
 
 def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alternative, ...]:
-    """Return the sets that are at least LEAST likely beside the verdict, the likeliest first.
+    """Return the sets that the recordings cannot rule out.
+
+    First those in which an effect that this motion cannot tell from one of the verdict's stands in its place, then the
+    likeliest others until they and the verdict hold the probability CREDIBLE.
 
     An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
     """
     best = explanation.model.names
-    found = [
-        Alternative(e.names, -e.log_evidence, reason_of(best, e.names, explanation, dataset), e.probability)
-        for e in explanation.evidence
-        if set(e.names) != set(best) and (e.probability >= LEAST or e.names in explanation.confounded)
-    ]
+    covered = explanation.probability
+    found = []
+    for e in explanation.evidence:
+        confounded = e.names in explanation.confounded
+        if set(e.names) == set(best) or (covered >= CREDIBLE and not confounded):
+            continue
+        covered += e.probability
+        reason = reason_of(best, e.names, explanation, dataset)
+        found.append(Alternative(e.names, -e.log_evidence, reason, e.probability))
+    found.sort(key=lambda a: a.names not in explanation.confounded)
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden
     ]
     return (*found[:MOST], *unseen)
+
+
+def confidence_of(explanation: Explanation) -> float:
+    """Return the probability of the verdict: shared alike with the sets that this motion cannot tell from it."""
+    return explanation.probability / (1.0 + len(explanation.confounded))
 
 
 def reason_of(names: Sequence[str], other: Sequence[str], explanation: Explanation, dataset: Dataset) -> str:

@@ -15,7 +15,7 @@ from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
 from .acceptance import accept
-from .alternatives import Alternative, alternatives_of
+from .alternatives import Alternative, alternatives_of, confidence_of
 from .discriminating_test import DiscriminatingTest, Limits, discriminate
 from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
@@ -61,6 +61,7 @@ def diagnose(
     before = [r.force - simulate(baseline, r) for r in fitted]
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
     alternatives = alternatives_of(explanation, dataset)
+    confidence = confidence_of(explanation)
     unexplained = unexplained_by(explanation.remainder)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(
@@ -75,12 +76,12 @@ def diagnose(
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset))
     return Verdict(
         effects=explanation.effects,
-        confidence=explanation.probability,
+        confidence=confidence,
         alternatives=alternatives,
         remainder=explanation.remainder,
         unexplained_by=unexplained,
         residual_models=remainder,
-        summary=summarise(explanation.effects, alternatives, remainder, explanation.probability, fit, test),
+        summary=summarise(explanation.effects, alternatives, remainder, confidence, fit, test),
         where=places,
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),

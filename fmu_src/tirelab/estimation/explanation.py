@@ -51,7 +51,7 @@ class Explanation:
 
     effects: of the set, the largest share first; probability: of the set; evidence: all sets, the likeliest first
     confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place
-    hidden: names of effects that the excitation cannot show, and why; remainder: what the effects leave beyond the noise
+    hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
     """
 

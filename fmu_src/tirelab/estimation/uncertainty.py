@@ -5,8 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..regressors.law import LAW
 from .fit import Fit
+from .problem import law_surfaces
+
+BEND_INDEX, TWIST_INDEX = 2, 3
+"""Where bend and twist stand among the values of a refitted law."""
 
 DETERMINED = 0.5
 """Part of the prior's standard deviation below which the recordings determine a parameter."""
@@ -27,20 +33,41 @@ class Estimate:
 
 
 def estimates_of(fit: Fit) -> tuple[Estimate, ...]:
-    """Return all fitted parameters.
+    """Return all fitted parameters; of a refitted law the changes of A and B on each surface.
 
     Their covariance is that of Laplace's approximation with the variance V of noise and discrepancy.
     """
     slopes = fit.jacobian
-    information = slopes.T @ slopes / fit.variance + np.eye(slopes.shape[1])
-    spread = np.sqrt(np.diag(np.linalg.inv(information))) if slopes.shape[1] else np.zeros(0)
+    if not slopes.shape[1]:
+        return ()
+    covariance = np.linalg.inv(slopes.T @ slopes / fit.variance + np.eye(slopes.shape[1]))
+    spread = np.sqrt(np.diag(covariance))
     found = []
     for p, position, own in zip(fit.problem.parameters, fit.positions, spread, strict=True):
+        if p.owner == LAW and p.index not in (BEND_INDEX, TWIST_INDEX):
+            continue
         value = p.value(float(position))
         slope = p.spread * (value if p.logarithm else 1.0)
-        found.append(
-            Estimate(
-                p.owner, p.label, p.unit, value, float(slope * own), bool(own < DETERMINED or p.group > 0)
-            )
-        )
-    return tuple(found)
+        determined = bool(own < DETERMINED or p.group > 0)
+        found.append(Estimate(p.owner, p.label, p.unit, value, float(slope * own), determined))
+    return (*_on_surfaces(fit, covariance), *found)
+
+
+def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[Estimate]:
+    """Return the changes of A and B on each surface: those common to all and its own together."""
+    at = {p.index: i for i, p in enumerate(fit.problem.parameters) if p.owner == LAW}
+    if not at:
+        return []
+    dataset = fit.problem.dataset
+    surfaces = law_surfaces(dataset)
+    found = []
+    for number, radius in enumerate(dataset.radii[:surfaces]):
+        where = "flat" if np.isinf(radius) else f"{100.0 * radius:.4g} cm"
+        where = where if surfaces == len(dataset.radii) else "all surfaces"
+        for first, name in ((0, "log factor on A"), (1, "change of B")):
+            parts = [i for i in (at.get(first), at.get(4 + 2 * number + first)) if i is not None]
+            weights = np.array([fit.problem.parameters[i].spread for i in parts])
+            value = float(weights @ fit.positions[parts])
+            deviation = float(np.sqrt(weights @ covariance[np.ix_(parts, parts)] @ weights))
+            found.append(Estimate(LAW, f"{name}, {where}", "1", value, deviation, determined=True))
+    return found

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
-from .dataset import Dataset
+from .dataset import Dataset, Experiment
 
 FloatArray = NDArray[np.float64]
 
@@ -65,22 +65,46 @@ class Excitation:
 
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
-    """Return what the motion of all recordings can show."""
-    returns, speeds = zip(*[_of_one(e.time, e.deflection, e.rate) for e in dataset.experiments], strict=True)
-    return Excitation(float(max(returns)), float(max(speeds)), timed)
+    """Return what the motion of all recordings can show; on one surface they show their speeds together."""
+    visits = [_visits(e) for e in dataset.experiments]
+    returns = [_share_within(v.time, v.cell) for v in visits]
+    together: dict[float, list[_Visits]] = {}
+    for experiment, own in zip(dataset.experiments, visits, strict=True):
+        together.setdefault(float(np.median(experiment.surface_radius)), []).append(own)
+    speeds = [
+        _spread_within(np.concatenate([v.speed for v in same]), np.concatenate([v.cell for v in same]))
+        for same in together.values()
+    ]
+    return Excitation(max(returns), max(speeds), timed)
 
 
-def _of_one(time: FloatArray, deflection: FloatArray, rate: FloatArray) -> tuple[float, float]:
-    span = (deflection - deflection.min()) / max(float(np.ptp(deflection)), 1e-300)
-    moving = np.abs(rate) > STILL * float(np.sqrt(np.mean(rate**2)))
-    direction = np.where(moving, np.where(rate > 0.0, 1, 2), 0)
-    cell = np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * direction
+@dataclass(frozen=True)
+class _Visits:
+    """The samples of one recording that move: time [s], speed [m/s], and the cell of deflection and direction."""
+
+    time: FloatArray
+    speed: FloatArray
+    cell: NDArray[np.int_]
+
+
+def _visits(e: Experiment) -> _Visits:
     # In a hold everything that relaxes passes for something slow: only visits on the way count.
-    passing = time[moving]
-    within = _within(passing, cell[moving]) / max(float(np.var(passing)), 1e-300) if passing.size else 0.0
-    speed = np.abs(rate[moving])
-    spread = np.sqrt(_within(speed, cell[moving])) / max(float(speed.mean()), 1e-300) if speed.size else 0.0
-    return within, float(spread)
+    moving = np.abs(e.rate) > STILL * float(np.sqrt(np.mean(e.rate**2)))
+    span = (e.deflection - e.deflection.min()) / max(float(np.ptp(e.deflection)), 1e-300)
+    cell = np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (e.rate > 0.0)
+    return _Visits(e.time[moving], np.abs(e.rate[moving]), cell[moving])
+
+
+def _share_within(values: FloatArray, cell: NDArray[np.int_]) -> float:
+    """Return the part of the variance of the values that is within the cells."""
+    return _within(values, cell) / max(float(np.var(values)), 1e-300) if values.size else 0.0
+
+
+def _spread_within(values: FloatArray, cell: NDArray[np.int_]) -> float:
+    """Return the standard deviation of the values within a cell over their mean."""
+    if not values.size:
+        return 0.0
+    return float(np.sqrt(_within(values, cell)) / max(float(values.mean()), 1e-300))
 
 
 def _within(values: FloatArray, cell: NDArray[np.int_]) -> float:
