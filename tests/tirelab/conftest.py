@@ -2,8 +2,11 @@
 
 import math
 import sys
+import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,6 +25,18 @@ def rig(tmp_path: Path) -> Path:
     """A clean recording in the house form."""
     time, deflection, force = loading()
     return write_rows(tmp_path / "flat.csv", HOUSE_FORM, time, deflection, [math.inf] * len(time), force)
+
+
+@pytest.fixture(scope="session")
+def cluster() -> Iterator[Any]:
+    """A Dask cluster in this process."""
+    distributed = pytest.importorskip("distributed")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the cluster's own sockets and event loop
+        with distributed.LocalCluster(
+            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+        ) as local:
+            yield local
 
 
 @dataclass(frozen=True)
@@ -53,6 +68,12 @@ def damped_run(tmp_path_factory: pytest.TempPathFactory) -> DampedRun:
 def unequal_verdict() -> Verdict:
     """Two rides that are no Recording: 500 N s/m of damping in the first, 200 N s/m in the second; nothing held out."""
     return diagnose([damped(1), damped(2, damping=200.0)])
+
+
+@pytest.fixture(scope="session")
+def alike_verdict() -> Verdict:
+    """Two rides with the same 500 N s/m of damping; nothing held out."""
+    return diagnose([damped(1), damped(2)])
 
 
 @pytest.fixture(scope="session")

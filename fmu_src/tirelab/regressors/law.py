@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
+from ..names import REFITTED_LAW
 from .dataset import Dataset
 from .signature import Signature, size_of
 
 FloatArray = NDArray[np.float64]
 
-LAW = "recalibration"
+LAW = REFITTED_LAW
 """The name under which a refitted law stands in a verdict."""
 
 SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)

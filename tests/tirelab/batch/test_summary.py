@@ -36,6 +36,8 @@ def verdict(names: str, confidence: float, **more: Any) -> Stated:
         tire=None,
         corrected_fmu=None,
         report=more.get("report"),
+        probabilities={},
+        remainder=None,
     )
 
 

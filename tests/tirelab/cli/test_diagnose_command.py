@@ -53,10 +53,10 @@ def known(damped_run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def check_contract(content: Any) -> None:
-    """The contract of diagnosis.json, schema 1, written out by hand."""
+    """The contract of diagnosis.json, schema 2, written out by hand."""
     top = {"schema", "verdict", "where", "fit", "tire", "corrected_fmu", "report"}
     assert content.keys() == top | {"held_out_by"}
-    assert content["schema"] == 1
+    assert content["schema"] == 2
     assert (content["tire"], content["corrected_fmu"], content["report"]) == (
         "tire.json",
         "BicycleTire.fmu",
@@ -65,9 +65,11 @@ def check_contract(content: Any) -> None:
 
     verdict = content["verdict"]
     keys = {"effects", "confidence", "alternatives", "unexplained", "summary", "separating_test"}
-    assert verdict.keys() == keys
+    assert verdict.keys() - {"corrections"} == keys | {"remainder"}
+    assert ("corrections" in verdict) == verdict["unexplained"]
     for effect in verdict["effects"]:
-        assert effect.keys() == {"name", "parameters", "share"}
+        assert effect.keys() == {"name", "parameters", "share", "probability"}
+        assert 0.0 <= effect["probability"] <= 1.0
         assert effect["name"] in {*CATALOGUE, "recalibration"}
         assert 0.0 <= effect["share"] <= 1.0
         for parameter in effect["parameters"].values():
@@ -80,6 +82,12 @@ def check_contract(content: Any) -> None:
         assert isinstance(names, list)
         assert all(isinstance(name, str) for name in names)
     assert isinstance(verdict["unexplained"], bool)
+    assert verdict["remainder"].keys() == {"share", "size", "rms", "depends_on"}
+    assert 0.0 <= verdict["remainder"]["share"] <= 1.0
+    assert verdict["remainder"]["size"] >= 0.0
+    assert verdict["remainder"]["rms"] >= 0.0
+    for dependence in verdict["remainder"]["depends_on"]:
+        assert dependence.keys() == {"by", "share", "from", "to"}
     assert isinstance(verdict["summary"], str)
     assert verdict["summary"]
     assert verdict["separating_test"] is None or isinstance(verdict["separating_test"], dict)
@@ -109,9 +117,10 @@ def test_the_files_are_written_and_keep_the_contract(done: tuple[Result, Path]) 
     result, out = done
     assert result.exit_code == 0, result.output
     names = {"tire.json", "BicycleTire.fmu", "diagnosis.json", "report.html"}
-    assert {f.name for f in out.iterdir()} == names
+    assert {f.name for f in out.iterdir()} - {"separating_test.csv"} == names
     content = json.loads((out / "diagnosis.json").read_text(), parse_constant=pytest.fail)
     check_contract(content)
+    assert (out / "separating_test.csv").exists() == (content["verdict"]["separating_test"] is not None)
     assert [e["name"] for e in content["verdict"]["effects"]] == ["viscous_damping"]
 
 
@@ -166,7 +175,7 @@ def test_progress_is_one_plain_line_for_each_stage_on_standard_error(
     # The whole diagnosis says the same, and the stages between.
     assert [s for s in damped_run.stages if s in shown] == shown
     between = damped_run.stages[2 : damped_run.stages.index("building the corrected FMU")]
-    assert {"estimating the noise", "fitting the parameters"} < set(between)
+    assert {"comparing the effects' signatures", "fitting the sets that can win"} < set(between)
     assert all("\n" not in s and s == s.strip() for s in damped_run.stages)
 
 
@@ -222,7 +231,7 @@ def test_alternatives_come_with_a_test_that_the_rig_can_run(
     assert "Recommended next test" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_folder_means_its_recordings(known: None, rides: Path, tmp_path: Path) -> None:
+def test_a_folder_means_its_recordings(known: None, damped_run: Any, rides: Path, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "separating_test.csv").write_text("of an earlier diagnosis")
     result = run(rides, "--out", tmp_path / "out")
@@ -230,7 +239,9 @@ def test_a_folder_means_its_recordings(known: None, rides: Path, tmp_path: Path)
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "ride.csv" in page
     assert "kept.csv" in page
-    assert not (tmp_path / "out" / "separating_test.csv").exists()
+    test = tmp_path / "out" / "separating_test.csv"
+    assert test.exists() == (damped_run.verdict.test is not None)
+    assert not test.exists() or test.read_text() != "of an earlier diagnosis"
 
 
 def test_an_fmu_that_does_something_else_is_reported(

@@ -59,8 +59,25 @@ def test_a_whole_diagnosis_is_read_back(damped_run: Any) -> None:
     stated = read_stated(damped_run.out)
     assert stated.names == {"viscous_damping"}
     assert stated.confidence == damped_run.verdict.confidence
+    assert stated.probabilities == {"viscous_damping": damped_run.verdict.effects[0].probability}
+    assert stated.remainder == damped_run.verdict.remainder.size
     assert stated.tire == damped_run.out / "tire.json"
     assert len(stated.places) == len(damped_run.verdict.where)
+
+
+def test_a_file_of_the_first_schema_states_its_confidence_of_every_effect(tmp_path: Path) -> None:
+    stated = read_stated(written(tmp_path))
+    assert stated.probabilities == {"inertia": 0.8}
+    assert stated.remainder is None
+
+
+def test_probabilities_and_the_remainder_are_read_back(tmp_path: Path) -> None:
+    effects = [{"name": "inertia", "probability": 0.99}, {"name": "force_lag", "probability": 0.6}]
+    stated = read_stated(
+        written(tmp_path, schema=2, verdict_effects=effects, verdict_remainder={"share": 0.1, "size": 0.4})
+    )
+    assert stated.probabilities == {"inertia": 0.99, "force_lag": 0.6}
+    assert stated.remainder == 0.4
 
 
 def test_nothing_and_something_unknown_have_names(tmp_path: Path) -> None:
@@ -88,7 +105,8 @@ def test_the_file_of_the_next_test_is_found(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"schema": 2}, "schema 2 is not 1"),
+        ({"schema": 3}, "schema 3 is none of 1, 2"),
+        ({"verdict_effects": [{"name": "inertia", "probability": 1.5}]}, "probability 1.5 does not lie"),
         ({"verdict_confidence": 1.5}, "confidence 1.5 does not lie between 0 and 1"),
         ({"verdict_effects": [{}]}, "KeyError: 'name'"),
         ({"where": [{"by": "time", "from": True, "to": 1.0, "unit": "s", "share": 1.0}]}, "True is no end"),

@@ -1,28 +1,20 @@
 """The test that tells alternatives apart."""
 
-import dataclasses
-
 import numpy as np
 import pytest
-from radialtire import CATALOGUE, TireModel
+from fits import model_of
 from scipy.stats import norm
 from tirelab.diagnosis.discriminating_test import DECISIVE, WAVEFORMS, Limits, discriminate
-from tirelab.engine.findings import FittedModel
-from tirelab.engine.refit import assemble, knobs_of
 
-FRICTION = knobs_of(("rate_independent_hysteresis",), (np.inf,), False, 0.025)
-SLIPPING = np.array([30.0, 0.0, 1e-3])
+SLIPPING = {"rate_independent_hysteresis": {"slip_force": 30.0, "reach": 1e-3}}
 
 
-def friction(name="rate_independent_hysteresis"):
-    """Fitted friction, under any name."""
-    tire = assemble(TireModel(), FRICTION, SLIPPING, (np.inf,))
-    return FittedModel((name,), tire, TireModel(), FRICTION, SLIPPING, (np.inf,))
+def friction(radius=np.inf):
+    return model_of(SLIPPING, radius)
 
 
 def viscous():
-    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (2500.0, 1.0, 0.0, 0.0)),))
-    return FittedModel(("viscous_damping",), tire, TireModel(), (), np.zeros(0), (np.inf,))
+    return model_of({"viscous_damping": {"damping": 2500.0}})
 
 
 def fitted(noise):
@@ -58,8 +50,7 @@ def test_the_contract_of_a_test():
 
 def test_the_sentence_says_what_to_drive_and_on_which_surface():
     """Limits and noise are round numbers, so that the sentence can be worked out by hand."""
-    concave = dataclasses.replace(friction(), radii=(-0.381,))
-    found = discriminate(viscous(), concave, 6.0, Limits(deepest=0.02, fastest=0.1, longest=60.0))
+    found = discriminate(viscous(), friction(-0.381), 6.0, Limits(deepest=0.02, fastest=0.1, longest=60.0))
     assert found.sentence.startswith(f"Drive {found.test.name} to ")
     assert "on a concave surface of radius 38.1 cm, at up to " in found.sentence
     assert "Then viscous damping and rate-independent hysteresis differ by " in found.sentence
@@ -67,11 +58,8 @@ def test_the_sentence_says_what_to_drive_and_on_which_surface():
 
 
 def test_the_baseline_is_called_so():
-    bare = FittedModel((), TireModel(), TireModel(), (), np.zeros(0), (np.inf,))
-    assert (
-        "Then the baseline tire and rate-independent hysteresis differ"
-        in discriminate(bare, friction(), 6.0, Limits()).sentence
-    )
+    told = discriminate(friction(), model_of({}), 6.0, Limits()).sentence
+    assert "Then rate-independent hysteresis and the baseline tire differ" in told
 
 
 def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_thousand():
@@ -80,8 +68,8 @@ def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_
 
 
 def test_the_same_force_under_other_names_cannot_be_told_apart():
-    """Friction against itself: whatever is driven, the refit takes up all of the difference."""
-    found = discriminate(friction(), friction("viscous_damping"), 6.0, Limits())
+    """Friction against friction and no offset: whatever is driven, the refit takes up all of the difference."""
+    found = discriminate(friction(), model_of({**SLIPPING, "force_offset": {}}), 6.0, Limits())
     assert not found.sufficient
     assert found.sentence.startswith(
         "No motion within the rig's limits separates rate-independent hysteresis from"

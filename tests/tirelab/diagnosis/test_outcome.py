@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 import pytest
+from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.outcome import Replayed, content_of, finite, page_content
 from tirelab.diagnosis.residual_model import ResidualModel
-from tirelab.engine.findings import Alternative, Evidence
+from tirelab.estimation.findings import Evidence
 from tirelab.recordings.recording import Recording
 
 TIME = np.arange(4.0)
@@ -26,7 +27,7 @@ def replayed(before: float, after: float) -> Replayed:
 def stated(test=None):
     fit = {"noise": 1.0, "before": 99.0, "after": 99.0, "held_out_before": 5.0, "held_out_after": None}
     return {
-        "schema": 1,
+        "schema": 2,
         "verdict": {"effects": [], "separating_test": test},
         "fit": fit,
         "held_out_by": "time block 1-2 s",
@@ -75,11 +76,11 @@ def test_the_page_shows_evidence_reasons_and_the_motion():
     motion = Test("sweep", TIME, TIME / 1e3, np.full(4, np.inf))
     test = DiscriminatingTest(motion, ((), ("inertia",)), 10.0, 1.0, "Drive it.")
     rows = (
-        Evidence(("inertia",), 0.0, 1.21, (), ()),
-        Evidence((), -3.0, 4.0, (), ()),
-        Evidence(("force_lag",), -math.inf, 1.0, (), ()),
+        Evidence(("inertia",), 0.0, 1.21, (), 0.95),
+        Evidence((), -3.0, 4.0, (), 0.05),
+        Evidence(("force_lag",), -math.inf, 1.0, (), 0.0),
     )
-    page = page_content(rows, (Alternative((), 3.0, "one surface"),), (), test)
+    page = page_content(rows, (Alternative((), 3.0, "one surface", 0.05),), (), test)
     assert [e["misfit"] for e in page["evidence"]] == pytest.approx([1.1, 2.0, 1.0])
     assert [e["remark"] for e in page["evidence"]] == [
         "the verdict",

@@ -55,3 +55,11 @@ def test_the_entry_of_diagnosis_json_keeps_its_keys():
     entry = regressed("rate", lambda t, x: 0.0 * t).to_dict()
     assert list(entry) == ["by", "unit", "repeats", "after", "held_out_after"]
     assert entry["unit"] == "m/s"
+
+
+@pytest.mark.parametrize(
+    ("by", "unit"),
+    [("deflection", "m"), ("rate", "m/s"), ("acceleration", "m/s^2"), ("time", "s"), ("force", "N")],
+)
+def test_every_coordinate_of_a_remainder_is_regressed_over_itself(by: str, unit: str) -> None:
+    assert regressed(by, lambda t, x: 0.0 * t).unit == unit

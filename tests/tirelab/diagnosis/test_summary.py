@@ -1,16 +1,17 @@
 """What is said in the verdict's sentences, and what is not."""
 
 import numpy as np
+from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.diagnosis.summary import summarise
 from tirelab.diagnosis.verdict import Fit
-from tirelab.engine.findings import Alternative, NamedEffect
+from tirelab.estimation.findings import NamedEffect
 
 NAN = float("nan")
 FELL = Fit(6.0, 26.4, 6.1, 26.5, 6.2, "recordings given")
 STAYED = Fit(6.0, 32.5, 32.5, 32.4, 32.4, "recordings given")
-FRICTION = NamedEffect("rate_independent_hysteresis", {}, 1.0)
+FRICTION = NamedEffect("rate_independent_hysteresis", {}, 1.0, 0.9)
 
 
 def regressed(by, repeats, after=6.4, held_out_after=6.5):
@@ -65,34 +66,38 @@ def test_of_several_regressions_the_one_that_repeats_best_is_stated():
 
 
 def test_one_reason_is_said_once_and_several_each():
-    same = [Alternative((n,), 1.0, "one surface") for n in ("viscous_damping", "rate_independent_hysteresis")]
+    same = [
+        Alternative((n,), 1.0, "one surface", 0.2) for n in ("viscous_damping", "rate_independent_hysteresis")
+    ]
     told = summarise((), same, (), 0.4, STAYED)
     assert (
         "These recordings cannot rule out viscous damping or rate-independent hysteresis. One surface."
         in told
     )
-    told = summarise((), [same[0], Alternative(("force_lag",), 1.0, "one rate")], (), 0.4, STAYED)
+    told = summarise((), [same[0], Alternative(("force_lag",), 1.0, "one rate", 0.2)], (), 0.4, STAYED)
     assert "These recordings cannot rule out viscous damping (one surface) or force lag (one rate)." in told
 
 
 def test_what_may_act_in_addition_is_separated_from_what_may_replace_the_verdict():
     reason = "one pressure"
-    beside = [Alternative((n, "inertia"), 6.0, reason) for n in ("gas_compression", "series_compliance")]
-    told = summarise((NamedEffect("inertia", {}, 1.0),), (), (), 0.9, FELL)
+    beside = [
+        Alternative((n, "inertia"), 6.0, reason, 0.05) for n in ("gas_compression", "series_compliance")
+    ]
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), (), (), 0.9, FELL)
     assert "may" not in told
-    told = summarise((NamedEffect("inertia", {}, 1.0),), beside, (), 0.9, FELL)
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), beside, (), 0.9, FELL)
     assert told.endswith(
         "In addition, gas compression or series compliance may act without being seen. One pressure."
     )
-    instead = Alternative(("force_lag",), 2.0, "one rate")
-    told = summarise((NamedEffect("inertia", {}, 1.0),), [instead, *beside], (), 0.9, FELL)
+    instead = Alternative(("force_lag",), 2.0, "one rate", 0.2)
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), [instead, *beside], (), 0.9, FELL)
     assert "These recordings cannot rule out force lag. One rate. In addition, gas compression" in told
 
 
 def test_that_no_motion_separates_the_alternatives_is_said():
     motion = Test("sweep", np.arange(3.0), np.zeros(3), np.full(3, np.inf))
     between = (("recalibration",), ("series_compliance",))
-    alternatives = [Alternative(between[1], 1.0, "one surface")]
+    alternatives = [Alternative(between[1], 1.0, "one surface", 0.2)]
     worthless = DiscriminatingTest(motion, between, 0.3, 0.01, "No motion separates them.")
     assert summarise((), alternatives, (), 0.4, STAYED, worthless).endswith("No motion separates them.")
     telling = DiscriminatingTest(motion, between, 30.0, 1.0, "Drive it.")

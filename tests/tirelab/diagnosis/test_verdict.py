@@ -37,14 +37,19 @@ class Cells(HTMLParser):
             self.cells[-1] += data
 
 
+def _others(verdict: Verdict) -> str:
+    number = len(verdict.alternatives)
+    return f", {number} alternative{'s' if number > 1 else ''}" if number else ""
+
+
 def test_the_repr_is_one_short_line(damped_run, complete_verdict, one_rate_verdict):
     fit = damped_run.verdict.fit
     assert repr(damped_run.verdict) == (
         f"Verdict('Left out: viscous damping', {100 * damped_run.verdict.confidence:.0f} % sure, "
-        f"{fit.before:.3g} -> {fit.after:.3g} N, noise {fit.noise:.3g} N)"
+        f"{fit.before:.3g} -> {fit.after:.3g} N, noise {fit.noise:.3g} N{_others(damped_run.verdict)})"
     )
     assert repr(complete_verdict).startswith("Verdict('Nothing is missing', ")
-    assert repr(one_rate_verdict).endswith(f" N, {len(one_rate_verdict.alternatives)} alternatives)")
+    assert repr(one_rate_verdict).endswith(f" N{_others(one_rate_verdict)})")
     assert len(repr(one_rate_verdict)) < 160
 
 
@@ -74,6 +79,8 @@ def test_the_dictionary_is_the_content_of_diagnosis_json(damped_run):
     written = json.loads((damped_run.out / "diagnosis.json").read_text())
     stated = json.loads(json.dumps(damped_run.verdict.to_dict(), allow_nan=False))
     assert list(stated) == list(written)
+    if test := written["verdict"]["separating_test"]:
+        assert test.pop("file") == "separating_test.csv"
     for name in ("schema", "verdict", "where", "held_out_by"):
         assert stated[name] == written[name]
     assert stated["fit"] == pytest.approx(written["fit"], rel=1e-9)

@@ -13,7 +13,6 @@ from tirelab.preprocessing.data_checks import (
     check_signal,
 )
 from tirelab.preprocessing.dataset import dataset_of
-from tirelab.preprocessing.noise_model import first_guess
 from tirelab.recordings.recording import Recording
 
 TIME = np.arange(2000) * 0.01
@@ -32,12 +31,8 @@ def refused(*recordings: Recording) -> str:
     return str(caught.value)
 
 
-def checked(**channels: np.ndarray) -> None:
-    dataset = dataset_of([recording(**channels)], TireModel())
-    residual = dataset.experiments[0].force - dataset.experiments[0].elastic(
-        dataset.experiments[0].motion.deflection
-    )
-    check_signal(dataset, [first_guess(residual)])
+def checked(level: float = 0.0, **channels: np.ndarray) -> None:
+    check_signal(dataset_of([recording(**channels)], TireModel()), [level])
 
 
 def first(samples: int) -> dict[str, np.ndarray]:
@@ -88,3 +83,9 @@ def test_a_signal_without_a_tire_in_it_is_refused(channels: dict[str, np.ndarray
     with pytest.raises(PoorRecording) as caught:
         checked(**channels)
     assert reason in str(caught.value)
+
+
+def test_a_force_that_is_noise_for_the_most_part_is_refused() -> None:
+    checked(0.5 * float(np.std(FORCE)))
+    with pytest.raises(PoorRecording, match="the force of recording 1 does not follow its deflection"):
+        checked(float(np.std(FORCE)))

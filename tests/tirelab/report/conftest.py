@@ -79,12 +79,13 @@ def diagnosed(
     before = [simulate(TireModel(), r) for r in made]
     after = [simulate(corrected, r) for r in made]
     diagnosis = {
-        "schema": 1,
+        "schema": 2,
         "verdict": {
             "effects": effects,
             "confidence": 0.95,
             "alternatives": [],
             "unexplained": False,
+            "remainder": {"share": 0.0, "size": 0.1, "rms": 0.6, "depends_on": []},
             "summary": "Two sentences would stand here. They tell the error before and after.",
             "separating_test": None,
             **{k: v for k, v in verdict.items() if k not in _BESIDE},
@@ -125,7 +126,7 @@ def _where() -> list[dict[str, Any]]:
 def effect(name: str, share: float, **parameters: tuple[float, float | None, str]) -> dict[str, Any]:
     """An entry of the verdict's effects."""
     told = {p: {"value": v, "std": s, "unit": u} for p, (v, s, u) in parameters.items()}
-    return {"name": name, "parameters": told, "share": share}
+    return {"name": name, "parameters": told, "share": share, "probability": 0.97}
 
 
 def nothing_missing() -> Diagnosed:

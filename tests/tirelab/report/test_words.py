@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tirelab.engine.refit import knobs_of
+from fits import fit_of
+from tirelab.estimation.uncertainty import estimates_of
 from tirelab.report import titles, words
 
 
@@ -112,7 +113,7 @@ def test_sets_are_named_whether_known_or_not() -> None:
 
 def test_every_parameter_of_a_refitted_law_has_a_meaning() -> None:
     """ "log factor on A" and "change of B", by which the law of each surface is fitted, had none."""
-    labels = [knob.label for knob in knobs_of(("recalibration",), (float("inf"), -0.381), True, 0.02)]
+    labels = [e.name for e in estimates_of(fit_of({"recalibration": {}}, (float("inf"), -0.381)))]
     assert len(labels) >= 5
     for label in labels:
         assert words.meaning("recalibration", label), label

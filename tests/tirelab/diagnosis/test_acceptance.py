@@ -1,0 +1,122 @@
+"""What is delivered is never worse than something simpler: each guarantee is broken on purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from drives import Drive, damped, flat_force
+from radialtire import CATALOGUE, TireModel
+from tirelab.diagnosis.acceptance import CONSIDERED, accept
+from tirelab.preprocessing.dataset import dataset_of
+
+FITTED, KEPT = damped(1, samples=2000), damped(2, samples=2000)
+BARE = damped(3, damping=0.0, samples=2000)
+"""A ride on the baseline tire: any damping is wrong on it."""
+
+
+def damper(damping: float) -> TireModel:
+    return TireModel(effects=((CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0)),))
+
+
+@dataclass(frozen=True)
+class Made:
+    """An explanation by hand: names and what the written tire leaves [N]."""
+
+    names: tuple[str, ...]
+    left: float
+    tire: TireModel
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return self.names
+
+    @property
+    def model(self) -> Any:
+        return SimpleNamespace(tire=self.tire, baseline=TireModel(), names=self.names)
+
+    @property
+    def residuals(self) -> tuple[Any, ...]:
+        return (np.full(FITTED.time.size, self.left),)
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """Explanations, the likeliest first."""
+
+    sets: tuple[Made, ...]
+
+    @property
+    def evidence(self) -> list[Made]:
+        return list(self.sets)
+
+    def of(self, names: Sequence[str]) -> Made:
+        return next(s for s in self.sets if set(s.names) == set(names))
+
+
+def made(names: str, left: float, damping: float = 0.0) -> Made:
+    return Made(tuple(names.split()), left, damper(damping) if damping else TireModel())
+
+
+def delivered(*sets: Made, held_out: Drive = KEPT) -> Any:
+    before = [FITTED.force - flat_force(FITTED.deflection)]
+    ranked: Any = Ranked(sets)
+    return accept(ranked, [FITTED], [held_out], dataset_of([FITTED], TireModel()), before)
+
+
+def test_the_likeliest_set_is_delivered() -> None:
+    chosen, held_out = delivered(
+        made("viscous_damping", 5.0, 500.0), made("inertia", 5.0, 400.0), made("", 15.0)
+    )
+    assert chosen.names == ("viscous_damping",)
+    # The damping with which the held-out ride was made leaves its noise of 5 N.
+    assert held_out.after == pytest.approx(5.0, rel=0.05)
+
+
+@pytest.mark.parametrize(("left", "names"), [(5.2, ("inertia", "force_lag")), (10.0, ("viscous_damping",))])
+def test_a_set_that_leaves_clearly_more_than_a_smaller_one_is_refused(
+    left: float, names: tuple[str, ...]
+) -> None:
+    chosen, _ = delivered(
+        made("inertia force_lag", left, 500.0), made("viscous_damping", 5.0, 500.0), made("", 15.0)
+    )
+    assert chosen.names == names
+
+
+def test_a_set_that_leaves_more_than_a_larger_one_is_not_refused() -> None:
+    chosen, _ = delivered(
+        made("viscous_damping", 6.0, 500.0), made("inertia force_lag", 5.0, 500.0), made("", 15.0)
+    )
+    assert chosen.names == ("viscous_damping",)
+
+
+def test_a_set_that_is_worse_than_the_baseline_on_held_out_data_is_refused() -> None:
+    chosen, held_out = delivered(made("viscous_damping", 5.0, 500.0), made("", 15.0), held_out=BARE)
+    assert chosen.names == ()
+    assert held_out.after == held_out.before == pytest.approx(5.0, rel=0.05)
+
+
+def test_in_the_place_of_a_refused_set_comes_the_next_one() -> None:
+    chosen, _ = delivered(
+        made("viscous_damping", 5.0, -500.0), made("inertia", 5.0, 500.0), made("", 15.0), held_out=KEPT
+    )
+    assert chosen.names == ("inertia",)
+
+
+def test_nothing_is_always_accepted() -> None:
+    chosen, held_out = delivered(made("", 15.0), made("viscous_damping", 5.0, 500.0))
+    assert chosen.names == ()
+    assert held_out.after == held_out.before
+    wrong = [made(name, 5.0, -500.0) for name in list(CATALOGUE)[: CONSIDERED + 2]]
+    assert delivered(*wrong, made("", 15.0))[0].names == ()
+
+
+def test_a_set_that_is_worse_than_the_baseline_where_it_was_fitted_is_refused_however_unlikely_nothing_is() -> (
+    None
+):
+    worse = [made(name, 30.0, 500.0) for name in list(CATALOGUE)[: CONSIDERED + 2]]
+    assert delivered(*worse, made("", 15.0))[0].names == ()

@@ -1,0 +1,87 @@
+"""The entry of the engine on recordings of a tire that we made: 500 N s/m of damping under 5 N of noise."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drives import damped, flat_force, ride
+from radialtire import TireModel
+from tirelab.estimation.explanation import CATALOGUE_NAMES, Explanation, explain_misfit
+
+RIDES = (damped(1, samples=3000), damped(2, samples=3000))
+
+
+@pytest.fixture(scope="module")
+def found() -> Explanation:
+    return explain_misfit(RIDES, TireModel(), CATALOGUE_NAMES, lambda stage: None)
+
+
+def test_the_effect_is_named_with_its_size_and_nothing_else(found: Explanation) -> None:
+    (effect,) = found.effects
+    assert effect.name == "viscous_damping"
+    assert effect.parameters["damping"].value == pytest.approx(500.0, rel=0.03)
+    assert effect.parameters["damping"].determined
+    assert effect.share > 0.95
+    assert effect.probability > 0.99
+    assert not found.remainder.unexplained
+
+
+def test_the_sets_are_told_with_probabilities_that_add_up_to_one(found: Explanation) -> None:
+    assert found.evidence[0].names == found.model.names
+    assert found.evidence[0].log_evidence == 0.0
+    assert found.probability == found.evidence[0].probability
+    assert sum(e.probability for e in found.evidence) == pytest.approx(1.0)
+    logs = [e.log_evidence for e in found.evidence]
+    assert logs == sorted(logs, reverse=True)
+    for effect in found.effects:
+        own = sum(e.probability for e in found.evidence if effect.name in e.names)
+        assert effect.probability == pytest.approx(own)
+
+
+def test_the_noise_floor_is_that_of_the_recordings(found: Explanation) -> None:
+    # 5 N on the force and 5 um at 80 kN/m.
+    for floor in found.floors:
+        assert floor.level == pytest.approx(np.hypot(5.0, 0.4), rel=0.06)
+
+
+def test_what_is_left_is_left_by_the_written_tire(found: Explanation) -> None:
+    nothing = found.of(())
+    for drive, left, bare in zip(RIDES, found.residuals, nothing.residuals, strict=True):
+        assert bare == pytest.approx(drive.force - flat_force(drive.deflection), abs=1e-6)
+        assert float(np.std(left)) == pytest.approx(5.0, rel=0.06)
+    assert nothing.effects == ()
+    assert nothing.remainder.unexplained
+
+
+def test_a_set_that_was_not_fitted_is_refused(found: Explanation) -> None:
+    with pytest.raises(ValueError, match="no fit of phlogiston was made"):
+        found.of(("phlogiston",))
+    assert found.alternative_model(("phlogiston",)) is None
+
+
+def test_fitted_again_without_a_recording_it_is_fitted_to_the_others() -> None:
+    """Twice the damping in the second ride, of which nothing is used."""
+    rides = (RIDES[0], damped(2, damping=1000.0, samples=3000))
+    both = explain_misfit(rides, TireModel(), CATALOGUE_NAMES, lambda stage: None).of(("viscous_damping",))
+    again = both.refitted([np.ones(3000, dtype=bool), np.zeros(3000, dtype=bool)])
+    ((_, values),) = again.tire.effects
+    assert values[0] == pytest.approx(500.0, rel=0.05)
+    rate = float(np.sqrt(np.mean(ride(2, samples=3000)[2] ** 2)))
+    missed = float(np.sqrt(np.mean(again.residuals[1] ** 2)))
+    assert missed == pytest.approx(np.hypot(500.0 * rate, 5.0), rel=0.05)
+
+
+def test_only_what_the_catalogue_holds_is_found() -> None:
+    catalogue = ("force_offset", "recalibration")
+    said: list[str] = []
+    found = explain_misfit(RIDES[:1], TireModel(), catalogue, said.append)
+    assert {n for e in found.evidence for n in e.names} <= set(catalogue)
+    assert said == ["comparing the effects' signatures", "fitting the sets that can win"]
+
+
+def test_without_a_time_nothing_that_depends_on_it_is_found() -> None:
+    found = explain_misfit(
+        RIDES[:1], TireModel(), ("viscous_damping", "warm_up", "force_offset"), lambda s: None, timed=False
+    )
+    assert dict(found.hidden) == dict.fromkeys(("viscous_damping", "warm_up"), "the recording has no time")
+    assert {n for e in found.evidence for n in e.names} <= {"force_offset"}
