@@ -48,6 +48,10 @@ UNKNOWN_RATE, MOST_BLURRED = 0.25, 0.3
 BENDS = (0.5, 0.3, 0.15)
 
 
+BEYOND = 1e9
+"""What a set leaves whose force is no number."""
+
+
 @dataclass(frozen=True)
 class Hidden:
     """What is hidden and the recordings of it, free of noise.
@@ -202,12 +206,15 @@ class _Model:
         bench = Bench(tire, tuple(effects))
         parts = []
         for motion, force in zip(self.hidden.motions, self.hidden.forces, strict=True):
-            miss = motion.recorded(bench.force(motion)) - force
+            try:
+                miss = motion.recorded(bench.force(motion)) - force
+            except OverflowError:  # a parameter far from every tire
+                miss = np.full_like(force, BEYOND)
             if motion.blurred is not None:
                 miss = np.where(motion.recorded(motion.blurred), 0.0, miss)
             stiffness = _stiffness(self.hidden.law, motion)
             parts.append(whitened(miss, self.hidden.instrument, motion.sample_step, stiffness))
-        return np.nan_to_num(np.concatenate(parts), nan=1e9, posinf=1e9, neginf=-1e9)
+        return np.nan_to_num(np.concatenate(parts), nan=BEYOND, posinf=BEYOND, neginf=-BEYOND)
 
     def begun(self) -> tuple[float, "_Model", FloatArray]:
         """Start values whose strengths are projections of the misfit on each effect, and what they leave."""

@@ -14,10 +14,10 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from radialtire import TireModel, read_tire
-from tirelab.diagnosis.diagnose import diagnose
-from tirelab.diagnosis.verdict import Verdict
+from tirelab.estimation.diagnosis import Diagnosis, diagnose
 from tirelab.recordings.recording import Recording, read_recording
 
 NOBODY = {"none", "unknown"}
@@ -31,7 +31,7 @@ class Case:
     recordings: list[Recording]
     held_out: list[Recording]
     tire: TireModel
-    key: dict[str, object]
+    key: dict[str, Any]
 
 
 def cases(root: Path, only: str) -> Iterator[Case]:
@@ -48,14 +48,14 @@ def cases(root: Path, only: str) -> Iterator[Case]:
             )
 
 
-def score(case: Case, found: Verdict, seconds: float) -> dict[str, object]:
+def score(case: Case, found: Diagnosis, seconds: float) -> dict[str, Any]:
     """Return the line of a case."""
     said = {e.name for e in found.effects}
-    right = [set(names) - NOBODY for names in case.key["right"]]  # type: ignore[attr-defined]
-    unknown = any("unknown" in names for names in case.key["right"])  # type: ignore[attr-defined]
-    listed = [said, *(set(a.names) for a in found.alternatives)]
-    noise = float(case.key.get("noise") or found.fit.noise)  # type: ignore[arg-type]
-    f = found.fit
+    right = [set(names) - NOBODY for names in case.key["right"]]
+    unknown = any("unknown" in names for names in case.key["right"])
+    listed = [said, *(set(a.names) for a in found.alternatives if a.probability > 0.01 or a.instead)]
+    noise = float(case.key.get("noise") or found.figures.floor)
+    f = found.figures
     return {
         "case": case.name,
         "said": sorted(said),
@@ -67,7 +67,7 @@ def score(case: Case, found: Verdict, seconds: float) -> dict[str, object]:
         "extra_sure": sorted(e.name for e in found.effects if e.name not in right[0] and e.probability > 0.5),
         "missing": sorted(right[0] - said),
         "confidence": found.confidence,
-        "inclusion": {e.name: round(e.probability, 3) for e in found.effects},
+        "inclusion": {n: round(p, 3) for n, p in found.inclusion.items() if p > 0.02},
         "shares": {e.name: round(e.share, 4) for e in found.effects},
         "remainder": found.remainder.size,
         "remainder_share": found.remainder.share,
@@ -76,30 +76,31 @@ def score(case: Case, found: Verdict, seconds: float) -> dict[str, object]:
         "before": f.before / noise,
         "held_before": f.held_out_before / noise,
         "held_after": f.held_out_after / noise,
-        "floor": f.noise / noise,
+        "floor": f.floor / noise,
         "unknown": unknown,
         "unexplained": found.remainder.unexplained,
         "strict": (said | ({"unknown"} if found.remainder.unexplained else set()))
-        in [set(n) - {"none"} for n in case.key["right"]],  # type: ignore[attr-defined]
+        in [set(n) - {"none"} for n in case.key["right"]],
         "kind": case.key.get("kind", ""),
         "quarter": f.held_out_after <= 0.25 * f.held_out_before + noise,
-        "fits": found.compared,
+        "fits": len(found.ranking.fits),
         "alternatives": [
-            [list(a.names), round(a.probability, 3), round(a.log_odds, 3)] for a in found.alternatives[:4]
+            [list(a.names), round(a.probability, 3), round(a.left, 3)] for a in found.alternatives[:4]
         ],
         "seconds": seconds,
     }
 
 
-def told(line: dict[str, object]) -> str:
+def told(line: dict[str, Any]) -> str:
     """Return a case in one row."""
     mark = "OK " if line["exact"] else ("in " if line["all_named"] else ("alt" if line["listed"] else "-- "))
     return (
-        f"{mark} {line['case']:28.28s} {'+'.join(line['said']) or 'none':60.60s} p={line['confidence']:.2f} "  # type: ignore[arg-type,str-bytes-safe]
-        f"left {line['left']:6.2f} of {line['before']:6.1f} held {line['held_after']:6.2f} of {line['held_before']:6.1f} "
-        f"rem {line['remainder']:6.2f} {100 * line['remainder_share']:5.1f}% floor {line['floor']:.2f} "  # type: ignore[operator]
+        f"{mark} {line['case']:28.28s} {'+'.join(line['said']) or 'none':60.60s} p={line['confidence']:.2f} "
+        f"left {line['left']:6.2f} of {line['before']:6.1f} held {line['held_after']:6.2f} "
+        f"of {line['held_before']:6.1f} "
+        f"rem {line['remainder']:6.2f} {100 * line['remainder_share']:5.1f}% floor {line['floor']:.2f} "
         f"{line['fits']:3d} fits {line['seconds']:5.1f} s"
-        + ("" if line["exact"] else f"   truth {'+'.join(line['right'])}")  # type: ignore[arg-type]
+        + ("" if line["exact"] else f"   truth {'+'.join(line['right'])}")
     )
 
 
@@ -128,13 +129,13 @@ def main() -> int:
     keys = ("exact", "strict", "all_named", "listed")
     exact, strict, named, listed = (sum(bool(x[k]) for x in lines) for k in keys)
     sure = sum(bool(x["extra_sure"]) for x in lines)
-    brier = sum((float(x["confidence"]) - bool(x["exact"])) ** 2 for x in lines) / n  # type: ignore[arg-type]
+    brier = sum((float(x["confidence"]) - bool(x["exact"])) ** 2 for x in lines) / n
     rate = exact / n
-    seconds = sorted(float(x["seconds"]) for x in lines) or [0.0]  # type: ignore[arg-type]
-    print(
-        f"{len(lines)} cases: exact {exact} (with unknown {strict}), all named {named}, verdict or listed {listed}, extra above half {sure}; "
-        f"Brier {brier:.3f} against {rate * (1 - rate):.3f}; seconds median {seconds[len(seconds) // 2]:.1f}, most {seconds[-1]:.1f}"
-    )
+    seconds = sorted(float(x["seconds"]) for x in lines) or [0.0]
+    middle, most = seconds[len(seconds) // 2], seconds[-1]
+    print(f"{len(lines)} cases: exact {exact} (with unknown {strict}), all named {named}", end=", ")
+    print(f"verdict or listed {listed}, extra above half {sure}", end="; ")
+    print(f"Brier {brier:.3f} against {rate * (1 - rate):.3f}; seconds median {middle:.1f}, most {most:.1f}")
     return 0
 
 

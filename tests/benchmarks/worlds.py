@@ -2,8 +2,8 @@
 
 loud      effects 30 to 1000 times the noise: the rig's own trials with a load cell thirty times as quiet
 press     the first file of a slow press: one to three triangles at one speed; the baseline is identified from it
-foreign   the catalogue's physics in forms that it does not hold: uneven and root dampers, breakaway friction, a stop with
-          a loop, a leak through an orifice, softening that heals
+foreign   the catalogue's physics in forms that it does not hold: uneven and root dampers, breakaway friction, a stop
+          with a loop, a leak through an orifice, softening that heals
 outside   what the catalogue lacks altogether
 
 Each case is a folder as `bench_engine.py` reads it.

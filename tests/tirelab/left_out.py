@@ -11,7 +11,7 @@ import numpy as np
 from drives import Drive, FloatArray
 from radialtire import CATALOGUE, Recalibrated, TireModel
 from scipy.ndimage import uniform_filter1d
-from tirelab.diagnosis.diagnose import CATALOGUE_NAMES, diagnose
+from tirelab.diagnosis.diagnose import catalogue_names, diagnose
 from tirelab.diagnosis.verdict import Verdict
 from tirelab.simulation.simulate import simulate
 
@@ -140,9 +140,9 @@ def outcome(name: str, seed: int = 1) -> Outcome:
     """Return what is said of clear recordings of `name`."""
     drives = recordings(name, seed)
     return Outcome(
-        name, diagnose(drives), diagnose(drives, catalogue=[n for n in CATALOGUE_NAMES if n != name])
+        name, diagnose(drives), diagnose(drives, catalogue=[n for n in catalogue_names() if n != name])
     )
 
 
 if __name__ == "__main__":
-    print("\n".join(outcome(name).row for name in CATALOGUE_NAMES))
+    print("\n".join(outcome(name).row for name in catalogue_names()))

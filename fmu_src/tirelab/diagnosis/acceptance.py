@@ -28,12 +28,12 @@ def accept(
     dataset: Dataset,
     before: Sequence[FloatArray],
 ) -> tuple[Explanation, HeldOut]:
-    """Return the likeliest set that is not refused, and what it does on held-out data.
+    """Return the first of the sets in their order that is not refused, and what it does on held-out data.
 
     held_out: recordings kept from the fit; without any, a part of `recordings` is (see `held_out.split`)
     before [N]: what the baseline leaves of each recording
     """
-    likely = [explanation.of(e.names) for e in explanation.evidence[:CONSIDERED]]
+    likely = [explanation.of(names) for names in explanation.in_order(CONSIDERED)]
     left = [rmse(e.residuals) for e in likely]
     for chosen, own in zip(likely, left, strict=True):
         smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))

@@ -9,7 +9,7 @@ import numpy as np
 from radialtire import TireModel
 
 from ..computing.threads import one_thread
-from ..estimation.explanation import CATALOGUE_NAMES, Explanation, explain_misfit
+from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
@@ -36,25 +36,26 @@ def diagnose(
     baseline: TireModel = TireModel(),  # noqa: B008
     *,
     held_out: Recorded | Sequence[Recorded] = (),
-    catalogue: Sequence[str] = CATALOGUE_NAMES,
+    catalogue: Sequence[str] | None = None,
     limits: Limits | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Verdict:
     """Return what the `baseline` tire leaves out of one recording or several.
 
     held_out: recordings that only check the correction (without any, the fit is repeated without a part of
-    `recordings`, see `held_out.split`); catalogue: names of the effects that may be found (what an effect outside it
-    does is something unknown); limits: of the rig that would drive the next test; progress: called with a sentence for
-    each stage
+    `recordings`, see `held_out.split`); catalogue: names of the effects that may be found, None for all (what an effect
+    outside it does is something unknown); limits: of the rig that would drive the next test; progress: called with a
+    sentence for each stage
 
     Raises PoorRecording where the recordings are too short or too poor, ValueError for an unknown name in `catalogue`.
     """
     fitted, kept = _several(recordings), _several(held_out)
     report = progress or (lambda sentence: None)
-    _check_names(catalogue)
+    allowed = catalogue_names() if catalogue is None else tuple(catalogue)
+    _check_names(allowed)
     check_recordings(fitted)
     dataset = dataset_of(fitted, baseline)
-    explanation = explain_misfit(fitted, baseline, catalogue, report)
+    explanation = explain_misfit(fitted, baseline, allowed, report)
     levels = [floor.level for floor in explanation.floors]
     check_signal(dataset, levels)
     report("validating the correction on held-out data")
@@ -111,10 +112,10 @@ def _several(given: Recorded | Sequence[Recorded]) -> Sequence[Recorded]:
 
 
 def _check_names(catalogue: Sequence[str]) -> None:
-    unknown = set(catalogue) - set(CATALOGUE_NAMES)
+    unknown = set(catalogue) - set(catalogue_names())
     if unknown:
         raise ValueError(
-            f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(CATALOGUE_NAMES)}"
+            f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(catalogue_names())}"
         )
 
 
@@ -155,4 +156,4 @@ def _limits_of(dataset: Dataset) -> Limits:
     return Limits(deepest=dataset.max_deflection, fastest=max(FASTEST, fastest))
 
 
-__all__ = ["CATALOGUE_NAMES", "PoorRecording", "Recorded", "diagnose"]
+__all__ = ["PoorRecording", "Recorded", "catalogue_names", "diagnose"]

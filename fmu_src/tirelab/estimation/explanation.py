@@ -17,7 +17,7 @@ from radialtire import TireModel
 from ..preprocessing.dataset import Recorded
 from ..regressors.dataset import Dataset, dataset_of
 from ..regressors.excitation import Excitation, excitation_of
-from ..regressors.law import CANDIDATES, LAW, law_signature
+from ..regressors.law import LAW, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.signature import in_other_noise, signatures_of
 from ..selection.discrepancy import FLOOR_OF_SIGNATURES, discrepancy_of
@@ -35,14 +35,12 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 Progress = Callable[[str], None]
 
-CATALOGUE_NAMES: tuple[str, ...] = (LAW, *CANDIDATES)
-"""Every effect that a verdict may name."""
+
+NEAR = 4.0
+"""Log posterior odds of the likeliest set over the median one up to which the latter is preferred."""
 
 AS_GOOD = 0.75
 """Part of what an effect explains that another must explain to be an alternative to it."""
-
-TEMPERATURE = 2.0
-"""Tempering of the posterior odds between sets: fits that stop early and forms that are not quite right."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +78,18 @@ class Explanation:
             raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made")
         return _explanation(self._recordings, self._ranking, fit, self.excitation, self.hidden)
 
+    def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
+        """Return the likeliest sets; before them that of all effects that are likelier there than not, if it is near.
+
+        M. M. Barbieri, J. O. Berger, "Optimal predictive model selection", Ann. Stat. 32 (2004) 870-897.
+        """
+        ranking = self._ranking
+        likely = [fit.names for fit in ranking.fits[:most]]
+        median = ranking.of(frozenset(n for n, p in ranking.inclusion().items() if p > 0.5))
+        if median is not None and ranking.behind(median) < NEAR:
+            likely = [median.names, *(names for names in likely if names != median.names)]
+        return tuple(likely)
+
     def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
         """Return the set fitted to the samples `kept` of each recording alone: a beginning, all or none."""
         fit = self.model.fit
@@ -94,6 +104,11 @@ class Explanation:
         return None if fit is None else FittedModel(fit)
 
 
+def catalogue_names() -> tuple[str, ...]:
+    """Return the names of every effect that a verdict may name."""
+    return (LAW, *candidates())
+
+
 def explain_misfit(
     recordings: Sequence[Recorded],
     baseline: TireModel,
@@ -104,12 +119,12 @@ def explain_misfit(
 ) -> Explanation:
     """Return what explains the misfit of the `baseline` tire on `recordings`.
 
-    catalogue: names of the effects that may be found, of CATALOGUE_NAMES; progress: called with a sentence for each
+    catalogue: names of the effects that may be found, of `catalogue_names`; progress: called with a sentence for each
     stage; timed: whether the times of the samples were measured
     """
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=timed)
-    allowed = [name for name in CANDIDATES if name in catalogue]
+    allowed = [name for name in candidates() if name in catalogue]
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
@@ -133,9 +148,8 @@ def _explanation(
     excitation: Excitation,
     hidden: tuple[tuple[str, str], ...],
 ) -> Explanation:
-    weights = np.exp((np.array(ranking.posteriors) - ranking.posteriors[0]) / TEMPERATURE)
-    weights /= weights.sum()
-    pairs = list(zip(ranking.fits, weights.tolist(), strict=True))
+    pairs = list(zip(ranking.fits, ranking.weights().tolist(), strict=True))
+    included = ranking.inclusion()
     effects = [
         NamedEffect(
             name,
@@ -145,7 +159,7 @@ def _explanation(
                 if e.owner == name
             },
             _share(ranking, chosen, name),
-            float(sum(weight for fit, weight in pairs if name in fit.names)),
+            included[name],
         )
         for name in chosen.names
     ]
@@ -194,7 +208,7 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
 
 def _quiet(dataset: Dataset) -> Dataset:
     """Return a dataset in units of the noise that all signatures together leave."""
-    raw = (law_signature(dataset), *signatures_of(CANDIDATES, dataset))
+    raw = (law_signature(dataset), *signatures_of(candidates(), dataset))
     return with_saturated_noise(dataset, raw)
 
 

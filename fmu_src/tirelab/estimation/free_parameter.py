@@ -91,7 +91,7 @@ def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
             2.0 / spread,
             -2.0,
             2.0,
-            group=min(i // 2, 2) + 1,
+            group=i + 1 if i < 4 else 5 + i % 2,
         )
         for i, (label, spread) in enumerate(zip(labels, spreads, strict=True))
     )

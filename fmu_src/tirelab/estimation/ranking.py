@@ -27,6 +27,9 @@ FloatArray = NDArray[np.float64]
 BEGUN = 3
 """Sets of the selection that are fitted before anything else, beside the best one of each size."""
 
+TEMPERATURE = 2.0
+"""Tempering of the posterior odds between sets: fits that stop early and forms that are not quite right."""
+
 REACH = 20.0
 """A fitted set this far behind the best in log posterior is not followed up."""
 
@@ -57,6 +60,23 @@ class Ranking:
     def of(self, names: frozenset[str]) -> Fit | None:
         """Return the fit of a set, or None where it was not fitted."""
         return next((f for f in self.fits if frozenset(f.names) == names), None)
+
+    def behind(self, fit: Fit) -> float:
+        """Return how far a fit is behind the best, in log posterior."""
+        return self.posteriors[0] - next(
+            p for f, p in zip(self.fits, self.posteriors, strict=True) if f is fit
+        )
+
+    def weights(self) -> FloatArray:
+        """Return the probability of each fit, tempered."""
+        weights = np.exp((np.array(self.posteriors) - self.posteriors[0]) / TEMPERATURE)
+        return np.asarray(weights / weights.sum())
+
+    def inclusion(self) -> dict[str, float]:
+        """Return the probability of each candidate, over all fits."""
+        pairs = list(zip(self.fits, self.weights().tolist(), strict=True))
+        names = {name for fit in self.fits for name in fit.names}
+        return {n: float(sum(w for fit, w in pairs if n in fit.names)) for n in sorted(names)}
 
 
 @dataclass

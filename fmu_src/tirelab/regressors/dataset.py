@@ -50,6 +50,9 @@ LONE = 8.0
 RINGING = 6
 """Samples on either side of a corner at which the smoothed rate rings."""
 
+SECANTS = 40
+"""Parts of the deflection's span over which the stiffness is taken."""
+
 GATHERED = 2.0
 """Power of the misfit beside corners over that away from them, above which it gathers there."""
 
@@ -214,16 +217,14 @@ class _Moved:
 
 
 def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
-    """Return the tangent [N/m] of the baseline force over the deflection, from bins of the deflection."""
-    edges = np.quantile(deflection, np.linspace(0.0, 1.0, 41))
-    which = np.clip(np.searchsorted(edges, deflection, side="right") - 1, 0, 39)
-    count = np.maximum(np.bincount(which, minlength=40), 1)
-    x, f = (np.bincount(which, v, 40) / count for v in (deflection, force))
-    occupied = np.append(True, np.diff(x) > 1e-12)
-    x, f = x[occupied], f[occupied]
-    if x.size < 3:
-        return np.zeros_like(deflection)
-    return np.asarray(np.interp(deflection, x, np.gradient(f, x)))
+    """Return the tangent [N/m] of the baseline force over the deflection, from its means on an even grid."""
+    low, span = float(deflection.min()), float(np.ptp(deflection))
+    which = np.minimum(((deflection - low) / max(span, 1e-300) * SECANTS).astype(int), SECANTS - 1)
+    count = np.bincount(which, minlength=SECANTS)
+    held = count > 0
+    x, f = (np.bincount(which, v, SECANTS)[held] / count[held] for v in (deflection, force))
+    grid = low + span * (np.arange(SECANTS) + 0.5) / SECANTS
+    return np.asarray(np.interp(deflection, grid, np.gradient(np.interp(grid, x, f), grid)))
 
 
 def _away_from_corners(resolved: BoolArray, misfit: FloatArray) -> BoolArray:

@@ -25,13 +25,16 @@ LAW = REFITTED_LAW
 SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)
 """The effect in which a refitted law keeps bend and twist."""
 
-CANDIDATES = tuple(name for name in CATALOGUE if name != SHAPE)
-"""Names of the effects that may be missing; the law comes beside them."""
 
 FACTOR, EXPONENT, BEND, TWIST, HAT = 0.1, 0.07, 0.03, 0.01, 0.015
 """Standard deviations of a, b, c, d and of a hat at the scale 1: their proportions are what counts."""
 
 HATS = 7
+
+
+def candidates() -> tuple[str, ...]:
+    """Return the names of the effects that may be missing; the law comes beside them."""
+    return tuple(name for name in CATALOGUE if name != SHAPE)
 
 
 def law_signature(dataset: Dataset) -> Signature:

@@ -28,6 +28,10 @@ ON_GRID = 0.1
 """Largest distance of a change from a whole number of steps, in steps."""
 
 
+RESTING, LEVELS = 0.3, 5
+"""Part of the changes that rest before or after, or number of different jumps, that a stepping gauge shows at least."""
+
+
 @dataclass(frozen=True)
 class NoiseFloor:
     """amplifier, gauge, steps [N]: root mean squares at the recorded samples; step [m] of the gauge, 0: none seen."""
@@ -51,7 +55,13 @@ def gauge_step(deflection: FloatArray) -> float:
         return 0.0
     # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
     step = float(np.quantile(moved, SMALLEST_CHANGE))
-    off = np.abs(moved / step - np.round(moved / step))
+    steps = np.round(moved / step)
+    off = np.abs(moved / step - steps)
+    # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
+    changing = changes > 1e-12
+    rests = float(np.mean(~(changing[:-1] & changing[1:])[changing[:-1] | changing[1:]]))
+    if rests < RESTING and np.unique(steps).size < LEVELS:
+        return 0.0
     return step if float(np.quantile(off, 0.9)) < ON_GRID else 0.0
 
 

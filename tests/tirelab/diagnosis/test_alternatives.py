@@ -8,7 +8,13 @@ from typing import Any
 import pytest
 from drives import damped, flat_force, read, triangle
 from radialtire import TireModel
-from tirelab.diagnosis.alternatives import CREDIBLE, alternatives_of, confidence_of, reason_of
+from tirelab.diagnosis.alternatives import (
+    CREDIBLE,
+    alternatives_of,
+    confidence_of,
+    insufficient_excitation,
+    reason_of,
+)
 from tirelab.estimation.findings import Evidence
 from tirelab.preprocessing.dataset import Dataset, dataset_of
 
@@ -17,7 +23,7 @@ LOOP, DAMPING = ("rate_independent_hysteresis",), ("viscous_damping",)
 
 
 def explained(*sets: tuple[str, float, float], **more: Any) -> Any:
-    """Return an explanation by hand of sets (names, log evidence, probability); the first is the verdict if not said."""
+    """Return an explanation by hand of sets (names, log evidence, probability), the first the verdict if not said."""
     evidence = tuple(Evidence(tuple(n.split()), log, 1.0, (), p) for n, log, p in sets)
     names = tuple(more.get("verdict", sets[0][0]).split())
     return SimpleNamespace(
@@ -92,6 +98,6 @@ def test_the_reason_is_what_to_record(one: tuple[str, ...], other: tuple[str, ..
 def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
     time, deflection = triangle(samples=180)
     press = dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
-    said = reason_of(("deflection_offset",), ("inertia",), explained(("inertia", 0.0, 1.0)), press)
+    said = "; ".join(insufficient_excitation(explained(("inertia", 0.0, 1.0)), press))
     for words in ("press on a second surface", "hold 10 s at 15 mm", "drive each cycle twice"):
         assert words in said

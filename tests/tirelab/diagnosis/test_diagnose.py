@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from drives import Drive, damped, flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
-from tirelab.diagnosis.diagnose import CATALOGUE_NAMES, PoorRecording, diagnose
+from tirelab.diagnosis.diagnose import PoorRecording, catalogue_names, diagnose
 from tirelab.simulation.simulate import simulate
 
 
@@ -52,7 +52,7 @@ def test_a_ceiling_above_the_largest_force_of_the_baseline_is_found(zero):
 
 
 def test_an_effect_outside_the_catalogue_is_unknown_or_has_alternatives():
-    catalogue = [n for n in CATALOGUE_NAMES if n != "viscous_damping"]
+    catalogue = [n for n in catalogue_names() if n != "viscous_damping"]
     verdict = diagnose([damped(3)], catalogue=catalogue)
     assert "viscous_damping" not in verdict.names
     assert verdict.unexplained or verdict.alternatives

@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 from left_out import Outcome, outcome, size
-from tirelab.diagnosis.diagnose import CATALOGUE_NAMES
+from tirelab.diagnosis.diagnose import catalogue_names
 
 pytestmark = pytest.mark.slow
 
@@ -15,18 +15,18 @@ deflection adds 1 %."""
 said = cache(outcome)
 
 
-@pytest.mark.parametrize("name", CATALOGUE_NAMES)
+@pytest.mark.parametrize("name", catalogue_names())
 def test_what_the_catalogue_has_is_named(name: str) -> None:
     assert said(name).whole.names == (name,), said(name).row
 
 
-@pytest.mark.parametrize("name", CATALOGUE_NAMES)
+@pytest.mark.parametrize("name", catalogue_names())
 def test_what_the_catalogue_lacks_is_unknown_or_has_an_alternative_that_fits(name: str) -> None:
     found: Outcome = said(name)
     assert name not in found.without.names
     assert found.without.unexplained or found.misfit < REACHED, found.row
 
 
-@pytest.mark.parametrize("name", CATALOGUE_NAMES)
+@pytest.mark.parametrize("name", catalogue_names())
 def test_every_effect_is_clear_in_its_recordings(name: str) -> None:
     assert 4.0 < size(name, seed=1) < 45.0

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from drives import damped, flat_force, ride
 from radialtire import TireModel
-from tirelab.estimation.explanation import CATALOGUE_NAMES, Explanation, explain_misfit
+from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
 
 RIDES = (damped(1, samples=3000), damped(2, samples=3000))
 
 
 @pytest.fixture(scope="module")
 def found() -> Explanation:
-    return explain_misfit(RIDES, TireModel(), CATALOGUE_NAMES, lambda stage: None)
+    return explain_misfit(RIDES, TireModel(), catalogue_names(), lambda stage: None)
 
 
 def test_the_effect_is_named_with_its_size_and_nothing_else(found: Explanation) -> None:
@@ -62,7 +62,7 @@ def test_a_set_that_was_not_fitted_is_refused(found: Explanation) -> None:
 def test_fitted_again_without_a_recording_it_is_fitted_to_the_others() -> None:
     """Twice the damping in the second ride, of which nothing is used."""
     rides = (RIDES[0], damped(2, damping=1000.0, samples=3000))
-    both = explain_misfit(rides, TireModel(), CATALOGUE_NAMES, lambda stage: None).of(("viscous_damping",))
+    both = explain_misfit(rides, TireModel(), catalogue_names(), lambda stage: None).of(("viscous_damping",))
     again = both.refitted([np.ones(3000, dtype=bool), np.zeros(3000, dtype=bool)])
     ((_, values),) = again.tire.effects
     assert values[0] == pytest.approx(500.0, rel=0.05)

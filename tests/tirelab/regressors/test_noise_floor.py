@@ -24,6 +24,11 @@ def test_tire_at_rest_is_no_step() -> None:
     assert gauge_step(held) == 0.0
 
 
+def test_ramps_between_holds_are_no_steps() -> None:
+    level = np.clip(TIME % 4.0, 0.0, 1.0) + np.floor(TIME / 4.0)
+    assert gauge_step(5e-3 * level) == 0.0
+
+
 def test_motion_behind_the_steps_is_nearer_than_the_reading() -> None:
     behind = destepped(TIME, STEPPED, STEP)
     inside = slice(100, -100)
