@@ -33,7 +33,8 @@ def accept(
     held_out: recordings kept from the fit; without any, a part of `recordings` is (see `held_out.split`)
     before [N]: what the baseline leaves of each recording
     """
-    likely = [explanation.of(names) for names in explanation.in_order(CONSIDERED)]
+    order = explanation.in_order(CONSIDERED)
+    likely = [explanation.of(names) for names in (order if () in order else (*order, ()))]
     left = [rmse(e.residuals) for e in likely]
     for chosen, own in zip(likely, left, strict=True):
         smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))

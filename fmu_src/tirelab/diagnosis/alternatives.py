@@ -48,6 +48,7 @@ def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alterna
     """
     best = explanation.model.names
     covered = explanation.probability
+    own = next(e.log_evidence for e in explanation.evidence if set(e.names) == set(best))
     found = []
     for e in explanation.evidence:
         confounded = e.names in explanation.confounded
@@ -55,7 +56,7 @@ def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alterna
             continue
         covered += e.probability
         reason = reason_of(best, e.names, explanation, dataset)
-        found.append(Alternative(e.names, -e.log_evidence, reason, e.probability))
+        found.append(Alternative(e.names, own - e.log_evidence, reason, e.probability))
     found.sort(key=lambda a: a.names not in explanation.confounded)
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden

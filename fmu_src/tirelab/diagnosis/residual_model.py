@@ -24,14 +24,9 @@ Coordinate = Callable[[Experiment], FloatArray]
 
 COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "deflection": ("m", lambda r: r.motion.deflection),
-    "surface": ("m", lambda r: r.motion.deflection),
-    "direction": ("m", lambda r: r.motion.deflection * r.motion.direction),
     "rate": ("m/s", lambda r: r.motion.rate),
-    "rate and deflection": ("m/s", lambda r: r.motion.rate),
     "acceleration": ("m/s^2", lambda r: r.motion.acceleration),
-    "resonance": ("m/s^2", lambda r: r.motion.acceleration),
-    "history": ("m", lambda r: r.motion.since_reversal * r.motion.direction),
-    "way": ("m", lambda r: np.cumsum(np.abs(np.diff(r.motion.deflection, prepend=r.motion.deflection[0])))),
+    "force": ("N", lambda r: r.elastic(r.motion.deflection)),
 }
 """The coordinate over which each kind of residual is regressed; what is not here is regressed over time."""
 

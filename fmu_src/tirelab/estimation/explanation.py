@@ -47,7 +47,8 @@ AS_GOOD = 0.75
 class Explanation:
     """What explains the misfit: the sets of effects that were fitted, and one of them, the likeliest if not said.
 
-    effects: of the set, the largest share first; probability: of the set; evidence: all sets, the likeliest first
+    effects: of the set, the largest share first; probability: of the set
+    evidence: all sets, this one first, then the likeliest
     confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
@@ -148,7 +149,10 @@ def _explanation(
     excitation: Excitation,
     hidden: tuple[tuple[str, str], ...],
 ) -> Explanation:
-    pairs = list(zip(ranking.fits, ranking.weights().tolist(), strict=True))
+    order = sorted(range(len(ranking.fits)), key=lambda i: ranking.fits[i] is not chosen)
+    weights = ranking.weights().tolist()
+    pairs = [(ranking.fits[i], weights[i]) for i in order]
+    own = ranking.posteriors[order[0]]
     included = ranking.inclusion()
     effects = [
         NamedEffect(
@@ -165,16 +169,16 @@ def _explanation(
     ]
     return Explanation(
         tuple(sorted(effects, key=lambda e: -e.share)),
-        next(weight for fit, weight in pairs if fit is chosen),
+        pairs[0][1],
         tuple(
             Evidence(
                 fit.names,
-                posterior - ranking.posteriors[0],
+                ranking.posteriors[i] - own,
                 fit.power / fit.residual.size,
                 tuple(fit.sizes.get(n, 0.0) for n in fit.names),
                 weight,
             )
-            for (fit, weight), posterior in zip(pairs, ranking.posteriors, strict=True)
+            for (fit, weight), i in zip(pairs, order, strict=True)
         ),
         _confounded(chosen, ranking, excitation),
         hidden,

@@ -46,7 +46,7 @@ class NamedEffect:
 
 @dataclass(frozen=True)
 class Evidence:
-    """One set that was fitted: log posterior over that of the verdict, chi square per sample, sizes of its effects.
+    """One set that was fitted: log posterior over that of the chosen one, chi square per sample, sizes of its effects.
 
     size: root mean square of what each effect adds to the others, over the noise
     """

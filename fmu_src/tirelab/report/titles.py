@@ -10,19 +10,10 @@ from ..names import REFITTED_LAW, UNKNOWN
 
 DEPENDENCE = {
     "deflection": "the deflection",
-    "direction": "loading and unloading",
     "rate": "the rate of deflection",
-    "rate and deflection": "rate and deflection",
     "acceleration": "the acceleration",
-    "resonance": "the acceleration (a resonance)",
-    "history": "the distance since the last reversal",
-    "surface": "deflection and surface",
-    "span": "time (within a segment)",
-    "way": "the total distance travelled",
-    "time, added": "time (an added force)",
-    "jump": "time (a step)",
-    "period": "time (periodic)",
-    "period, added": "time (a periodic added force)",
+    "force": "the force",
+    "time": "time",
 }
 """Names for a reader of the coordinates of something unknown; a coordinate that is not here keeps its name."""
 
