@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+from scipy.stats import ttest_1samp
+
 from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset, Recorded
 from ..preprocessing.kinematics import FloatArray
@@ -16,6 +19,9 @@ from .held_out import HeldOut, given, rmse, split
 
 CONSIDERED = 6
 """Sets, the likeliest first, whose written tires are compared."""
+
+BLOCKS, WORSE = 20, 0.05
+"""Blocks of the held-out data, and the chance of refusing a correction that is as good as the baseline."""
 
 NO_WORSE = 0.9
 """A set is refused where one of no more effects leaves less than this part of what it leaves."""
@@ -41,10 +47,23 @@ def accept(
         if min(smaller) < NO_WORSE * own:
             continue
         validation = _validated(chosen, recordings, held_out, dataset, before)
-        if not chosen.effects or validation.after <= validation.before:
+        if not chosen.effects or not is_worse(validation):
             return chosen, validation
     nothing = explanation.of(())
     return nothing, _validated(nothing, recordings, held_out, dataset, before)
+
+
+def is_worse(validation: HeldOut) -> bool:
+    """Return whether the corrected tire is worse than the baseline on held-out data, beyond what chance explains.
+
+    The difference of the squared errors is averaged over BLOCKS blocks of time; its mean is tested against zero
+    (Student's t, one-sided), since neighbouring samples err alike.
+    """
+    differences = [p.after[p.chosen] ** 2 - p.before[p.chosen] ** 2 for p in validation.held_out]
+    blocks = np.array([b.mean() for b in np.array_split(np.concatenate(differences), BLOCKS) if b.size])
+    if not np.ptp(blocks) > 0.0:
+        return bool(blocks.mean() > 0.0)
+    return bool(ttest_1samp(blocks, 0.0, alternative="greater").pvalue < WORSE)
 
 
 def _validated(

@@ -163,7 +163,7 @@ def _explanation(
                 if e.owner == name
             },
             _share(ranking, chosen, name),
-            included[name],
+            min(included[name], 1.0),
         )
         for name in chosen.names
     ]

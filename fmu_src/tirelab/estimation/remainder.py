@@ -19,9 +19,9 @@ STRUCTURED = 6.0
 """Chi-square per bin of the mean remainder above which it depends on a coordinate: coloured noise reaches 2 to 3."""
 
 
-UNEXPLAINED_SIZE, UNEXPLAINED_SHARE = 0.75, 0.1
-"""Size over the noise, and share of the misfit, above which a remainder is something of its own: coloured noise that no
-effect follows has reached a size of 0.65, the error of the effects' forms a share of 0.05."""
+UNEXPLAINED_SIZE, UNEXPLAINED_SHARE = 1.0, 0.1
+"""A remainder is unexplained where it is more than the noise, and more than this share of the misfit: the error of the
+effects' forms has reached a share of 0.05."""
 
 
 @dataclass(frozen=True)
