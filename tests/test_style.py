@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import subprocess
 import sys
 from pathlib import Path
@@ -44,3 +46,15 @@ def test_the_licence_in_the_fmu_is_the_repositorys(repository: Path) -> None:
 def test_no_helper_of_the_tests_hides_a_module_of_an_example(repository: Path) -> None:
     helpers = {p.name for p in (repository / "tests").rglob("*.py") if not p.name.startswith("test_")}
     assert not helpers & {p.name for p in (repository / "examples").rglob("*.py")}
+
+
+def test_what_the_benchmarks_import_is_there(repository: Path) -> None:
+    """No test runs them, so a name that moved would show only when somebody needs a figure."""
+    for path in sorted((repository / "tests" / "benchmarks").glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in (
+                "tirelab",
+                "concealed",
+            ):
+                module = importlib.import_module(str(node.module))
+                assert all(hasattr(module, alias.name) for alias in node.names), (path.name, node.module)

@@ -19,7 +19,7 @@ from radialtire import PowerLaw, TireModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
 from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
-from tirelab.estimation.diagnosis import diagnose
+from tirelab.diagnosis.diagnose import diagnose
 from tirelab.recordings.recording import Recording, read_recording
 from tirelab.simulation.simulate import simulate
 
@@ -106,7 +106,7 @@ def spring(folder: Path) -> Iterator[Real]:
 def brain(folder: Path) -> Real:
     """Approach, hold and half the withdrawal."""
     found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
-    half = (found.since_reversal + len(found.recording)) // 2
+    half = (found.turned + len(found.recording)) // 2
     return Real(
         "brain",
         found.recording,
@@ -121,7 +121,7 @@ def brain(folder: Path) -> Real:
 def gel(folder: Path) -> Real:
     """Approach, hold and half the withdrawal."""
     found = indentation(folder / "force-save-2021.06.30-13.48.08.425.txt")
-    half = (found.since_reversal + len(found.recording)) // 2
+    half = (found.turned + len(found.recording)) // 2
     return Real(
         "gel",
         found.recording,
@@ -202,44 +202,27 @@ def main() -> None:
         w, s = real.whole, real.fitted
         part = recorded(w.name, w.time[s], w.deflection[s], w.force[s])
         began = time.process_time()
-        found = diagnose([part], real.tire, timed=real.timed)
+        found = diagnose([part], real.tire)
         seconds = time.process_time() - began
-        u = real.unit
         rows = [
-            (rms((w.force - simulate(t, w))[k]) / u) for k in (s, real.kept) for t in (real.tire, found.tire)
+            (rms((w.force - simulate(tire, w))[k]) / real.unit)
+            for k in (s, real.kept)
+            for tire in (real.tire, found.tire)
         ]
-        floor = found.floors[0]
-        names = "+".join(e.name for e in found.effects) or "none"
-        left = f"fitted {rows[0]:.4g} -> {rows[1]:.4g}  held-out {rows[2]:.4g} -> {rows[3]:.4g}"
-        parts = f"amplifier {floor.amplifier / u:.3g} gauge {floor.gauge / u:.3g} steps {floor.steps / u:.3g}"
-        rest = found.remainder
-        on = [d.coordinate for d in rest.depends]
+        noise = found.fit.noise / real.unit
         print(
-            f"{real.name:12s} {names} p={found.confidence:.2f}  {left}  floor {floor.level / u:.3g}", end=" "
+            f"{real.name:12s} {' + '.join(found.names) or 'nothing missing'}, {100.0 * found.confidence:.0f} % sure: "
+            f"fitted {rows[0]:.4g} -> {rows[1]:.4g}, held-out {rows[2]:.4g} -> {rows[3]:.4g}, noise {noise:.3g}; "
+            f"{seconds:.1f} s   [{real.reference}]"
         )
-        print(f"({parts})", end="  ")
-        print(f"remainder {rest.size:.2f} x noise, {100 * rest.share:.1f} % {on}  {seconds:.1f} s", end="  ")
-        print(f"[{real.reference}]")
-        included = {n: round(p, 2) for n, p in found.inclusion.items() if p > 0.02}
-        print("     incl", included, "hidden", list(found.hidden))
-        for a in found.alternatives[:6]:
+        for effect in found.effects:
             print(
-                "     alt ",
-                "+".join(a.names),
-                round(a.probability, 3),
-                "left",
-                round(a.left, 2),
-                a.instead or "",
+                f"             {effect.name}: probability {effect.probability:.2f}, share {effect.share:.3f}"
             )
-        for e in found.effects:
-            print(
-                "     ",
-                e.name,
-                " ".join(f"{v:.3g}" for v in e.values),
-                f"share {e.share:.3f} p {e.probability:.2f}",
-                flush=True,
-            )
+        others = [" + ".join(a.names) or "nothing" for a in found.alternatives[:6]]
+        print(f"             alternatives: {'; '.join(others) or 'none'}", flush=True)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
