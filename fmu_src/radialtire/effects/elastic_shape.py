@@ -1,6 +1,8 @@
 """An elastic law that is not a power of the deflection: ln F is a curved function of ln x.
 
-    F = A x^B exp(c2 l^2 + c3 l^3),   l = ln(x / x_ref), held below x_ref / 100
+    F = A x^B exp(c2 l^2 + c3 l^3 + h(x)),   l = ln(x / x_ref), held below x_ref / 100
+
+h: straight lines between h_i at x = 0.4, 0.8, 1.2, 1.6 and 2 x_ref, constant beyond them; for laws with a knee.
 
 Where only this is needed no physics is missing: the law was fitted to another tire, or over another range. A contact
 patch gives such curvature: for a thin toroid the exponent is 3/2 at small loads and falls as the patch grows
@@ -17,13 +19,44 @@ from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by exp(c2 l^2 + c3 l^3)."""
-    bend, twist, reference = values
+    """Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x))."""
+    bend, twist, reference, first, second, third, fourth, fifth = values
     x = instant.deflection
-    if x <= 0.0 or (bend == 0.0 and twist == 0.0):
+    if x <= 0.0:
         return signal, state
-    log_ratio = math.log(max(x / reference, 0.01))
-    return signal * math.exp(log_ratio * log_ratio * (bend + twist * log_ratio)), state
+    exponent = 0.0
+    if bend != 0.0 or twist != 0.0:
+        log_ratio = math.log(max(x / reference, 0.01))
+        exponent = log_ratio * log_ratio * (bend + twist * log_ratio)
+    place = 2.5 * x / reference
+    if place <= 1.0:
+        exponent = exponent + first
+    elif place < 2.0:
+        exponent = exponent + first + (place - 1.0) * (second - first)
+    elif place < 3.0:
+        exponent = exponent + second + (place - 2.0) * (third - second)
+    elif place < 4.0:
+        exponent = exponent + third + (place - 3.0) * (fourth - third)
+    elif place < 5.0:
+        exponent = exponent + fourth + (place - 4.0) * (fifth - fourth)
+    else:
+        exponent = exponent + fifth
+    return signal * math.exp(exponent), state
+
+
+def _height(number: int, word: str) -> Parameter:
+    return Parameter(
+        f"height_{number}",
+        f"h{number}",
+        "1",
+        0.0,
+        -2.0,
+        2.0,
+        f"change of ln F at the {word} of five deflections, the last twice the reference",
+        neutral=0.0,
+        optional=True,
+        prior=Prior("normal", 0, 0.1, "1", "Hull, Wang & Moore 1996: errors of the law up to 13.5 %"),
+    )
 
 
 ELASTIC_SHAPE = Effect(
@@ -67,6 +100,11 @@ ELASTIC_SHAPE = Effect(
             role="reading",
             prior=Prior("log", 0.5, math.log(2), "travel", "the middle of what was measured"),
         ),
+        _height(1, "first"),
+        _height(2, "second"),
+        _height(3, "third"),
+        _height(4, "fourth"),
+        _height(5, "fifth"),
     ),
     initial_state=(),
     respond=respond,

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, TireModel
+from radialtire import TireModel
 
 from ..regressors.dataset import Dataset
-from ..regressors.law import LAW, SHAPE
+from ..regressors.signature import size_of
 from ..selection.discrepancy import Discrepancy
-from .laplace import laplace_evidence
+from .form_error import form_errors, smooth_functions
+from .laplace import Linearised, laplace_evidence
 from .least_squares import Minimum, Objective, begun, minimised
 from .problem import EstimationProblem, Values, problem_of
 
@@ -38,8 +38,9 @@ class Fit:
     """A fitted set.
 
     values: of every effect; log_likelihood: marginal (Laplace); variance: V of the discrepancy
-    residual (m,), jacobian (m, k): in units of the noise; sizes: root mean squares
-    of what each effect adds to the others; settled: whether the fit came to rest
+    residual (m,), jacobian (m, k): in units of the noise; forms (m, f): columns of the form errors, scaled
+    unformed: sum of squares that the form errors leave, the parameters giving way
+    sizes: root mean squares of what each effect adds to the others; settled: whether the fit came to rest
     """
 
     problem: EstimationProblem
@@ -48,6 +49,8 @@ class Fit:
     variance: float
     residual: FloatArray
     jacobian: FloatArray
+    forms: FloatArray
+    unformed: float
     sizes: Mapping[str, float]
     settled: bool
     evaluations: int
@@ -66,6 +69,11 @@ class Fit:
     def tire(self) -> TireModel:
         """The fitted tire."""
         return self.problem.tire(self.positions)
+
+    @property
+    def slopes(self) -> FloatArray:
+        """What may give way (m, k + f): the parameters, and the forms of what they size."""
+        return np.concatenate([self.jacobian, self.forms], axis=1)
 
     @property
     def power(self) -> float:
@@ -110,10 +118,13 @@ def _climbed(problem: EstimationProblem, start: Values, discrepancy: Discrepancy
 
 
 def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy) -> Fit:
-    sizes = problem.sizes(found.positions)
-    errors = {n: CATALOGUE[SHAPE if n == LAW else n].form_error * size for n, size in sizes.items()}
-    own = discrepancy.above(math.hypot(problem.dataset.gauge_error, *errors.values()))
-    evidence = laplace_evidence(found.residual, found.jacobian, found.positions, problem.groups, own)
+    curves = problem.curves(found.positions)
+    forms = form_errors(curves, problem.dataset, smooth_functions(problem.dataset))
+    held = _held(problem, found)
+    near = Linearised(
+        found.residual, found.jacobian[:, ~held], found.positions[~held], forms, problem.groups[~held]
+    )
+    evidence = laplace_evidence(near, discrepancy.above(problem.dataset.gauge_error))
     return Fit(
         problem,
         found.positions,
@@ -121,7 +132,16 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
         evidence.variance,
         found.residual,
         found.jacobian,
-        sizes,
+        forms * evidence.scale,
+        float(evidence.unformed @ evidence.unformed),
+        {name: size_of(curve) for name, curve in curves.items()},
         found.settled,
         found.evaluations,
     )
+
+
+def _held(problem: EstimationProblem, found: Minimum) -> NDArray[np.bool_]:
+    """Return which parameters stand at a bound that they would leave."""
+    uphill = found.jacobian.T @ found.residual
+    at_low, at_high = found.positions <= problem.low, found.positions >= problem.high
+    return np.asarray((at_low & (uphill > 0.0)) | (at_high & (uphill < 0.0)))

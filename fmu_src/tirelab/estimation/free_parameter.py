@@ -8,12 +8,16 @@ from dataclasses import dataclass
 from radialtire import CATALOGUE, Parameter
 
 from ..regressors.draws import centre_and_spread
-from ..regressors.law import BEND, EXPONENT, FACTOR, LAW, TWIST
+from ..regressors.law import BEND, EXPONENT, FACTOR, HEIGHT, HEIGHTS, LAW, TWIST
 from ..regressors.scales import Scales
 
 AWAKE = 0.3
 """Where an optional form begins that lies at a bound of its parameter, in standard deviations: at the bound itself some
 have no slope."""
+
+
+COMMON = 4 + HEIGHTS
+"""Parameters of the law that are common to all surfaces: they come first."""
 
 
 @dataclass(frozen=True)
@@ -70,14 +74,16 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
 
 
 def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
-    """Return what may be fitted of the law: factor and exponent common to all surfaces, bend and twist, and, with more
-    than one surface, factor and exponent of each beside the common ones.
+    """Return what may be fitted of the law: factor and exponent common to all surfaces, bend, twist and heights of the
+    shape, and, with more than one surface, factor and exponent of each beside the common ones.
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
-    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST]
+    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[HEIGHT] * HEIGHTS]
     spreads += [FACTOR * shared, EXPONENT * shared] * (surfaces if surfaces > 1 else 0)
     labels = ["log factor on A", "change of B", "bend", "twist"]
+    labels += [f"height {i + 1}" for i in range(HEIGHTS)]
     labels += [f"{w}, surface {i}" for i in range(surfaces) for w in labels[:2]] if surfaces > 1 else []
+    groups = [1, 2, 3, 4, *[5] * HEIGHTS, *[6, 7] * surfaces]
     return tuple(
         FreeParameter(
             LAW,
@@ -91,7 +97,8 @@ def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
             2.0 / spread,
             -2.0,
             2.0,
-            group=i + 1 if i < 4 else 5 + i % 2,
+            optional=4 <= i < COMMON,
+            group=groups[i],
         )
         for i, (label, spread) in enumerate(zip(labels, spreads, strict=True))
     )

@@ -81,19 +81,19 @@ def promise(signature: Signature, base: Fit, discrepancy: Discrepancy) -> float:
 
     Like the marginal likelihood of a set, linearised about the fit, at the best of a few sizes.
     """
-    before, variance = discrepancy.profile(base.power)
-    slopes = base.jacobian
+    before, variance = discrepancy.profile(base.unformed)
+    slopes = base.slopes
     factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
     across = np.linalg.solve(factor, slopes.T) / np.sqrt(variance)
     columns = signature.columns
     columns = columns - across.T @ (across @ columns)
     gram, moment = columns.T @ columns, columns.T @ base.residual
-    left = float(np.sqrt(base.power / base.residual.size))
+    left = float(np.sqrt(base.unformed / base.residual.size))
     best = -np.inf
-    for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left):
+    for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
         weighted = gram * size**2
         z = np.linalg.solve(weighted / variance + np.eye(moment.size), size * moment / variance)
-        power = base.power - 2.0 * size * float(z @ moment) + float(z @ weighted @ z)
+        power = base.unformed - 2.0 * size * float(z @ moment) + float(z @ weighted @ z)
         after, new = discrepancy.profile(power)
         determinant = float(np.log1p(np.maximum(np.linalg.eigvalsh(weighted), 0.0) / new).sum())
         best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))

@@ -20,6 +20,12 @@ STEP = 2e-3
 LONGEST = 1.5
 """Longest step, in standard deviations of the prior."""
 
+TRUSTED = 0.5
+"""Part of the promised gain that a step must bring for the slopes to be updated only."""
+
+TRIES = 8
+"""Dampings tried before a step is given up."""
+
 DAMPING = (1e-3, 1e-7, 1e7)
 """Damping at first, least and most."""
 
@@ -67,38 +73,45 @@ def begun(objective: Objective, start: FloatArray) -> Minimum:
 
 
 def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) -> Minimum:
-    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last."""
-    q, residual, jacobian = start.positions, start.residual, start.jacobian
+    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last.
+
+    Between rounds the slopes are updated by Broyden's rule (Math. Comp. 19 (1965) 577); they are taken anew by
+    difference quotients where a step gains less than they promised, and at the end.
+    """
+    q, residual, slopes = start.positions, start.residual, start.jacobian
     cost = objective.cost(residual, q)
-    damping, evaluations, settled = DAMPING[0], start.evaluations, False
-    for _ in range(rounds):
-        if not q.size:
-            settled = True
-            break
-        before = cost
-        moved = False
-        for _ in range(8):
-            step = _step(objective, q, residual, jacobian, damping)
-            trial = np.clip(q + step, objective.low, objective.high)
-            left = objective.residual(trial)
-            evaluations += 1
+    damping, evaluations, settled, exact = DAMPING[0], start.evaluations, not q.size, True
+    for _ in range(rounds if q.size else 0):
+        step, left, new = np.zeros_like(q), residual, cost
+        for _ in range(TRIES if exact else 1):
+            trial = np.clip(
+                q + _step(objective, q, residual, slopes, damping), objective.low, objective.high
+            )
+            step, left = trial - q, objective.residual(trial)
             new = objective.cost(left, trial)
+            evaluations += 1
             if new < cost:
-                q, residual, cost, moved = trial, left, new, True
                 damping = max(damping / 10.0, DAMPING[1])
                 break
-            damping *= 10.0
-            if damping > DAMPING[2]:
-                break
-        if not moved:
-            settled = True
+            damping = min(10.0 * damping, DAMPING[2])
+        moved, small = new < cost, cost - new < enough
+        if moved:
+            foretold = residual + slopes @ step
+            promised = cost - objective.cost(foretold, q + step)
+            updated = slopes + np.outer((left - foretold) / float(step @ step), step)
+            gained, q, residual, cost = cost - new, q + step, left, new
+        if exact and small:
+            settled, exact = True, not moved
             break
-        jacobian = objective.jacobian(q, residual)
+        if moved and not small and gained > TRUSTED * promised:
+            slopes, exact = updated, False
+        else:
+            slopes, exact = objective.jacobian(q, residual), True
+            evaluations += q.size
+    if not exact:
+        slopes = objective.jacobian(q, residual)
         evaluations += q.size
-        if before - cost < enough:
-            settled = True
-            break
-    return Minimum(q, residual, jacobian, settled, evaluations)
+    return Minimum(q, residual, slopes, settled, evaluations)
 
 
 def _step(

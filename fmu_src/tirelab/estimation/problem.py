@@ -12,7 +12,7 @@ from radialtire import CATALOGUE, Recalibrated, TireModel
 from ..regressors.dataset import Dataset, arranged
 from ..regressors.draws import at_reading
 from ..regressors.law import LAW, SHAPE
-from .free_parameter import FreeParameter, parameters_of_effect, parameters_of_law
+from .free_parameter import COMMON, FreeParameter, parameters_of_effect, parameters_of_law
 
 FloatArray = NDArray[np.float64]
 Values = Mapping[str, tuple[float, ...]]
@@ -66,15 +66,14 @@ class EstimationProblem:
         """Return the tire at the positions."""
         return tire_of(self.dataset, self.values(positions))
 
-    def sizes(self, positions: FloatArray) -> dict[str, float]:
-        """Return the root mean square of what each effect adds to the others, in units of the noise."""
+    def curves(self, positions: FloatArray) -> dict[str, FloatArray]:
+        """Return what each effect adds to the others (m,), in units of the noise."""
         values = self.values(positions)
         whole = self.dataset.response(tire_of(self.dataset, values))
         found = {}
         for name in values:
             less = {n: v for n, v in values.items() if n != name}
-            apart = whole - self.dataset.response(tire_of(self.dataset, less))
-            found[name] = float(np.sqrt(np.mean(apart**2)))
+            found[name] = whole - self.dataset.response(tire_of(self.dataset, less))
         return found
 
     def residual(self, positions: FloatArray) -> FloatArray:
@@ -117,13 +116,15 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
     effects = [(name, v) for name, v in values.items() if name != LAW]
     tire = dataset.tire
     if LAW in values:
-        factor, exponent, bend, twist, *own = values[LAW]
+        factor, exponent, *shape = values[LAW][:COMMON]
+        own = values[LAW][COMMON:]
         radii = dataset.radii[: law_surfaces(dataset)]
         pairs = [(own[2 * i], own[2 * i + 1]) if own else (0.0, 0.0) for i in range(len(radii))]
         rows = tuple((r, factor + a, exponent + b) for r, (a, b) in zip(radii, pairs, strict=True))
         tire = replace(tire, law=Recalibrated(tire.law, rows))
-        if bend or twist:
+        if any(shape):
+            bend, twist, *heights = shape
             twist = min(max(twist, -1.0), 1.0)
             reference = at_reading(CATALOGUE[SHAPE].parameters[2], dataset.scales)
-            effects.append((SHAPE, (bend, twist, reference)))
+            effects.append((SHAPE, (bend, twist, reference, *heights)))
     return arranged(tire, effects)

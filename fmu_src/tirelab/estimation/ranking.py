@@ -7,6 +7,7 @@ the smaller one, so no set is judged worse than its own subset.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -35,6 +36,9 @@ REACH = 20.0
 
 MOST_FITS = 40
 """Budget: fits of one diagnosis."""
+
+REPEATS = 2
+"""Budget: fits of one set, from the optima of others."""
 
 MOST_EFFECTS = 6
 
@@ -87,7 +91,7 @@ class _Board:
     signatures: Mapping[str, Signature]
     discrepancy: Discrepancy
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
-    tried: set[tuple[frozenset[str], str]] = field(default_factory=set)
+    times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
 
     def posterior(self, names: frozenset[str]) -> float:
@@ -101,25 +105,22 @@ class _Board:
         wanted = self.posterior(self.best()) + PRIOR_ODDS * len(key) if self.fits else -np.inf
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
         self.count += 1
+        self.times[key] += 1
         if key not in self.fits or found.log_likelihood > self.fits[key].log_likelihood:
             self.fits[key] = found
         return found
 
     def put_in(self, base: Fit, name: str) -> None:
         """Fit a set with one more candidate, from the optimum of the smaller one."""
-        key = (frozenset(base.names), name)
-        if key in self.tried:
+        if self.times[frozenset({*base.names, name})] >= REPEATS:
             return
-        self.tried.add(key)
-        found = additions(self.signatures[name], base.residual, base.jacobian, base.variance, self.dataset)
+        found = additions(self.signatures[name], base.residual, base.slopes, base.variance, self.dataset)
         self.fit([{**base.values, name: a.values} for a in found], base.variance)
 
     def take_out(self, base: Fit, name: str) -> None:
         """Fit a set without one of its candidates, from the optimum of the larger one."""
-        key = (frozenset(base.names) - {name}, "-" + name)
-        if key in self.tried:
+        if self.times[frozenset(base.names) - {name}] >= REPEATS:
             return
-        self.tried.add(key)
         self.fit([{n: v for n, v in base.values.items() if n != name}], base.variance)
 
 
@@ -207,6 +208,6 @@ def _nested(board: _Board) -> None:
                         start[name] = law_start(board.dataset)
                     else:
                         start[name] = additions(
-                            board.signatures[name], own.residual, own.jacobian, own.variance, board.dataset
+                            board.signatures[name], own.residual, own.slopes, own.variance, board.dataset
                         )[0].values
                 board.fit([start], board.fits[less].variance)

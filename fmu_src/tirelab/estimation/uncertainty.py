@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from ..regressors.law import LAW
 from .fit import Fit
+from .free_parameter import COMMON
 from .problem import law_surfaces
 
-BEND_INDEX, TWIST_INDEX = 2, 3
-"""Where bend and twist stand among the values of a refitted law."""
+SHAPE_INDICES = range(2, COMMON)
+"""Where the shape stands among the values of a refitted law."""
 
 DETERMINED = 0.5
 """Part of the prior's standard deviation below which the recordings determine a parameter."""
@@ -35,16 +36,18 @@ class Estimate:
 def estimates_of(fit: Fit) -> tuple[Estimate, ...]:
     """Return all fitted parameters; of a refitted law the changes of A and B on each surface.
 
-    Their covariance is that of Laplace's approximation with the variance V of noise and discrepancy.
+    Their covariance is that of Laplace's approximation with the variance V of noise and discrepancy, beside the forms'
+    errors.
     """
     slopes = fit.jacobian
     if not slopes.shape[1]:
         return ()
-    covariance = np.linalg.inv(slopes.T @ slopes / fit.variance + np.eye(slopes.shape[1]))
-    spread = np.sqrt(np.diag(covariance))
+    whole = fit.slopes
+    covariance = np.linalg.inv(whole.T @ whole / fit.variance + np.eye(whole.shape[1]))
+    spread = np.sqrt(np.diag(covariance))[: slopes.shape[1]]
     found = []
     for p, position, own in zip(fit.problem.parameters, fit.positions, spread, strict=True):
-        if p.owner == LAW and p.index not in (BEND_INDEX, TWIST_INDEX):
+        if p.owner == LAW and p.index not in SHAPE_INDICES:
             continue
         value = p.value(float(position))
         slope = p.spread * (value if p.logarithm else 1.0)
@@ -65,7 +68,7 @@ def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[Estimate]:
         where = "flat" if np.isinf(radius) else f"{100.0 * radius:.4g} cm"
         where = where if surfaces == len(dataset.radii) else "all surfaces"
         for first, name in ((0, "log factor on A"), (1, "change of B")):
-            parts = [i for i in (at.get(first), at.get(4 + 2 * number + first)) if i is not None]
+            parts = [i for i in (at.get(first), at.get(COMMON + 2 * number + first)) if i is not None]
             weights = np.array([fit.problem.parameters[i].spread for i in parts])
             value = float(weights @ fit.positions[parts])
             deviation = float(np.sqrt(weights @ covariance[np.ix_(parts, parts)] @ weights))

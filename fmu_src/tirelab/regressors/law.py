@@ -26,10 +26,16 @@ SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.trait
 """The effect in which a refitted law keeps bend and twist."""
 
 
-FACTOR, EXPONENT, BEND, TWIST, HAT = 0.1, 0.07, 0.03, 0.01, 0.015
+FACTOR, EXPONENT, BEND, TWIST, HAT = 0.1, 0.07, 0.03, 0.01, 0.05
 """Standard deviations of a, b, c, d and of a hat at the scale 1: their proportions are what counts."""
 
 HATS = 7
+
+HEIGHT = 0.05
+"""Standard deviation of each height of a refitted law's shape at the scale 1."""
+
+HEIGHTS = 5
+"""Heights in the shape of a refitted law."""
 
 
 def candidates() -> tuple[str, ...]:
