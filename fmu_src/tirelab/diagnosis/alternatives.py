@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from radialtire import CATALOGUE
@@ -38,11 +38,12 @@ class Alternative:
     probability: float
 
 
-def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alternative, ...]:
+def alternatives_of(explanation: Explanation, dataset: Dataset, chance: float) -> tuple[Alternative, ...]:
     """Return the sets that the recordings cannot rule out.
 
     First those in which an effect that this motion cannot tell from one of the verdict's stands in its place, then the
-    likeliest others until they and the verdict hold the probability CREDIBLE.
+    likeliest others until they and the verdict hold the probability CREDIBLE. They share the `chance` that the verdict
+    is wrong.
 
     An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
     """
@@ -57,16 +58,13 @@ def alternatives_of(explanation: Explanation, dataset: Dataset) -> tuple[Alterna
         covered += e.probability
         reason = reason_of(best, e.names, explanation, dataset)
         found.append(Alternative(e.names, own - e.log_evidence, reason, e.probability))
+    shared = chance / max(sum(a.probability for a in found), chance, 1e-300)
+    found = [replace(a, probability=shared * a.probability) for a in found]
     found.sort(key=lambda a: a.names not in explanation.confounded)
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden
     ]
     return (*found[:MOST], *unseen)
-
-
-def confidence_of(explanation: Explanation) -> float:
-    """Return the probability of the verdict: shared alike with the sets that this motion cannot tell from it."""
-    return explanation.probability / (1.0 + len(explanation.confounded))
 
 
 def reason_of(names: Sequence[str], other: Sequence[str], explanation: Explanation, dataset: Dataset) -> str:

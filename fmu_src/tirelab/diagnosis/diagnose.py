@@ -10,12 +10,14 @@ from radialtire import TireModel
 
 from ..computing.threads import one_thread
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
+from ..estimation.findings import NamedEffect
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
 from .acceptance import accept
-from .alternatives import Alternative, alternatives_of, confidence_of
+from .alternatives import Alternative, alternatives_of
+from .confidence import grounds_of_effect, grounds_of_verdict, probability
 from .discriminating_test import DiscriminatingTest, Limits, discriminate
 from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
@@ -61,8 +63,10 @@ def diagnose(
     report("validating the correction on held-out data")
     before = [r.force - simulate(baseline, r) for r in fitted]
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
-    alternatives = alternatives_of(explanation, dataset)
-    confidence = confidence_of(explanation)
+    grounds = grounds_of_verdict(explanation, validation)
+    confidence = probability("verdict", grounds)
+    alternatives = alternatives_of(explanation, dataset, 1.0 - confidence)
+    effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
     unexplained = unexplained_by(explanation.remainder)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(
@@ -76,13 +80,14 @@ def diagnose(
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset))
     return Verdict(
-        effects=explanation.effects,
+        effects=effects,
         confidence=confidence,
+        grounds=grounds,
         alternatives=alternatives,
         remainder=explanation.remainder,
         unexplained_by=unexplained,
         residual_models=remainder,
-        summary=summarise(explanation.effects, alternatives, remainder, confidence, fit, test),
+        summary=summarise(effects, alternatives, remainder, confidence, fit, test),
         where=places,
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
@@ -94,6 +99,11 @@ def diagnose(
         held_out=tuple(kept),
         baseline=baseline,
     )
+
+
+def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
+    grounds = grounds_of_effect(effect, explanation, validation)
+    return replace(effect, probability=probability("effect", grounds), grounds=grounds)
 
 
 def _named(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:

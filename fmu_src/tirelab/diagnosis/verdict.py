@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -54,7 +54,8 @@ class Fit:
 class Verdict:
     """The answer of a diagnosis.
 
-    effects: what is missing, empty where nothing is; confidence: 0 to 1; alternatives: other sets, likeliest first
+    effects: what is missing, empty where nothing is; confidence: 0 to 1; grounds: what it rests on
+    alternatives: other sets, likeliest first
     unexplained_by: coordinates on which something depends that no effect explains; residual_models: regressions of it
     summary: sentences for a reader; where: places of the misfit before the correction, or of what the refitted law
     leaves of it where other effects are missing too; tire: the corrected one
@@ -66,6 +67,7 @@ class Verdict:
 
     effects: tuple[NamedEffect, ...]
     confidence: float
+    grounds: Mapping[str, float]
     alternatives: tuple[Alternative, ...]
     remainder: Remainder
     unexplained_by: tuple[str, ...]
@@ -128,10 +130,12 @@ class Verdict:
                             },
                             "share": e.share,
                             "probability": e.probability,
+                            "grounds": dict(e.grounds),
                         }
                         for e in self.effects
                     ],
                     "confidence": self.confidence,
+                    "grounds": dict(self.grounds),
                     "alternatives": [list(r.names) for r in self.alternatives],
                     "unexplained": self.unexplained,
                     "remainder": self.remainder.to_dict(),

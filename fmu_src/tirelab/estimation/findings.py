@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,13 +35,14 @@ class NamedEffect:
     """An effect that the baseline lacks.
 
     parameters: what was fitted of it; share: of the misfit's power beyond the noise left where it alone is taken out
-    probability: that it is there, over all sets that were fitted
+    probability: that it is there, over all sets that were fitted; grounds: what a calibrated probability rests on
     """
 
     name: str
     parameters: Mapping[str, Estimate]
     share: float
     probability: float
+    grounds: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ FloatArray = NDArray[np.float64]
 DEPTHS, WAYS = 6, 3
 """Hats over the deflection, and over the deflection with the sign of the direction."""
 
+
 def smooth_functions(dataset: Dataset) -> FloatArray:
     """Return the functions phi (m, k) at the counted blocks, of mean square 1 together."""
     many = dataset.experiments

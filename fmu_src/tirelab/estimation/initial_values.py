@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
+from scipy.linalg import solve_triangular
 
 from ..regressors.dataset import Dataset
 from ..regressors.law import LAW
@@ -36,7 +38,7 @@ def additions(
     plain or with its optional forms, where the first is not.
     """
     factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
-    across = np.linalg.solve(factor, slopes.T) / np.sqrt(variance)
+    across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
 
     def beside(columns: FloatArray) -> FloatArray:
         return np.asarray(columns - across.T @ (across @ columns))
@@ -76,25 +78,28 @@ def additions(
     return found
 
 
-def promise(signature: Signature, base: Fit, discrepancy: Discrepancy) -> float:
-    """Return the log likelihood that a candidate may gain beside a fit, by its signature; what is fitted may give way.
+def promises(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepancy) -> list[float]:
+    """Return the log likelihood that each candidate may gain beside a fit, by its signature; what is fitted gives way.
 
     Like the marginal likelihood of a set, linearised about the fit, at the best of a few sizes.
     """
     before, variance = discrepancy.profile(base.unformed)
     slopes = base.slopes
     factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
-    across = np.linalg.solve(factor, slopes.T) / np.sqrt(variance)
-    columns = signature.columns
-    columns = columns - across.T @ (across @ columns)
-    gram, moment = columns.T @ columns, columns.T @ base.residual
+    across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
     left = float(np.sqrt(base.unformed / base.residual.size))
-    best = -np.inf
-    for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
-        weighted = gram * size**2
-        z = np.linalg.solve(weighted / variance + np.eye(moment.size), size * moment / variance)
-        power = base.unformed - 2.0 * size * float(z @ moment) + float(z @ weighted @ z)
-        after, new = discrepancy.profile(power)
-        determinant = float(np.log1p(np.maximum(np.linalg.eigvalsh(weighted), 0.0) / new).sum())
-        best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))
-    return float(best)
+    found = []
+    for signature in signatures:
+        columns = signature.columns - across.T @ (across @ signature.columns)
+        gram, moment = columns.T @ columns, columns.T @ base.residual
+        values, vectors = np.linalg.eigh(gram)
+        values, turned = np.maximum(values, 0.0), vectors.T @ moment
+        best = -np.inf
+        for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
+            z = size * turned / (values * size**2 + variance)
+            power = base.unformed - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
+            after, new = discrepancy.profile(power)
+            determinant = float(np.log1p(values * size**2 / new).sum())
+            best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))
+        found.append(best)
+    return found

@@ -84,9 +84,7 @@ def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) 
     for _ in range(rounds if q.size else 0):
         step, left, new = np.zeros_like(q), residual, cost
         for _ in range(TRIES if exact else 1):
-            trial = np.clip(
-                q + _step(objective, q, residual, slopes, damping), objective.low, objective.high
-            )
+            trial = np.clip(q + _step(objective, q, residual, slopes, damping), objective.low, objective.high)
             step, left = trial - q, objective.residual(trial)
             new = objective.cost(left, trial)
             evaluations += 1

@@ -20,7 +20,7 @@ from ..regressors.signature import Signature
 from ..selection.discrepancy import Discrepancy
 from ..selection.search import PRIOR_ODDS
 from .fit import Fit, fitted
-from .initial_values import additions, promise
+from .initial_values import additions, promises
 from .problem import Values, law_start
 
 FloatArray = NDArray[np.float64]
@@ -175,8 +175,9 @@ def _follow(board: _Board, names: frozenset[str]) -> None:
 def _promising(board: _Board, names: frozenset[str], beside: frozenset[str], most: int) -> None:
     """Put in what may bring a fitted set within reach of the best; not what is in `beside`."""
     base = board.fits[names]
-    found = [(promise(s, base, board.discrepancy), n) for n, s in board.signatures.items() if n not in beside]
-    for gain, name in sorted(found, reverse=True)[:most]:
+    others = [n for n in board.signatures if n not in beside]
+    gains = promises([board.signatures[n] for n in others], base, board.discrepancy)
+    for gain, name in sorted(zip(gains, others, strict=True), reverse=True)[:most]:
         behind = board.posterior(board.best()) - board.posterior(names)
         if gain - PRIOR_ODDS - behind > -HOPE and board.count < MOST_FITS:
             board.put_in(base, name)

@@ -26,7 +26,7 @@ from .scales import Scales
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-ROWS = 6000
+ROWS = 4000
 """Blocks of all recordings together, where the motion allows: signatures and fits cost in proportion."""
 
 MOST_ROWS = 40_000
@@ -40,6 +40,9 @@ TURN = 0.5
 
 BLURRED = 0.3
 """Part of the noise that blocks may add: straight lines over a phase p miss p^2 / 12 of what changes."""
+
+FORMS_APART = 0.005
+"""Part of a misfit to which no effect's form is known; what blocks blur below it does not matter."""
 
 STEPS_LEFT = 0.3
 """Part of a gauge's steps that is left of the motion behind them: smooth over a step, no average takes it out."""
@@ -161,7 +164,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     resolved = _away_from_corners(motion.resolved, misfit) & ~_spikes(misfit)
     interval = float(np.median(np.diff(recording.time)))
     loudness = float(np.std(misfit)) / max(white_level(misfit), 1e-300)
-    turn = min(TURN, float(np.sqrt(12.0 * BLURRED / max(loudness, 1e-300))))
+    blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
+    turn = min(TURN, float(np.sqrt(12.0 * blur)))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
     slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
     longest = turn * slow / max(quick * interval, 1e-300)

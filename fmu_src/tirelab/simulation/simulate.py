@@ -198,12 +198,11 @@ def elastic_force(deflection: FloatArray, coefficient: FloatArray, exponent: Flo
 
 def coefficients(law: Law, surface_radius: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return A [N/cm^B] and B [1] of every sample; the law is evaluated once for each radius [m] that occurs."""
-    starts = np.flatnonzero(np.append(True, surface_radius[1:] != surface_radius[:-1]))
-    radii, which = np.unique(surface_radius[starts], return_inverse=True)
-    pairs = np.array([law.coefficients(float(radius)) for radius in radii])
+    starts = np.append(0, np.flatnonzero(surface_radius[1:] != surface_radius[:-1]) + 1)
+    pairs = {r: law.coefficients(r) for r in set(surface_radius[starts].tolist())}
+    A, B = np.array([pairs[r] for r in surface_radius[starts].tolist()]).T
     lengths = np.diff(starts, append=surface_radius.size)
-    A, B = np.repeat(pairs[which], lengths, axis=0).T
-    return np.ascontiguousarray(A), np.ascontiguousarray(B)
+    return np.repeat(A, lengths), np.repeat(B, lengths)
 
 
 def track(time: FloatArray, deflection: FloatArray, reading_noise: float) -> tuple[FloatArray, FloatArray]:

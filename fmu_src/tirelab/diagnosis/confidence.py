@@ -1,0 +1,127 @@
+"""How sure a verdict is: what speaks for and against it, and the rate at which such verdicts were right.
+
+    p = 1 / (1 + exp(-(w_0 + sum_i w_i g_i)))
+
+g_i: the grounds, numbers that every diagnosis has; w_i: fitted by logistic regression to blind trials on worlds wider
+than the catalogue (`validation.calibrate`), in `calibration.json` beside this file, with the command and the seeds. The
+weights of what must lower a probability (a remainder, a worse fit on held-out data, a motion that cannot show what is
+claimed) are held at zero or below. Source of the method: J. Platt, "Probabilistic outputs", Adv. Large Margin
+Classifiers (1999) 61.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+from radialtire import CATALOGUE
+
+from ..estimation.explanation import Explanation
+from ..estimation.findings import NamedEffect
+from ..names import REFITTED_LAW
+from .held_out import HeldOut, rmse
+
+Grounds = Mapping[str, float]
+
+FURTHEST = 15.0
+"""Log odds beyond which a ranking says no more."""
+
+SMALLEST = 1e-4
+"""Share of the misfit below which shares are alike."""
+
+OF_VERDICT = (
+    "odds",
+    "remainder_share",
+    "remainder_size",
+    "transfer",
+    "alike",
+    "imitated",
+    "effects",
+    "loudness",
+)
+OF_EFFECT = ("odds", "share", "remainder_share", "remainder_size", "transfer", "alike", "imitated", "effects")
+"""Grounds of the verdict and of one effect; each is explained in `grounds_of_verdict`."""
+
+LOWERING = ("remainder_share", "remainder_size", "transfer", "alike", "imitated")
+"""Grounds that may only lower a probability."""
+
+
+def grounds_of_verdict(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
+    """Return what the verdict's probability rests on.
+
+    odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
+    the noise); transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion
+    cannot tell from it); imitated: static effects beside a refitted law on one surface; effects: their number
+    loudness: ln of the misfit over the noise
+    """
+    rest = [e.log_evidence for e in explanation.evidence[1:]]
+    chances = -float(np.logaddexp.reduce(rest)) if rest else FURTHEST
+    names = [e.name for e in explanation.effects]
+    loudness = float(np.sqrt(np.mean(explanation.model.fit.problem.dataset.misfit**2)))
+    return {
+        "odds": _limited(chances),
+        **_of_fit(explanation, validation),
+        "alike": math.log1p(len(explanation.confounded)),
+        "imitated": float(sum(_imitated(n, names, explanation) for n in names)),
+        "effects": float(len(names)),
+        "loudness": math.log(max(loudness, 1.0)),
+    }
+
+
+def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> dict[str, float]:
+    """Return what the probability of one named effect rests on, see `grounds_of_verdict`.
+
+    odds: log odds of all sets with it against all without; share: ln of its share of the misfit
+    alike: ln(1 + effects that this motion cannot tell from it)
+    """
+    with_it = [e.log_evidence for e in explanation.evidence if effect.name in e.names]
+    without = [e.log_evidence for e in explanation.evidence if effect.name not in e.names]
+    odds = FURTHEST
+    if without:
+        odds = float(np.logaddexp.reduce(with_it) - np.logaddexp.reduce(without))
+    names = [e.name for e in explanation.effects]
+    law = effect.name == REFITTED_LAW
+    alike = 0 if law else len(explanation.excitation.alike(effect.name))
+    return {
+        "odds": _limited(odds),
+        "share": math.log(max(effect.share, SMALLEST)),
+        **_of_fit(explanation, validation),
+        "alike": math.log1p(alike),
+        "imitated": float(_imitated(effect.name, names, explanation)),
+        "effects": float(len(names)),
+    }
+
+
+def probability(of: str, grounds: Grounds) -> float:
+    """Return the calibrated probability `of` a "verdict" or an "effect" with these grounds."""
+    weights = _weights()[of]
+    return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
+
+
+def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
+    left = max(rmse(explanation.residuals), 1e-300)
+    return {
+        "remainder_share": explanation.remainder.share,
+        "remainder_size": math.log1p(explanation.remainder.size),
+        "transfer": min(max(math.log(max(validation.after, 1e-300) / left), 0.0), 3.0),
+    }
+
+
+def _imitated(name: str, names: list[str], explanation: Explanation) -> bool:
+    """Whether an effect of the deflection alone stands beside a refitted law: the law may take any such form."""
+    static = name in CATALOGUE and "static" in CATALOGUE[name].traits
+    return static and REFITTED_LAW in names and len(explanation.model.radii) == 1
+
+
+def _limited(odds: float) -> float:
+    return min(max(odds, -FURTHEST), FURTHEST)
+
+
+@cache
+def _weights() -> Mapping[str, Mapping[str, float]]:
+    content = json.loads((files(__package__) / "calibration.json").read_text(encoding="utf-8"))
+    return {of: content[of]["weights"] for of in ("verdict", "effect")}
