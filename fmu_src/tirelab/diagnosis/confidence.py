@@ -55,7 +55,7 @@ def grounds_of_verdict(explanation: Explanation, validation: HeldOut) -> dict[st
 
     odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
     the noise); transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion
-    cannot tell from it); imitated: static effects beside a refitted law on one surface; effects: their number
+    cannot tell from it); imitated: effects of the deflection alone (the law too) beside others on one surface; effects: their number
     loudness: ln of the misfit over the noise
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
@@ -112,9 +112,13 @@ def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
 
 
 def _imitated(name: str, names: list[str], explanation: Explanation) -> bool:
-    """Whether an effect of the deflection alone stands beside a refitted law: the law may take any such form."""
-    static = name in CATALOGUE and "static" in CATALOGUE[name].traits
-    return static and REFITTED_LAW in names and len(explanation.model.radii) == 1
+    """Whether an effect of the deflection alone stands beside others on one surface: they may take each other's form."""
+    others = [n for n in names if n != name and _static(n)]
+    return _static(name) and bool(others) and len(explanation.model.radii) == 1
+
+
+def _static(name: str) -> bool:
+    return name == REFITTED_LAW or "static" in CATALOGUE[name].traits
 
 
 def _limited(odds: float) -> float:

@@ -46,6 +46,11 @@ def smooth_functions(dataset: Dataset) -> FloatArray:
     return np.asarray(np.concatenate(parts, axis=1) / np.sqrt(len(parts)))
 
 
+def form_error(name: str) -> float:
+    """Return the declared form error of an effect or of the law."""
+    return CATALOGUE[SHAPE if name == LAW else name].form_error
+
+
 def form_errors(curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray) -> FloatArray:
     """Return the columns (m, k) of the discrepancy at scale 1, in units of the noise.
 
@@ -54,9 +59,9 @@ def form_errors(curves: Mapping[str, FloatArray], dataset: Dataset, functions: F
     columns = []
     for name, curve in curves.items():
         if name == LAW:
-            columns.append(CATALOGUE[SHAPE].form_error * size_of(curve) * _of_law(dataset))
+            columns.append(form_error(name) * size_of(curve) * _of_law(dataset))
         else:
-            columns.append(CATALOGUE[name].form_error * curve[:, None] * functions)
+            columns.append(form_error(name) * curve[:, None] * functions)
     return np.concatenate(columns, axis=1) if columns else np.zeros((dataset.misfit.size, 0))
 
 

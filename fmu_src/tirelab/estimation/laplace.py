@@ -88,7 +88,8 @@ def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) 
     k = width.size
     columns = np.concatenate([fit.slopes, fit.forms], axis=1)
     gram, moment = columns.T @ columns, columns.T @ fit.residual
-    pull = np.concatenate([fit.positions / width, np.zeros(fit.forms.shape[1])])
+    # The slopes are those of the residual: a step along them takes the positions the other way.
+    pull = np.concatenate([-fit.positions / width, np.zeros(fit.forms.shape[1])])
     power = float(fit.residual @ fit.residual)
     fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.beside(variances)
     # What the parameters alone would still gain is not counted: a fit that stopped early must not win by it.

@@ -1,0 +1,192 @@
+"""Calibrate the stated probabilities: blind trials on worlds wider than the catalogue, and a logistic regression.
+
+Run: python -m tirelab.validation.calibrate --seed SEED --trials N [--out FILE]
+
+Every trial is drawn, diagnosed and scored; its grounds (`diagnosis.confidence`) and whether it was right are kept. The
+weights are those of highest posterior under independent normal priors of standard deviation 1 on grounds of standard
+deviation 1; the weights of `LOWERING` are at most zero. The skill is stated for ten parts, each judged by the weights
+of the other nine. Written is a file of the form of `diagnosis/calibration.json`, which is what a diagnosis reads.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import read_tire
+from scipy.optimize import minimize
+from scipy.special import expit
+
+from ..computing.workers import Cores, work
+from ..diagnosis.confidence import LOWERING, OF_EFFECT, OF_VERDICT
+from ..diagnosis.diagnose import diagnose
+from ..diagnosis.diagnosis_file import NOTHING
+from ..diagnosis.verdict import Verdict
+from ..recordings.recording import read_recording
+from .blind_trials import ALL_KINDS, BlindTrials
+from .commitment import draw_and_commit
+from .folders import Folders, read_json
+from .score import Score, right_sets, sizes_over_noise
+from .wide_kinds import sound
+
+FloatArray = NDArray[np.float64]
+
+PARTS = 10
+"""Parts of the trials, each of which is left out once."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Grounds of one stated probability, and whether what it was stated of came true."""
+
+    trial: str
+    grounds: Mapping[str, float]
+    right: bool
+
+
+def verdict_row(score: Score, grounds: Mapping[str, float]) -> Row:
+    """Return the row of a verdict; it is right in the sense of its kind (`wide_kinds.sound`)."""
+    return Row(f"{score.kind} {score.trial}", grounds, sound(score))
+
+
+def effect_rows(score: Score, grounds: Mapping[str, Mapping[str, float]]) -> list[Row]:
+    """Return the rows of the named effects; one is right where a set that counts as right holds it."""
+    there = frozenset().union(*score.right)
+    return [Row(f"{score.kind} {score.trial}", g, name in there) for name, g in grounds.items()]
+
+
+def fitted_weights(rows: Sequence[Row], names: Sequence[str]) -> dict[str, float]:
+    """Return the weights of the grounds, and the constant."""
+    values = np.array([[row.grounds[n] for n in names] for row in rows])
+    right = np.array([row.right for row in rows], dtype=float)
+    middle, spread = values.mean(axis=0), np.maximum(values.std(axis=0), 1e-9)
+    columns = np.column_stack([np.ones(len(rows)), (values - middle) / spread])
+
+    def cost(w: FloatArray) -> tuple[float, FloatArray]:
+        line = columns @ w
+        value = float(np.sum(np.logaddexp(0.0, line) - right * line) + 0.5 * np.sum(w[1:] ** 2))
+        slope = columns.T @ (expit(line) - right) + np.append(0.0, w[1:])
+        return value, slope
+
+    bounds = [(None, None), *((None, 0.0) if n in LOWERING else (None, None) for n in names)]
+    found = minimize(cost, np.zeros(len(names) + 1), jac=True, bounds=bounds, method="L-BFGS-B").x
+    weights = found[1:] / spread
+    constant = float(found[0] - weights @ middle)
+    return {"constant": constant, **{n: float(w) for n, w in zip(names, weights, strict=True)}}
+
+
+def probabilities(rows: Sequence[Row], weights: Mapping[str, float]) -> FloatArray:
+    """Return the probabilities of the rows by given weights."""
+    lines = [
+        weights["constant"] + sum(weights[n] * row.grounds[n] for n in weights if n != "constant")
+        for row in rows
+    ]
+    return np.asarray(expit(np.array(lines)))
+
+
+def skill(stated: FloatArray, right: FloatArray) -> float:
+    """Return 1 - sum (p - hit)^2 / sum (rate - hit)^2 (Brier skill over the constant rate)."""
+    constant = float(np.sum((right.mean() - right) ** 2))
+    return 1.0 - float(np.sum((stated - right) ** 2)) / constant if constant > 0.0 else float("nan")
+
+
+def skill_left_out(rows: Sequence[Row], names: Sequence[str]) -> float:
+    """Return the skill where each part of the trials is judged by the weights of the others."""
+    trials = sorted({row.trial for row in rows})
+    part = {trial: i % PARTS for i, trial in enumerate(trials)}
+    stated = np.zeros(len(rows))
+    for number in range(PARTS):
+        left_out = [i for i, row in enumerate(rows) if part[row.trial] == number]
+        weights = fitted_weights([row for row in rows if part[row.trial] != number], names)
+        stated[left_out] = probabilities([rows[i] for i in left_out], weights)
+    return skill(stated, np.array([row.right for row in rows], dtype=float))
+
+
+def calibration_of(
+    verdicts: Sequence[Row], effects: Sequence[Row], provenance: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the content of the calibration's file."""
+    content: dict[str, Any] = dict(provenance)
+    for of, rows, names in (("verdict", verdicts, OF_VERDICT), ("effect", effects, OF_EFFECT)):
+        weights = fitted_weights(rows, names)
+        right = np.array([row.right for row in rows], dtype=float)
+        content[of] = {
+            "rows": len(rows),
+            "right": float(right.mean()),
+            "skill": round(skill(probabilities(rows, weights), right), 4),
+            "skill_left_out": round(skill_left_out(rows, names), 4),
+            "weights": {n: round(w, 6) for n, w in weights.items()},
+        }
+    return content
+
+
+def diagnosed_rows(folder: Path, seed: int, number: int, kind: str | None) -> dict[str, Any]:
+    """Draw, diagnose and score one trial; return its rows as plain values."""
+    folders = Folders(folder / f"{seed}-{number}")
+    (key,) = (k for k in draw_and_commit(folders, seed, number, kind) if not k.endswith(".derived"))
+    answer = read_json(folders.sealed(key))
+    recordings = [read_recording(path) for path in folders.recordings(key, "train")]
+    verdict = diagnose(recordings, read_tire(folders.tire(key)))
+    score = _score(key, answer, verdict)
+    effects = effect_rows(score, {e.name: e.grounds for e in verdict.effects})
+    rows = [verdict_row(score, verdict.grounds), *effects]
+    return {"rows": [[row.trial, dict(row.grounds), row.right] for row in rows]}
+
+
+def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
+    return Score(
+        trial=key,
+        kind=answer["kind"],
+        right=right_sets(answer),
+        verdict=frozenset(verdict.names) or NOTHING,
+        alternatives=tuple(frozenset(a.names) or NOTHING for a in verdict.alternatives),
+        confidence=verdict.confidence,
+        error=None,
+        sizes=sizes_over_noise(answer),
+        regions=(),
+        held_out=None,
+        discrimination=None,
+        seconds=0.0,
+        probabilities={e.name: e.probability for e in verdict.effects},
+        remainder=verdict.remainder.size,
+    )
+
+
+@click.command()
+@click.option("--seed", type=int, multiple=True, required=True, help="Seeds, each with that many trials.")
+@click.option("--trials", type=click.IntRange(min=PARTS), default=100, show_default=True)
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="File to write.")
+def main(seed: Sequence[int], trials: int, out: Path) -> None:
+    """Calibrate on trials of all kinds in turn."""
+    verdicts: list[Row] = []
+    effects: list[Row] = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        tasks: dict[str, tuple[Any, ...]] = {}
+        for one in seed:
+            kinds = BlindTrials(Folders(folder), one, trials, ALL_KINDS)
+            tasks |= {f"{one}/{n}": (folder, one, n, kinds.kind_of(n)) for n in range(trials)}
+        for done in work(diagnosed_rows, tasks, Cores(), "calibrating"):
+            if done.value is None:
+                click.echo(f"trial {done.key} failed and is left out: {done.error}")
+                continue
+            first, *rest = (Row(*row) for row in done.value["rows"])
+            verdicts.append(first)
+            effects.extend(rest)
+    command = "python -m tirelab.validation.calibrate "
+    command += " ".join(f"--seed {s}" for s in seed) + f" --trials {trials}"
+    content = calibration_of(verdicts, effects, {"command": command, "kinds": "all in turn"})
+    out.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    for of in ("verdict", "effect"):
+        click.echo(f"{of}: skill {content[of]['skill_left_out']:.2f} left out, {content[of]['rows']} rows")
+
+
+if __name__ == "__main__":
+    main()
