@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from radialtire import CATALOGUE
@@ -38,28 +38,28 @@ class Alternative:
     probability: float
 
 
-def alternatives_of(explanation: Explanation, dataset: Dataset, chance: float) -> tuple[Alternative, ...]:
-    """Return the sets that the recordings cannot rule out.
+def alternatives_of(explanation: Explanation, dataset: Dataset, confidence: float) -> tuple[Alternative, ...]:
+    """Return the sets that the recordings cannot rule out; confidence: the calibrated probability of the verdict.
 
     First those in which an effect that this motion cannot tell from one of the verdict's stands in its place, then the
-    likeliest others until they and the verdict hold the probability CREDIBLE. They share the `chance` that the verdict
-    is wrong.
+    likeliest others until they and the verdict hold the probability CREDIBLE: what the confidence leaves is shared by
+    the other sets in proportion to their evidence.
 
     An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
     """
     best = explanation.model.names
-    covered = explanation.probability
     own = next(e.log_evidence for e in explanation.evidence if set(e.names) == set(best))
-    found = []
-    for e in explanation.evidence:
+    others = [e for e in explanation.evidence if set(e.names) != set(best)]
+    whole = max(sum(e.probability for e in others), 1e-300)
+    covered, found = confidence, []
+    for e in others:
         confounded = e.names in explanation.confounded
-        if set(e.names) == set(best) or (covered >= CREDIBLE and not confounded):
+        if covered >= CREDIBLE and not confounded:
             continue
-        covered += e.probability
+        share = (1.0 - confidence) * e.probability / whole
+        covered += share
         reason = reason_of(best, e.names, explanation, dataset)
-        found.append(Alternative(e.names, own - e.log_evidence, reason, e.probability))
-    shared = chance / max(sum(a.probability for a in found), chance, 1e-300)
-    found = [replace(a, probability=shared * a.probability) for a in found]
+        found.append(Alternative(e.names, own - e.log_evidence, reason, share))
     found.sort(key=lambda a: a.names not in explanation.confounded)
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden

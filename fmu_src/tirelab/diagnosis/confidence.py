@@ -55,8 +55,8 @@ def grounds_of_verdict(explanation: Explanation, validation: HeldOut) -> dict[st
 
     odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
     the noise); transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion
-    cannot tell from it); imitated: effects of the deflection alone (the law too) beside others on one surface; effects: their number
-    loudness: ln of the misfit over the noise
+    cannot tell from it); imitated: effects of the deflection alone (the law too) beside others on one surface
+    effects: their number; loudness: ln of the misfit over the noise
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
     chances = -float(np.logaddexp.reduce(rest)) if rest else FURTHEST
@@ -112,7 +112,7 @@ def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
 
 
 def _imitated(name: str, names: list[str], explanation: Explanation) -> bool:
-    """Whether an effect of the deflection alone stands beside others on one surface: they may take each other's form."""
+    """Whether an effect of the deflection alone stands beside others on one surface: forms that they share."""
     others = [n for n in names if n != name and _static(n)]
     return _static(name) and bool(others) and len(explanation.model.radii) == 1
 

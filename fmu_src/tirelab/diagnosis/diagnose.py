@@ -65,7 +65,7 @@ def diagnose(
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
     grounds = grounds_of_verdict(explanation, validation)
     confidence = probability("verdict", grounds)
-    alternatives = alternatives_of(explanation, dataset, 1.0 - confidence)
+    alternatives = alternatives_of(explanation, dataset, confidence)
     effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
     unexplained = unexplained_by(explanation.remainder)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -127,17 +127,49 @@ def calibration_of(
     return content
 
 
-def diagnosed_rows(folder: Path, seed: int, number: int, kind: str | None) -> dict[str, Any]:
-    """Draw, diagnose and score one trial; return its rows as plain values."""
+@dataclass(frozen=True)
+class Trial:
+    """A diagnosed trial: its score, and the grounds of the verdict and of each named effect."""
+
+    score: Score
+    grounds: Mapping[str, float]
+    effects: Mapping[str, Mapping[str, float]]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values."""
+        return {"score": self.score.to_json(), "grounds": self.grounds, "effects": self.effects}
+
+    @classmethod
+    def from_json(cls, content: Mapping[str, Any]) -> Trial:
+        """Return what `to_json` gave."""
+        return cls(Score.from_json(content["score"]), content["grounds"], content["effects"])
+
+    def stating(self, weights: Mapping[str, float]) -> Trial:
+        """Return the trial with probabilities of its effects by other weights: what is claimed depends on them."""
+        rows = [Row("", g, False) for g in self.effects.values()]
+        stated = dict(zip(self.effects, probabilities(rows, weights).tolist(), strict=True)) if rows else {}
+        return replace(self, score=replace(self.score, probabilities=stated))
+
+
+def calibrated(trials: Sequence[Trial], provenance: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the content of the calibration's file: the effects first, for whether a verdict is right may depend on
+    which effects it claims.
+    """
+    effects = [row for t in trials for row in effect_rows(t.score, t.effects)]
+    weights = fitted_weights(effects, OF_EFFECT)
+    verdicts = [verdict_row(t.stating(weights).score, t.grounds) for t in trials]
+    return calibration_of(verdicts, effects, provenance)
+
+
+def diagnosed(folder: Path, seed: int, number: int, kind: str | None) -> dict[str, Any]:
+    """Draw, diagnose and score one trial; return it as plain values."""
     folders = Folders(folder / f"{seed}-{number}")
     (key,) = (k for k in draw_and_commit(folders, seed, number, kind) if not k.endswith(".derived"))
     answer = read_json(folders.sealed(key))
     recordings = [read_recording(path) for path in folders.recordings(key, "train")]
     verdict = diagnose(recordings, read_tire(folders.tire(key)))
-    score = _score(key, answer, verdict)
-    effects = effect_rows(score, {e.name: e.grounds for e in verdict.effects})
-    rows = [verdict_row(score, verdict.grounds), *effects]
-    return {"rows": [[row.trial, dict(row.grounds), row.right] for row in rows]}
+    effects = {e.name: dict(e.grounds) for e in verdict.effects}
+    return Trial(_score(f"{seed}/{number}", answer, verdict), dict(verdict.grounds), effects).to_json()
 
 
 def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
@@ -163,26 +195,30 @@ def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
 @click.option("--seed", type=int, multiple=True, required=True, help="Seeds, each with that many trials.")
 @click.option("--trials", type=click.IntRange(min=PARTS), default=100, show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="File to write.")
-def main(seed: Sequence[int], trials: int, out: Path) -> None:
+@click.option(
+    "--kept", type=click.Path(path_type=Path), help="File for the trials; one that is there is gone on with."
+)
+def main(seed: Sequence[int], trials: int, out: Path, kept: Path | None) -> None:
     """Calibrate on trials of all kinds in turn."""
-    verdicts: list[Row] = []
-    effects: list[Row] = []
+    done: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8")) if kept and kept.exists() else {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         tasks: dict[str, tuple[Any, ...]] = {}
         for one in seed:
             kinds = BlindTrials(Folders(folder), one, trials, ALL_KINDS)
-            tasks |= {f"{one}/{n}": (folder, one, n, kinds.kind_of(n)) for n in range(trials)}
-        for done in work(diagnosed_rows, tasks, Cores(), "calibrating"):
-            if done.value is None:
-                click.echo(f"trial {done.key} failed and is left out: {done.error}")
+            keys = {f"{one}/{n}": n for n in range(trials)}
+            tasks |= {k: (folder, one, n, kinds.kind_of(n)) for k, n in keys.items() if k not in done}
+        for one_done in work(diagnosed, tasks, Cores(), "calibrating"):
+            if one_done.value is None:
+                click.echo(f"trial {one_done.key} failed and is left out: {one_done.error}")
                 continue
-            first, *rest = (Row(*row) for row in done.value["rows"])
-            verdicts.append(first)
-            effects.extend(rest)
+            done[one_done.key] = one_done.value
+            if kept:
+                kept.write_text(json.dumps(done), encoding="utf-8")
     command = "python -m tirelab.validation.calibrate "
     command += " ".join(f"--seed {s}" for s in seed) + f" --trials {trials}"
-    content = calibration_of(verdicts, effects, {"command": command, "kinds": "all in turn"})
+    ordered = [Trial.from_json(done[key]) for key in sorted(done)]
+    content = calibrated(ordered, {"command": command, "kinds": "all in turn"})
     out.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     for of in ("verdict", "effect"):
         click.echo(f"{of}: skill {content[of]['skill_left_out']:.2f} left out, {content[of]['rows']} rows")

@@ -11,7 +11,6 @@ from radialtire import TireModel
 from tirelab.diagnosis.alternatives import (
     CREDIBLE,
     alternatives_of,
-    confidence_of,
     insufficient_excitation,
     reason_of,
 )
@@ -36,8 +35,8 @@ def explained(*sets: tuple[str, float, float], **more: Any) -> Any:
     )
 
 
-def listed(explanation: Any, dataset: Dataset = RIDE) -> list[tuple[str, ...]]:
-    return [a.names for a in alternatives_of(explanation, dataset)]
+def listed(explanation: Any, confidence: float, dataset: Dataset = RIDE) -> list[tuple[str, ...]]:
+    return [a.names for a in alternatives_of(explanation, dataset, confidence)]
 
 
 SETS = (("inertia", 0.0, 0.6), ("force_lag", -1.4, 0.3), ("saturation", -4.0, 0.08), ("", -7.0, 0.02))
@@ -45,13 +44,19 @@ SETS = (("inertia", 0.0, 0.6), ("force_lag", -1.4, 0.3), ("saturation", -4.0, 0.
 
 def test_verdict_and_alternatives_hold_the_promised_probability_and_no_more_sets_are_listed() -> None:
     explanation = explained(*SETS)
-    found = alternatives_of(explanation, RIDE)
+    found = alternatives_of(explanation, RIDE, 0.6)
     assert [a.names for a in found] == [("force_lag",), ("saturation",)]
-    assert explanation.probability + sum(a.probability for a in found) >= CREDIBLE
+    assert 0.6 + sum(a.probability for a in found) >= CREDIBLE
+
+
+def test_what_the_confidence_leaves_is_shared_by_the_others_as_their_evidence_is() -> None:
+    """The ranking gives the others 0.3, 0.08 and 0.02; a confidence of 0.2 leaves them twice as much."""
+    found = alternatives_of(explained(*SETS), RIDE, 0.2)
+    assert [a.probability for a in found] == pytest.approx([0.6, 0.16, 0.04])
 
 
 def test_a_sure_verdict_has_no_alternatives() -> None:
-    assert listed(explained(("inertia", 0.0, 0.999), ("force_lag", -14.0, 0.001))) == []
+    assert listed(explained(("inertia", 0.0, 0.999), ("force_lag", -14.0, 0.001)), 0.98) == []
 
 
 def test_an_effect_that_the_motion_cannot_tell_apart_comes_first_however_unlikely_it_is() -> None:
@@ -62,15 +67,12 @@ def test_an_effect_that_the_motion_cannot_tell_apart_comes_first_however_unlikel
         confounded=(LOOP,),
         one_speed=True,
     )
-    assert listed(explanation) == [LOOP, ("inertia",)]
-    # Two sets that nothing in the recordings tells apart: neither is more likely than not.
-    assert confidence_of(explanation) == pytest.approx(0.45)
-    assert confidence_of(explained(*SETS)) == 0.6
+    assert listed(explanation, 0.9) == [LOOP, ("inertia",)]
 
 
 def test_an_effect_that_the_excitation_cannot_show_stands_beside_the_verdict_with_the_reason() -> None:
     why = "the recording has no time"
-    (found,) = alternatives_of(explained(("inertia", 0.0, 1.0), hidden=(("warm_up", why),)), RIDE)
+    (found,) = alternatives_of(explained(("inertia", 0.0, 1.0), hidden=(("warm_up", why),)), RIDE, 0.98)
     assert set(found.names) == {"inertia", "warm_up"}
     assert found.reason == why
 
@@ -78,7 +80,7 @@ def test_an_effect_that_the_excitation_cannot_show_stands_beside_the_verdict_wit
 def test_the_log_odds_are_those_of_the_verdict_that_is_delivered() -> None:
     """The likeliest set was refused: e^3 to 1 against the verdict."""
     explanation = explained(("inertia", 0.0, 0.9), ("", -3.0, 0.05), ("force_lag", -3.5, 0.05), verdict="")
-    found = {a.names: a.log_odds for a in alternatives_of(explanation, RIDE)}
+    found = {a.names: a.log_odds for a in alternatives_of(explanation, RIDE, 0.05)}
     assert found[("inertia",)] == pytest.approx(-3.0)
     assert found[("force_lag",)] == pytest.approx(0.5)
 

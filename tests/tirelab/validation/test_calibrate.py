@@ -1,0 +1,85 @@
+"""The calibration's regression, on rows whose law is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.special import expit
+from tirelab.diagnosis.confidence import OF_VERDICT
+from tirelab.validation.calibrate import (
+    Row,
+    calibration_of,
+    fitted_weights,
+    probabilities,
+    skill,
+    skill_left_out,
+    verdict_row,
+)
+from tirelab.validation.score import Score
+
+TRUE = {"constant": -1.0, "odds": 0.8, "remainder_share": -2.0}
+
+
+def rows(count: int, seed: int = 1) -> list[Row]:
+    """Rows of the law TRUE with random grounds."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for i in range(count):
+        grounds = {"odds": rng.normal(2.0, 3.0), "remainder_share": rng.uniform(0.0, 1.0)}
+        line = TRUE["constant"] + sum(TRUE[n] * g for n, g in grounds.items())
+        found.append(Row(str(i), grounds, bool(rng.random() < expit(line))))
+    return found
+
+
+def test_weights_of_many_rows_are_those_of_their_law() -> None:
+    found = fitted_weights(rows(20_000), ["odds", "remainder_share"])
+    # Standard errors at 20 000 rows are about 0.01, 0.07 and 0.05; three of each.
+    assert found["odds"] == pytest.approx(0.8, abs=0.04)
+    assert found["remainder_share"] == pytest.approx(-2.0, abs=0.25)
+    assert found["constant"] == pytest.approx(-1.0, abs=0.2)
+
+
+def test_a_ground_that_may_only_lower_gets_no_weight_where_it_seems_to_raise() -> None:
+    turned = [
+        Row(r.trial, {**r.grounds, "remainder_share": -r.grounds["remainder_share"]}, r.right)
+        for r in rows(2000)
+    ]
+    assert fitted_weights(turned, ["odds", "remainder_share"])["remainder_share"] == 0.0
+
+
+def test_skill_left_out_is_near_the_skill_on_other_rows_and_no_better_than_that_on_its_own() -> None:
+    few = rows(150)
+    names = ["odds", "remainder_share"]
+    right = np.array([r.right for r in few], dtype=float)
+    weights = fitted_weights(few, names)
+    others = rows(5000, seed=2)
+    elsewhere = skill(probabilities(others, weights), np.array([r.right for r in others], dtype=float))
+    left_out = skill_left_out(few, names)
+    assert left_out < skill(probabilities(few, weights), right)
+    assert left_out == pytest.approx(elsewhere, abs=0.15)
+
+
+def test_grounds_without_meaning_have_no_skill_left_out() -> None:
+    rng = np.random.default_rng(5)
+    noise = [Row(str(i), {"odds": rng.normal()}, bool(rng.random() < 0.7)) for i in range(300)]
+    assert abs(skill_left_out(noise, ["odds"])) < 0.05
+
+
+def test_a_calibration_states_rows_rate_skill_and_a_weight_for_every_ground() -> None:
+    whole = [Row(r.trial, {**dict.fromkeys(OF_VERDICT, 0.0), **r.grounds}, r.right) for r in rows(200)]
+    effects = [Row(r.trial, {**r.grounds, "share": 0.0}, r.right) for r in whole]
+    content = calibration_of(whole, effects, {"command": "x"})
+    assert content["command"] == "x"
+    assert content["verdict"]["rows"] == 200
+    assert set(content["verdict"]["weights"]) == {"constant", *OF_VERDICT}
+    assert content["verdict"]["right"] == pytest.approx(np.mean([r.right for r in whole]))
+
+
+def test_a_verdict_is_right_in_the_sense_of_its_kind(score: Callable[..., Score]) -> None:
+    """A known effect named above a half where the catalogue lacks what acts is wrong; below it, it is not."""
+    for probability, right in ((0.9, False), (0.3, True)):
+        stated = {"viscous_damping": probability}
+        one = score("outside", "unknown", "viscous_damping unknown", probabilities=stated)
+        assert verdict_row(one, {}).right is right
