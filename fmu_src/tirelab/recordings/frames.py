@@ -139,7 +139,8 @@ def _pandas_header(label: object, column: Any) -> Header:
         parts = [f"{parts[0]} [{parts[1]}]"]
     text = " ".join(parts)
     name, unit = split_header(text)
-    return Header(name, "s" if getattr(column.dtype, "kind", "") in "Mm" else unit, text)
+    dated = getattr(column.dtype, "kind", "") in "Mm"
+    return Header(name, "s" if dated else unit, text, dated)
 
 
 def _array(column: Any) -> NDArray[Any]:

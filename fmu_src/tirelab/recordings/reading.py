@@ -17,19 +17,26 @@ class Reading:
     """The columns, units and surface radius of recordings, where these differ from what the files say.
 
     columns: channel -> column; units: channel -> unit; radius: "flat", "25.4cm" or a number [m], None: as in the file;
-    each as for `read_recording`. Called with a file it returns its recording.
+    sampling: "10 Hz"; skip_rows: above the table; each as for `read_recording`. start, stop: of the part that is read
+    of every file, "10s" or a row, where the file's name does not say it; settings: a file that is read instead of the
+    recording.toml beside each recording. Called with a file it returns its recording.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     radius: str | float | None = None
+    sampling: str | float | None = None
+    skip_rows: int | None = None
+    start: str = ""
+    stop: str = ""
+    settings: Path | None = None
 
     def __call__(self, file: Path | str) -> Recording:
         """Return the recording in a file. Errors: RecordingError, see `read_recording`."""
         # here, since the command line states a reading before it loads the readers
-        from .recording import read_recording
+        from .recording import understand
 
-        return read_recording(file, columns=self.columns, radius=self.radius, units=self.units)
+        return understand(file, self).recording
 
     def words(self) -> list[str]:
         """Return the words of a command line that read recordings in the same way."""
@@ -41,6 +48,14 @@ class Reading:
                 words += [option, assignments_text(values)]
         if self.radius is not None:
             words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
+        if self.sampling is not None:
+            sampling = self.sampling if isinstance(self.sampling, str) else f"{self.sampling!r}Hz"
+            words += ["--sampling", sampling]
+        if self.skip_rows is not None:
+            words += ["--skip-rows", str(self.skip_rows)]
+        words += ["--from", self.start] if self.start else []
+        words += ["--to", self.stop] if self.stop else []
+        words += ["--settings", str(self.settings)] if self.settings is not None else []
         return words
 
 

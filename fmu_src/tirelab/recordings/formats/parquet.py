@@ -48,7 +48,8 @@ def frame_headers(schema: Mapping[str, pl.DataType]) -> tuple[Header, ...]:
     made = []
     for text, kind in schema.items():
         name, unit = split_header(text)
-        made.append(Header(name, "s" if kind.is_temporal() else unit, text))
+        dated = kind.is_temporal()
+        made.append(Header(name, "s" if dated else unit, text, dated))
     return tuple(made)
 
 

@@ -26,11 +26,15 @@ class RecordingError(TirelabError):
 
 @dataclass(frozen=True)
 class Header:
-    """One column as its file names it: its name, its unit if the file gives one, and the whole text."""
+    """One column as its file names it: its name, its unit if the file gives one, and the whole text.
+
+    dated: whether it holds dates, clock times or durations, which become seconds
+    """
 
     name: str
     unit: str | None
     text: str
+    dated: bool = False
 
 
 @dataclass(frozen=True)
