@@ -129,7 +129,9 @@ def _parts(
             )
         else:
             what = f"{origin}: no column for {', '.join(lacking.columns)}; its columns are {columns_listed(headers)}"
-            parts.append((what, f"name it with {origin.columns(**columns)}"))
+            units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
+            advice = origin.columns(**columns) + (f" and {origin.units(**units)}" if units else "")
+            parts.append((what, f"name it with {advice}"))
     for name in lacking.units:
         unit = whole.units[name]
         header = headers[matches[name].index]

@@ -152,7 +152,7 @@ def match_channels(
     trials = _trials(found, columns)
     if trials > 1:
         found = _of_trial(origin, found, trials, trial)
-    elif trial is not None and trial > 1:
+    elif trial is not None and trial > 1 and not {"deflection", "force"} <= columns.keys():
         raise RecordingError(f"{origin}: has no trials side by side; leave out @trial{trial}")
     for channel in CHANNELS:
         indices = found.get(channel.name, [])

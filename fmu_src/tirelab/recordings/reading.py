@@ -2,34 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from .choices import Choices
 
 if TYPE_CHECKING:
     from .recording import Recording
 
 
 @dataclass(frozen=True)
-class Reading:
-    """The columns, units and surface radius of recordings, where these differ from what the files say.
-
-    columns: channel -> column; units: channel -> unit; radius: "flat", "25.4cm" or a number [m], None: as in the file;
-    sampling: "10 Hz"; skip_rows: above the table; each as for `read_recording`. start, stop: of the part that is read
-    of every file, "10s" or a row, where the file's name does not say it; settings: a file that is read instead of the
-    recording.toml beside each recording. Called with a file it returns its recording.
-    """
-
-    columns: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
-    radius: str | float | None = None
-    sampling: str | float | None = None
-    skip_rows: int | None = None
-    start: str = ""
-    stop: str = ""
-    settings: Path | None = None
+class Reading(Choices):
+    """How recordings are to be read; called with a file, or a piece of one, it returns its recording."""
 
     def __call__(self, file: Path | str) -> Recording:
         """Return the recording in a file. Errors: RecordingError, see `read_recording`."""

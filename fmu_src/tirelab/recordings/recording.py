@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .asking import EXAMPLE_UNITS
 from .channels import UNIT_OF
+from .choices import Choices
 from .description import facts, html_table, one_line
 from .formats import RecordingError, Table, open_table
 from .formats.table import quoted
@@ -25,9 +26,6 @@ from .origin import Origin
 from .pieces import Piece, split_piece
 from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
 from .units import conversion
-
-if TYPE_CHECKING:
-    from .reading import Reading
 
 __all__ = ["Recording", "RecordingError", "Understood", "read_recording", "understand", "write_recording"]
 
@@ -158,7 +156,9 @@ class Recording:
         return _recording_of(origin, frame_table(origin, frame), settings)
 
     def __repr__(self) -> str:
-        return one_line(self.name, self._facts())
+        return one_line(
+            self.name, [f if f[0] != "time" else ("time", "time not measured") for f in self._facts()]
+        )
 
     def _repr_html_(self) -> str:
         extra = [
@@ -170,7 +170,12 @@ class Recording:
         return html_table(self.name, [*self._facts(), *extra, *notes])
 
     def _facts(self) -> tuple[tuple[str, str], ...]:
-        return facts(self.time, self.deflection, self.surface_radius, self.force)
+        found = facts(self.time, self.deflection, self.surface_radius, self.force)
+        return (
+            found
+            if self.timed
+            else tuple(("time", "not measured") if f[0] == "duration" else f for f in found)
+        )
 
     def __len__(self) -> int:
         return len(self.time)
@@ -231,9 +236,7 @@ def read_recording(
     Errors: RecordingError, one sentence with file, row, column, value and the next step; IncompleteRecording, one of
     them, where columns, units or the radius have to be given.
     """
-    from .reading import Reading
-
-    how = Reading(columns or {}, units or {}, radius, sampling, skip_rows)
+    how = Choices(columns or {}, units or {}, radius, sampling, skip_rows)
     return understand(path, how).recording
 
 
@@ -249,7 +252,7 @@ class Understood:
     found: Interpreted
 
 
-def understand(path: Path | str, how: Reading) -> Understood:
+def understand(path: Path | str, how: Choices) -> Understood:
     """Return the recording in a file, or in a piece of it, and how it was understood. Errors: as `read_recording`."""
     path, piece = split_piece(path)
     sidecar = read_sidecar(path, how.settings, piece.trial)

@@ -34,10 +34,12 @@ class Comparison:
         r = self.recording
         surface = _surface(float(r.surface_radius[self.at]))
         scale = float(np.max(np.abs(r.force)))
+        over = f" over {r.time[-1] - r.time[0]:g} s" if r.timed else ""
+        at = f"t = {r.time[self.at]:g} s" if r.timed else f"sample {self.at + 1}"
         return [
-            f"{len(r.time)} samples over {r.time[-1] - r.time[0]:g} s, forces up to {scale:.0f} N",
+            f"{len(r.time)} samples{over}, forces up to {scale:.0f} N",
             f"RMSE {self.rmse:.2f} N ({100 * self.rmse / scale:.2f} % of the largest force)",
-            f"peak error {self.peak:+.1f} N (recorded minus simulated) at t = {r.time[self.at]:g} s, "
+            f"peak error {self.peak:+.1f} N (recorded minus simulated) at {at}, "
             f"deflection {1000 * r.deflection[self.at]:.2f} mm, {surface}",
         ]
 
@@ -75,14 +77,15 @@ def plot(comparison: Comparison, path: Path) -> None:
     }
     loops.plot(mm[comparison.at], r.force[comparison.at], **mark)
     loops.set(xlabel="deflection [mm]", ylabel="radial force [N]", title=r.name)
-    forces.plot(r.time, r.force, **measured)
-    forces.plot(r.time, simulated, **computed)
+    course = r.time if r.timed else np.arange(1.0, len(r.time) + 1.0)
+    forces.plot(course, r.force, **measured)
+    forces.plot(course, simulated, **computed)
     forces.set(ylabel="radial force [N]")
-    residuals.plot(r.time, comparison.residual, color="tab:blue", lw=0.7)
-    residuals.plot(r.time[comparison.at], comparison.peak, **mark)
+    residuals.plot(course, comparison.residual, color="tab:blue", lw=0.7)
+    residuals.plot(course[comparison.at], comparison.peak, **mark)
     residuals.axhline(0.0, color="0.3", lw=0.8)
     residuals.set(
-        xlabel="time [s]",
+        xlabel="time [s]" if r.timed else "sample",
         ylabel="recorded − simulated [N]",
         title=f"RMSE {comparison.rmse:.2f} N, peak {comparison.peak:+.1f} N",
     )

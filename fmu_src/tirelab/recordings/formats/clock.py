@@ -104,9 +104,10 @@ def _instants(plain: pl.Series, form: str) -> pl.Series:
         found: pl.Series = pl.select(pl.when(certain).then(nanoseconds).otherwise(None)).to_series()
         return found
     try:
-        return plain.str.to_datetime(form, strict=False, time_unit="ns").cast(pl.Int64)
+        instants: pl.Series = plain.str.to_datetime(form, strict=False, time_unit="ns").cast(pl.Int64)
     except pl.exceptions.PolarsError:
         return pl.Series([None] * len(plain), dtype=pl.Int64)
+    return instants
 
 
 def _words(form: str) -> str:

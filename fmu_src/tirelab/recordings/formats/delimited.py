@@ -53,6 +53,8 @@ class DelimitedTable:
         notes = [*self.layout.notes, *(note for clock in reader.clocks.values() for note in clock.notes)]
         if reader.cells.decimal_mark() == ",":
             notes.append("commas read as decimal commas")
+        if self.layout.style.thousands:
+            notes.append(f"{self.layout.style.thousands!r} read as the mark between thousands")
         if reader.comments:
             lines = listed([str(line) for line in reader.comments])
             notes.append(f"comment lines (#) skipped: row {lines}")
