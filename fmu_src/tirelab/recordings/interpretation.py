@@ -166,9 +166,17 @@ def interpret(
         notes.append(f"{part.stop - part.start} of {samples} samples read: {_part_text(piece)}")
     notes += gap_notes(values["time"])
     units = {name: convert.unit for name, convert in plan.conversions.items()}
-    doubts = doubts_of(plan.origin, values, units) if not doubt else ()
-    notes += [f"doubtful: {sentence}" for sentence in doubts]
     first = 0 if part is None else int(part.start)
+
+    def where(channel: str, sample: int | None) -> str:
+        header = plan.headers.get(channel)
+        if header is None:
+            return ""
+        column = f"column {quoted(header.text)}"
+        return column if sample is None else f"{rows.place(sample + first)}, {column}"
+
+    doubts = doubts_of(plan.origin, values, units, where) if not doubt else ()
+    notes += [f"doubtful: {sentence}" for sentence in doubts]
     return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first)
 
 

@@ -5,7 +5,7 @@ Nothing here is certain, so nothing is refused or changed: what is doubtful is s
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,8 +59,16 @@ class Zero:
     stroke: float
 
 
-def doubts_of(origin: Origin, values: Mapping[str, FloatArray], units: Mapping[str, str]) -> tuple[str, ...]:
-    """Return what is doubtful of the channels in SI, in sentences; units: of each channel as it was read."""
+def doubts_of(
+    origin: Origin,
+    values: Mapping[str, FloatArray],
+    units: Mapping[str, str],
+    where: Callable[[str, int | None], str],
+) -> tuple[str, ...]:
+    """Return what is doubtful of the channels in SI, each in one sentence with its row and column.
+
+    units: of each channel as it was read; where: returns the place of a sample of a channel, of None its column alone
+    """
     for name in ("deflection", "force"):
         largest = max(abs(float(values[name].min())), abs(float(values[name].max())))
         if not largest <= LARGEST_PLAUSIBLE[name]:
@@ -68,17 +76,25 @@ def doubts_of(origin: Origin, values: Mapping[str, FloatArray], units: Mapping[s
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]
-    found = list(_radius_doubts(origin, radius, units.get("radius", "")))
+    found = [
+        _placed(where("radius", step * at), sentence)
+        for at, sentence in _radius_doubts(origin, radius, units.get("radius", ""))
+    ]
     zero = force_begins(x, f, radius)
     size = _size_doubt(origin, x, f, units)
     if size:
-        found.append(size)
+        found.append(_placed(where("force", step * int(np.argmax(f))), size))
     if zero is not None and abs(zero.begins) > max(EARLY, EARLY_PART * zero.stroke):
-        found.append(
+        sentence = (
             f"the force begins at {1e3 * zero.begins:.1f} mm of deflection: if that is the gauge's zero, subtract it "
             "before the export, or let the diagnosis find the offset"
         )
+        found.append(_placed(where("deflection", None), sentence))
     return tuple(found)
+
+
+def _placed(place: str, sentence: str) -> str:
+    return f"{place}: {sentence}" if place else sentence
 
 
 def too_deep(origin: Origin, deepest: float, unit: str) -> str:
@@ -139,12 +155,14 @@ def _commonest(radius: FloatArray) -> NDArray[np.bool_]:
     return np.asarray(radius == found[np.argmax(counts)])
 
 
-def _radius_doubts(origin: Origin, radius: FloatArray, unit: str) -> list[str]:
+def _radius_doubts(origin: Origin, radius: FloatArray, unit: str) -> list[tuple[int, str]]:
+    """Return a sentence for a radius that is as good as flat, with the first sample that has one."""
     sizes = np.unique(np.abs(radius[np.isfinite(radius)]))
     large = sizes[sizes > GROUND]
     if not len(large):
         return []
     shown = f"{large[0]:.4g} m"
+    at = int(np.argmax(np.abs(radius) == large[0]))
     factor = dict(LENGTHS).get(unit)
     finer = [
         (name, large[0] / factor * f)
@@ -152,12 +170,13 @@ def _radius_doubts(origin: Origin, radius: FloatArray, unit: str) -> list[str]:
         if factor is not None and f < factor and 5e-3 <= large[0] / factor * f <= LARGEST_RADIUS
     ]
     if not finer:
-        return [f"a surface radius of {shown} is as good as flat: say so with {origin.radius('flat')}"]
+        return [(at, f"a surface radius of {shown} is as good as flat: say so with {origin.radius('flat')}")]
     name, length = finer[0]
-    return [
+    sentence = (
         f"a surface radius of {shown} is as good as flat: {name}? Then it is {100.0 * length:.4g} cm, "
         f"{origin.units(radius=name)}; if the ground is flat, {origin.radius('flat')}"
-    ]
+    )
+    return [(at, sentence)]
 
 
 def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str, str]) -> str:

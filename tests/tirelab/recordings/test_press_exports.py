@@ -116,11 +116,12 @@ def test_the_lines_above_the_table_are_kept(exports: Path) -> None:
 class TestWhatIsDoubtful:
     def test_a_gauge_whose_zero_is_off(self, exports: Path, as_frame: bool) -> None:
         (doubt,) = of(exports / "zweg_kraft_offset.csv", as_frame, radius="flat").doubts
-        assert doubt.startswith("the force begins at 5.0 mm of deflection")
+        assert doubt.startswith("column 'Weg (mm)': the force begins at 5.0 mm of deflection")
 
     def test_kilonewtons_called_newtons(self, exports: Path, as_frame: bool) -> None:
         recording = of(exports / "kN_said_N.csv", as_frame, radius="flat")
         (doubt,) = recording.doubts
+        assert doubt.startswith(("row 152, column 'Load (N)'", "sample 151, column 'Load (N)'"))
         assert "about 1000 times too small for a tire at 22 mm of deflection: kN? Then" in doubt
         assert f"doubtful: {doubt}" in recording.notes
 
@@ -132,7 +133,9 @@ class TestWhatIsDoubtful:
 
     def test_a_radius_of_127_metres(self, exports: Path, as_frame: bool) -> None:
         (doubt,) = of(exports / "mm_but_radius_m.csv", as_frame).doubts
-        assert doubt.startswith("a surface radius of 127 m is as good as flat: mm? Then it is 12.7 cm")
+        first = "sample 1" if as_frame else "row 2"
+        said = "a surface radius of 127 m is as good as flat: mm? Then it is 12.7 cm"
+        assert doubt.startswith(f"{first}, column 'Radius (m)': {said}")
 
     def test_signs_are_turned_and_said(self, exports: Path, as_frame: bool) -> None:
         right = read_recording(exports / "de_units_header.csv", radius="flat")
