@@ -43,12 +43,17 @@ class Clock:
         self.form = ""
         self.start: int | None = None
         self.notes: list[str] = []
+        self._direct = ""  # the form as it is written, where nothing has to be brought into form first
 
     def seconds(self, texts: pl.Series) -> FloatArray:
         """Return the seconds from the first time that was ever read; NaN where there is no text.
 
         Errors: ClockError for a text that is no time, or one written in another way than those before.
         """
+        if self._direct and self.start is not None:
+            instants = _instants(texts, self._direct)
+            if not instants.null_count():
+                return np.asarray((instants.to_numpy() - self.start) / 1e9, dtype=np.float64)
         plain = texts.cast(pl.String).str.strip_chars()
         plain = pl.select(
             pl.when(plain.str.to_lowercase().is_in(["", "nan", "na", "null"])).then(None).otherwise(plain)
@@ -58,6 +63,10 @@ class Clock:
         plain = plain.str.replace(r"\s*(?:Z|[+-]\d{2}:?\d{2})$", "").str.replace(r"\s+", " ")
         if not self.form:
             self.form = self._form_of(plain.drop_nulls())
+            if "T" in str(texts.drop_nulls().head(1).to_list()) and self.form != "duration":
+                self._direct = self.form.replace(" ", "T", 1)
+            elif self.form != "duration":
+                self._direct = self.form
         instants = (
             _instants(plain, self.form) if self.form else pl.Series([None] * len(plain), dtype=pl.Int64)
         )

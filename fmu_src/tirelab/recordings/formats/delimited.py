@@ -165,7 +165,9 @@ def _parsed(block: bytes, layout: Layout, wanted: Sequence[int]) -> pl.DataFrame
             )
             if as_text:
                 frame = frame.with_columns(
-                    _ungrouped(pl.col(_named(i)), layout.style) for i in wanted if i not in clocks
+                    _ungrouped(pl.col(_named(i)), layout.style).alias(_named(i))
+                    for i in wanted
+                    if i not in clocks
                 )
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, UserWarning):
         return None

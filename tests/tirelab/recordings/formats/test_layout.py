@@ -139,6 +139,20 @@ class TestNumbers:
         np.testing.assert_allclose(recording.force, np.round(F, 2))
         assert f"{thousands!r} read as the mark between thousands" in recording.notes
 
+    def test_clean_columns_are_not_read_row_by_row(self, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        stamps = [f"2025-06-03T14:05:{t:06.3f};{x:.3f};{f:,.3f}" for t, x, f in zip(T, X, F, strict=True)]
+        text = "Zeit;Weg [mm];Kraft [N]\n" + "\n".join(stamps) + "\n"
+        plain = read(path, text + "# one comment\n")
+
+        def never(*_: object) -> None:
+            raise AssertionError("read row by row")
+
+        monkeypatch.setattr("tirelab.recordings.formats.careful.RowReader.read", never)
+        monkeypatch.setattr("tirelab.recordings.formats.delimited.BLOCK", 500)
+        recording = read(path, text)
+        np.testing.assert_array_equal(recording.time, plain.time)
+        np.testing.assert_array_equal(recording.force, plain.force)
+
     def test_a_second_decimal_mark_is_refused_among_thousands_too(self, path: Path) -> None:
         path.write_text("Zeit [s];Weg [mm];Kraft [N]\n" + rows() + "9,0;1.234,5;1.5\n", encoding="utf-8")
         with pytest.raises(RecordingError, match=r"row 83.*'1\.5' has the decimal mark"):
