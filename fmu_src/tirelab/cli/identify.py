@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,7 @@ def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, readin
     from rich.console import Console
 
     from ..identification.identify import identify
+    from ..identification.misfit import misfit_sentence
     from ..recordings.files import recording_files
 
     console = Console(highlight=False)
@@ -70,6 +72,10 @@ def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, readin
 
         found = identify(read, law=law, name=name, progress=show)
     _print(console, read, found)
+    words = ["tirelab", "diagnose", *map(str, recordings), "--tire", str(out), *reading.words()]
+    misfit = misfit_sentence(found.rmse, found.reading_noise, shlex.join(words))
+    if misfit:
+        console.print(f"- {misfit}", markup=False, soft_wrap=True)
     beside = out.parent / f"{out.stem}.identification.json"
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
