@@ -19,6 +19,7 @@ COMMANDS = {
     "compare": "Replay a tire's FMU on a recording.",
     "diagnose": "Name the physics that a tire lacks, and correct it.",
     "identify": "Identify a tire from recordings of it.",
+    "inspect": "Show what is understood of recordings, and keep it in recording.toml.",
     "prove": "Put the diagnosis to blind trials.",
     "ride": "Ride over terrain: deflection and force at every position.",
     "rig": "Write the recordings that the article's rig would have made.",

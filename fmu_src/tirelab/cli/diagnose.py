@@ -31,7 +31,11 @@ COLUMNS = 100
     type=FILE,
     multiple=True,
     metavar="RECORDING",
-    help="Recording that is not fitted, only used to check the correction; may be repeated.",
+    help="Recording that is not fitted, only used to check the correction, or a range of the one RECORDING: 20s:30s; "
+    "may be repeated.",
+)
+@click.option(
+    "--fit", metavar="RANGE", help="Part of the one RECORDING that is fitted: 0s:20s (time), 100:2000 (rows)."
 )
 @out_option("diagnosis")
 @reading_options
@@ -46,11 +50,32 @@ COLUMNS = 100
 @click.option("--dask", metavar="ADDRESS", help="With --each: address of the scheduler of a Dask cluster.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     """Find the physics that a tire model lacks to reproduce RECORDING... (files or folders), and correct it."""
+    fit = options.pop("fit")
+    options["held_out"] = tuple(_ranged(recordings, file) for file in options["held_out"])
+    if fit is not None:
+        recordings = (_ranged(recordings, Path(fit), "--fit"),)
     check_files((*recordings, *options["held_out"]))
     if each:
         _batch(recordings, options)
     else:
         _single(recordings, options)
+
+
+def _ranged(recordings: tuple[Path, ...], given: Path, option: str = "--held-out") -> Path:
+    """Return the piece of the one recording that a range means, such as press.csv@0s:20s; a file as it is."""
+    if option == "--held-out" and (given.exists() or ":" not in given.name):
+        return given
+    from ..recordings.pieces import is_range
+
+    if not is_range(str(given)):
+        if option == "--held-out":
+            return given
+        raise TirelabError(f"{option} {given}: is no range; write 0s:20s (time) or 100:2000 (rows)")
+    if len(recordings) != 1 or recordings[0].is_dir():
+        raise TirelabError(
+            f"{option} {given}: is a range of one recording; name its file, as in press.csv@{given}"
+        )
+    return recordings[0].with_name(f"{recordings[0].name}@{given}")
 
 
 def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import shlex
+from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,6 +18,9 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 FILE = click.Path(path_type=Path)
 
+WORDS = "tirelab.words"
+"""The key of a context's meta under which the words of its command line are kept."""
+
 
 class Refusal(click.ClickException):
     """Bad input reported in one sentence: exit status 2, no traceback."""
@@ -27,43 +31,104 @@ class Refusal(click.ClickException):
 def check_files(given: Iterable[Path]) -> None:
     """Raise TirelabError where a file or folder is not there: before anything is loaded that could read it."""
     for path in given:
-        if not path.exists():
+        if path.exists():
+            continue
+        name = path.name.partition("@")[0]  # of press.csv@10s:20s
+        if not name or not path.with_name(name).exists():
             raise TirelabError(f"{path}: there is no such file; check the path")
 
 
 class SentenceCommand(click.Command):
     """A command that ends on bad input with its sentence."""
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Keep the words of the command line, so that advice can repeat them."""
+        ctx.meta[WORDS] = tuple(args)
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
         try:
             return super().invoke(ctx)
         except (TirelabError, TireFileError, ParameterError, InputError) as error:
-            raise Refusal(str(error)) from None
+            raise Refusal(_sentence(ctx, error)) from None
+
+
+def _sentence(ctx: click.Context, error: Exception) -> str:
+    """Return the sentence of an error; where options are lacking, with the whole command that has them."""
+    words = getattr(error, "words", None)
+    if words is None:
+        return str(error)
+    added = words()
+    command = shlex.join(["tirelab", str(ctx.info_name), *_without(ctx.meta[WORDS], added), *added])
+    return f"{error}\nThe whole command, with guesses to check: {command}"
+
+
+def _without(given: Sequence[str], added: Sequence[str]) -> list[str]:
+    """Return the words of a command line without the options that others replace."""
+    options = [word for word in added if word.startswith("--")]
+    kept: list[str] = []
+    value = False
+    for word in given:
+        if value:
+            value = False
+        elif word in options:
+            value = True
+        elif not word.startswith(tuple(f"{option}=" for option in options)):
+            kept.append(word)
+    return kept
+
+
+_READING = (
+    click.option(
+        "--columns", metavar="NAME=COLUMN,...", help="Which of the file's columns is which quantity."
+    ),
+    click.option("--units", metavar="NAME=UNIT,...", help="Units of quantities, over what the file says."),
+    click.option(
+        "--radius", metavar="R", help="Surface of a recording without a radius column: flat, 25.4cm, ..."
+    ),
+    click.option(
+        "--sampling", metavar="RATE", help="Samples of a recording without a time column: 10Hz, 0.1s."
+    ),
+    click.option(
+        "--skip-rows",
+        type=click.IntRange(0),
+        metavar="N",
+        help="Rows of text above the table.  [default: found]",
+    ),
+    click.option(
+        "--from", "start", metavar="BOUND", help="Read from this time (10s) or row (100) on, of every file."
+    ),
+    click.option("--to", "stop", metavar="BOUND", help="Read up to this time, without it, or row, with it."),
+    click.option(
+        "--settings",
+        type=FILE,
+        help="Read this file of settings, not the recording.toml beside each recording.",
+    ),
+)
+_NAMES = ("columns", "units", "radius", "sampling", "skip_rows", "start", "stop", "settings")
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say how a recording is to be read; the command gets them as `reading`."""
 
-    @click.option(
-        "--columns", metavar="NAME=COLUMN,...", help="Which of the file's columns is which quantity."
-    )
-    @click.option("--units", metavar="NAME=UNIT,...", help="Units of quantities, over what the file says.")
-    @click.option(
-        "--radius", metavar="R", help="Surface of a recording without a radius column: flat, 25.4cm, ..."
-    )
     @wraps(command)
-    def with_reading(
-        *args: Any, columns: str | None, units: str | None, radius: str | None, **options: Any
-    ) -> Any:
-        how = Reading(radius=radius)
-        if columns or units:
+    def with_reading(*args: Any, **options: Any) -> Any:
+        said = {name: options.pop(name) for name in _NAMES}
+        said["start"], said["stop"] = said["start"] or "", said["stop"] or ""
+        if said["columns"] or said["units"]:
             from ..recordings.channels import parse_columns, parse_units
 
-            how = Reading(parse_columns(columns or ""), parse_units(units or ""), radius)
-        return command(*args, reading=how, **options)
+            said["columns"] = parse_columns(said["columns"] or "")
+            said["units"] = parse_units(said["units"] or "")
+        else:
+            said["columns"], said["units"] = {}, {}
+        return command(*args, reading=Reading(**said), **options)
 
-    return with_reading
+    with_options: Callable[..., Any] = with_reading
+    for option in reversed(_READING):
+        with_options = option(with_options)
+    return with_options
 
 
 def out_option(default: str) -> Callable[[Command], Command]:

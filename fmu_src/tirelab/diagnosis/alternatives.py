@@ -84,15 +84,18 @@ def reason_of(names: Sequence[str], other: Sequence[str], explanation: Explanati
 
 def insufficient_excitation(explanation: Explanation, dataset: Dataset) -> list[str]:
     """Return what the recordings lack that tells effects apart, each as an action."""
+    timed = explanation.excitation.timed
     lacks = []
-    if explanation.excitation.one_speed:
+    if not timed:
+        lacks.append("no time: record it")
+    elif explanation.excitation.one_speed:
         lacks.append("one speed only: drive a second speed")
     if len(dataset.radii) == 1:
         lacks.append("one surface only: press on a second surface")
     rates = [np.abs(e.motion.rate) for e in dataset.experiments]
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
     held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
-    if held < LONG_ENOUGH:
+    if timed and held < LONG_ENOUGH:
         lacks.append(f"no hold: hold 10 s at {650.0 * dataset.max_deflection:.0f} mm")
     if max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
         lacks.append("no repeated cycle: drive each cycle twice")

@@ -23,6 +23,7 @@ from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
 from .residual_model import residual_models, unexplained_by
 from .summary import summarise
+from .untimed import OF_TIME, is_timed, places_told, remainder_told
 from .verdict import Fit, Verdict
 
 MOST_TESTED = 3
@@ -57,7 +58,8 @@ def diagnose(
     _check_names(allowed)
     check_recordings(fitted)
     dataset = dataset_of(fitted, baseline)
-    explanation = explain_misfit(fitted, baseline, allowed, report)
+    timed = is_timed(fitted)
+    explanation = explain_misfit(fitted, baseline, allowed, report, timed=timed)
     levels = [floor.level for floor in explanation.floors]
     check_signal(dataset, levels)
     report("validating the correction on held-out data")
@@ -67,7 +69,8 @@ def diagnose(
     confidence = probability("verdict", grounds)
     alternatives = alternatives_of(explanation, dataset, confidence)
     effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
-    unexplained = unexplained_by(explanation.remainder)
+    left = remainder_told(explanation.remainder, timed)
+    unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(
         fitted,
@@ -78,17 +81,17 @@ def diagnose(
     )
     fit = _figures(before, explanation, validation)
     report("searching for a test that separates the alternatives")
-    test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset))
+    test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset, timed))
     return Verdict(
         effects=effects,
         confidence=confidence,
         grounds=grounds,
         alternatives=alternatives,
-        remainder=explanation.remainder,
+        remainder=left,
         unexplained_by=unexplained,
         residual_models=remainder,
         summary=summarise(effects, alternatives, remainder, confidence, fit, test),
-        where=places,
+        where=places_told(places, timed),
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
         evidence=explanation.evidence,
@@ -160,8 +163,10 @@ def _recommend(
     return nearest
 
 
-def _limits_of(dataset: Dataset) -> Limits:
+def _limits_of(dataset: Dataset, timed: bool) -> Limits:
     """Return the limits of a rig that did what was recorded, and may drive twice as fast."""
+    if not timed:
+        return Limits(deepest=dataset.max_deflection, fastest=FASTEST)
     fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in dataset.experiments)
     return Limits(deepest=dataset.max_deflection, fastest=max(FASTEST, fastest))
 

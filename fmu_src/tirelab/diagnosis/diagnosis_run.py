@@ -22,11 +22,12 @@ from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..fmu.replay import replay
 from ..recordings.files import recording_files
+from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
-from .diagnose import diagnose
+from .diagnose import PoorRecording, diagnose
 from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
 
@@ -77,11 +78,17 @@ def run_diagnosis(
     _check_folder(out)
     fitted = [_read(file, reading, report) for file in files]
     kept = [_read(file, reading, report) for file in kept_files]
-    verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+    _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
+    try:
+        verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+    except PoorRecording as error:
+        doubts = [f"{r.name}: {doubt}" for r in fitted for doubt in r.doubts]
+        raise PoorRecording("; ".join([str(error), *doubts])) from None
     report("building the corrected FMU")
     fmu = build_fmu(verdict.tire, out).path
     on_fitted, more = _replayed(fmu, fitted, baseline, verdict.tire, report)
     on_kept, warnings = _replayed(fmu, kept, baseline, verdict.tire, report)
+    warnings += _without_time((*fitted, *kept))
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
     _write(out, content, verdict)
@@ -140,6 +147,31 @@ def _check_once(files: Sequence[Path]) -> None:
                 f"{file} is given twice; give each recording once, either to fit or to hold out"
             )
         seen.add(file.resolve())
+
+
+def _check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
+    """Raise TirelabError where two pieces of one file share samples: each sample is fitted or held out, once."""
+    for i, (file, one) in enumerate(read):
+        for other_file, other in read[:i]:
+            same = one.source is not None and other.source is not None and one.source.samefile(other.source)
+            if not same or split_piece(file)[1].trial != split_piece(other_file)[1].trial:
+                continue
+            if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
+                raise TirelabError(
+                    f"{other_file} and {file} share {max(one.time[0], other.time[0]):.6g} to "
+                    f"{min(one.time[-1], other.time[-1]):.6g} s; give each part of a file once"
+                )
+
+
+def _without_time(recordings: Sequence[Recording]) -> list[str]:
+    """Return a warning where times were made up."""
+    names = [recording.name for recording in recordings if not recording.timed]
+    if not names:
+        return []
+    return [
+        f"the time of {', '.join(names)} was not measured: seconds count samples here, and nothing of rate, time or "
+        "acceleration was judged"
+    ]
 
 
 def _check_folder(out: Path) -> None:

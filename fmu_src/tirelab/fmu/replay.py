@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, Protocol
 
 import fmpy
@@ -22,6 +22,9 @@ from ..errors import TirelabError
 
 INPUTS = ("deflection", "surface_radius")
 OUTPUT = "radial_force"
+
+FMI_TRUE, WARNING = 1, 1
+"""fmi2True; the highest status that is no failure (FMI 2.0.4, 2.1.3)."""
 
 NO_REASON = "it logged no reason"
 
@@ -108,6 +111,59 @@ def opened(fmu: Path) -> Iterator[OpenFmu]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def _check(function: str, status: int) -> None:
+    if status > WARNING:
+        raise FMICallException(function=function, status=status)
+
+
+class _Stepper:
+    """An instance led from sample to sample by its three functions, without the lists and copies that fmpy makes for
+    each call: the FMU reads the inputs from where they lie and writes its output to where it belongs.
+
+    inputs (samples, 2); sample: the one that was reached
+    """
+
+    def __init__(self, instance: FMU2Slave, inputs: NDArray[np.float64], references: Sequence[int]) -> None:
+        status, pointer, size, real = ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
+        access = ctypes.CFUNCTYPE(status, pointer, pointer, size, pointer)
+        self._set = access(("fmi2SetReal", instance.dll))
+        self._get = access(("fmi2GetReal", instance.dll))
+        self._step = ctypes.CFUNCTYPE(status, pointer, real, real, ctypes.c_int)(("fmi2DoStep", instance.dll))
+        self._component = instance.component
+        self._references = (ctypes.c_uint * len(references))(*references)
+        self._inputs = np.ascontiguousarray(inputs)
+        self.force = np.empty(len(inputs))
+        self.sample = 0
+
+    def access(self, sample: int, before_output: Callable[[], None]) -> None:
+        """Set the inputs of a sample, call a function, and get the output."""
+        references = ctypes.addressof(self._references)
+        width = self._inputs.shape[1]
+        row = self._inputs.ctypes.data + sample * self._inputs.strides[0]
+        _check("fmi2SetReal", self._set(self._component, references, width, row))
+        before_output()
+        at = self.force.ctypes.data + 8 * sample
+        output = references + ctypes.sizeof(ctypes.c_uint) * width
+        _check("fmi2GetReal", self._get(self._component, output, 1, at))
+
+    def run(self, times: list[float], steps: list[float]) -> None:
+        """Step from each of the times by each of the steps [s], from the first sample to the last."""
+        set_real, do_step, get_real, component = self._set, self._step, self._get, self._component
+        width, stride = self._inputs.shape[1], self._inputs.strides[0]
+        references = ctypes.addressof(self._references)
+        output = references + ctypes.sizeof(ctypes.c_uint) * width
+        row, at = self._inputs.ctypes.data, self.force.ctypes.data
+        for self.sample, (time, step) in enumerate(zip(times, steps, strict=True), 1):
+            row += stride
+            at += 8
+            if status := set_real(component, references, width, row):
+                _check("fmi2SetReal", status)
+            if status := do_step(component, time, step, FMI_TRUE):
+                _check("fmi2DoStep", status)
+            if status := get_real(component, output, 1, at):
+                _check("fmi2GetReal", status)
+
+
 def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
     """Return the FMU's radial force [N] at every sample of `motion`, without a sample of delay.
 
@@ -121,31 +177,23 @@ def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
                 raise TirelabError(
                     f"{fmu} has no variable {name!r}; a tire has {', '.join((*INPUTS, OUTPUT))}"
                 )
-        inputs = [unit.references[name] for name in INPUTS]
-        output = [unit.references[OUTPUT]]
         instance = unit.instance
-        force = np.empty(len(motion.time))
-        samples = zip(
-            motion.time.tolist(), motion.deflection.tolist(), motion.surface_radius.tolist(), strict=True
-        )
-        at = SimpleNamespace(sample=0, time=float(motion.time[0]))
+        times = motion.time.tolist()
+        inputs = np.column_stack([motion.deflection, motion.surface_radius])
+        stepper = _Stepper(instance, inputs, [unit.references[name] for name in (*INPUTS, OUTPUT)])
         try:
-            instance.setupExperiment(startTime=at.time)
+            instance.setupExperiment(startTime=times[0])
             instance.enterInitializationMode()
-            for at.sample, (time, deflection, surface_radius) in enumerate(samples):
-                instance.setReal(inputs, [deflection, surface_radius])
-                if at.sample == 0:
-                    instance.exitInitializationMode()
-                else:
-                    instance.doStep(at.time, time - at.time)
-                force[at.sample] = instance.getReal(output)[0]
-                at.time = time
+            stepper.access(0, instance.exitInitializationMode)
+            stepper.run(times[:-1], np.diff(motion.time).tolist())
             instance.terminate()
         except FMICallException as error:
             reason = unit.messages()[-1] if unit.messages() else str(error)
+            sample = stepper.sample
             raise TirelabError(
-                f"{fmu} refused sample {at.sample} (after t = {at.time:g} s): {reason}"
+                f"{fmu} refused sample {sample} (after t = {times[max(sample - 1, 0)]:g} s): {reason}"
             ) from None
+    force = stepper.force
     if not np.isfinite(force[0]):
         raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
     return force

@@ -15,6 +15,7 @@ from ..recordings.recording import Recording
 from .forms import Form, HullForm, form_of
 from .intervals import profile
 from .joint import JointFit, joint_fit
+from .misfit import reading_noise
 from .noise import PowerFit, with_covariance
 from .power_fit import chunks, fit_power, inner_products
 from .result import Constant, Identification, SurfaceFit, recording_notes, statements
@@ -100,6 +101,7 @@ def identify(
         two_stage_rmse=_rmse(surfaces, form.coefficients(start)),
         chi_square=profiles.chi_square,
         freedom=profiles.freedom,
+        reading_noise=reading_noise(surfaces, form.coefficients(joint.logs)),
         notes=(
             *why,
             *recording_notes(rows, alone),

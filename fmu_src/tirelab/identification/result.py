@@ -104,6 +104,7 @@ class Identification:
     rmse: of the law over all samples [N]; two_stage_rmse: the same of the article's two stages
     chi_square, freedom: what the law leaves of the surfaces' A and B, in units of their noise, and its expectation
     notes: sentences about the choice of law, the recordings and what they cannot determine
+    reading_noise: [N], of the readings alone; NaN where they are too few
     """
 
     tire: TireModel
@@ -116,6 +117,7 @@ class Identification:
     chi_square: float
     freedom: int
     notes: tuple[str, ...]
+    reading_noise: float = math.nan
 
     def to_json(self) -> str:
         """Return everything but the tire itself as JSON; infinite numbers are the text "inf" or "-inf"."""
@@ -130,6 +132,7 @@ class Identification:
             "two_stage_rmse": self.two_stage_rmse,
             "chi_square": self.chi_square,
             "freedom": self.freedom,
+            "reading_noise": self.reading_noise,
             "surfaces": [asdict(s) for s in self.surfaces],
             "notes": list(self.notes),
         }

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from radialtire import Hull1996
 from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from .part_laws import LawFit
 from .result import Identification, SurfaceFit, digits
 from .surfaces import CM_PER_M, describe
 
@@ -25,6 +27,25 @@ def surface_table(identification: Identification) -> Table:
         table.add_column(escape(head), justify="right", no_wrap=True)
     for row in identification.surfaces:
         table.add_row(describe(row.surface_radius), *_cells(row))
+    return table
+
+
+def law_table(fits: Sequence[LawFit]) -> Table:
+    """Return the laws that were compared: what each leaves, and its constants."""
+    table = _table(
+        "Laws compared",
+        "all samples alike, loading and unloading together; standard uncertainties for white noise; the first has the "
+        "least Bayesian criterion",
+    )
+    table.add_column("law", no_wrap=True)
+    table.add_column("RMSE\n" + escape("[N]"), justify="right", no_wrap=True)
+    table.add_column("constants")
+    for fit in fits:
+        constants = (
+            f"{symbol} = {with_uncertainty(value, spread)}{'' if unit == '1' else ' ' + unit}"
+            for symbol, value, spread, unit in fit.constants
+        )
+        table.add_row(fit.name, f"{fit.rmse:.4g}", escape(", ".join(constants)))
     return table
 
 

@@ -8,6 +8,7 @@ from .formats import Header, RecordingError
 from .formats.table import listed, quoted
 from .origin import Origin
 from .units import measures
+from .vocabulary import foreign_channel, name_and_unit, without_count
 
 
 @dataclass(frozen=True)
@@ -109,54 +110,146 @@ def known_channel(name: str, where: str) -> None:
         raise RecordingError(f"{where}: {quoted(name)} is no channel; the channels are {', '.join(UNIT_OF)}")
 
 
+@dataclass(frozen=True)
+class Matches:
+    """Which column holds which channel, the required channels that none holds, and how many trials the table has.
+
+    trials: 1, or the number of tests that stand side by side, of which the columns of one are taken
+    """
+
+    columns: Mapping[str, Match]
+    missing: tuple[str, ...]
+    trials: int = 1
+
+
 def match_channels(
-    origin: Origin, headers: Sequence[Header], time_axis: int | None, columns: Mapping[str, str]
-) -> dict[str, Match]:
+    origin: Origin,
+    headers: Sequence[Header],
+    time_axis: int | None,
+    columns: Mapping[str, str],
+    trial: int | None = None,
+) -> Matches:
     """Which column holds which channel.
 
     A column the user names is found by its text, by its name without the unit (both whatever the case), or by
     its number (#1 the first); `+` or `-` before it fixes its sign; an empty name leaves the channel out.
     Others are found by the words and symbols of `CHANNELS`, symbols in their own case unless a fitting unit
-    follows.
+    follows; where there is none, by the words of other languages, and then by names that end in a number.
+    trial: which one, from 1, where several tests stand side by side
 
-    Errors: RecordingError when a column named is not there, a required channel has none, or several may be.
+    Errors: RecordingError when a column named is not there, or several may be the one of a channel.
     """
-    for name in columns:
-        known_channel(name, f"{origin}, columns")
-    matches: dict[str, Match] = {}
-    for name, text in columns.items():
-        if text.strip():
-            matches[name] = _named(origin, headers, name, text.strip())
-    assigned = {match.index: name for name, match in matches.items()}
-    if len(assigned) < len(matches):
-        raise RecordingError(f"{origin}: one column is given for two channels; name another for one of them")
+    matches = _named_columns(origin, headers, columns)
+    assigned = {match.index for match in matches.values()}
+    found: dict[str, list[int]] = {}
     for channel in CHANNELS:
         if channel.name in columns:
             continue
         if channel.name == "time" and time_axis is not None:
             matches["time"] = Match(time_axis)
             continue
-        found = [i for i, header in enumerate(headers) if i not in assigned and _may_be(header, channel)]
-        if len(found) > 1:
-            candidates = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in found)
-            which = origin.columns(**{channel.name: f"#{found[0] + 1}"})
-            without = (
-                "" if channel.required else f", or leave it out with {origin.columns(**{channel.name: ''})}"
-            )
-            raise RecordingError(
-                f"{origin}: {candidates} may each be the {channel.name}; say which with {which}{without}"
-            )
-        if found:
-            matches[channel.name] = Match(found[0])
-    missing = [c.name for c in CHANNELS if c.required and c.name not in matches]
-    if missing:
-        raise _missing(origin, headers, missing)
+        found[channel.name] = _found(headers, channel, assigned)
+    trials = _trials(found, columns)
+    if trials > 1:
+        found = _of_trial(origin, found, trials, trial)
+    elif trial is not None and trial > 1 and not {"deflection", "force"} <= columns.keys():
+        raise RecordingError(f"{origin}: has no trials side by side; leave out @trial{trial}")
+    for channel in CHANNELS:
+        indices = found.get(channel.name, [])
+        if len(indices) > 1:
+            raise _several(origin, headers, channel, indices)
+        if indices:
+            matches[channel.name] = Match(indices[0])
+    ordered = {c.name: matches[c.name] for c in CHANNELS if c.name in matches}
+    given = {name: matches[name] for name in columns if name in matches}
+    missing = tuple(
+        c.name
+        for c in CHANNELS
+        if c.required and c.name not in matches and (c.name != "time" or c.name not in columns)
+    )
+    return Matches({**given, **ordered}, missing, trials)
+
+
+def _named_columns(origin: Origin, headers: Sequence[Header], columns: Mapping[str, str]) -> dict[str, Match]:
+    """Return the columns that the user names."""
+    for name in columns:
+        known_channel(name, f"{origin}, columns")
+    matches: dict[str, Match] = {}
+    for name, text in columns.items():
+        if text.strip():
+            matches[name] = _named(origin, headers, name, text.strip())
+    if len({match.index for match in matches.values()}) < len(matches):
+        raise RecordingError(f"{origin}: one column is given for two channels; name another for one of them")
     return matches
+
+
+def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> list[int]:
+    """Return the columns that may hold a channel: by our words, else by foreign ones, else but for a number."""
+    free = [(i, header) for i, header in enumerate(headers) if i not in assigned]
+    found = [i for i, header in free if _may_be(header, channel)]
+    if not found and channel.name == "time":
+        dated = [i for i, header in free if header.dated]
+        found = dated if len(dated) == 1 else []
+    if found:
+        return found
+    found = [i for i, header in free if _may_be_foreign(header, channel)]
+    found = found or [i for i, header in free if _may_be_counted(header, channel)]
+    return found if channel.required or len(found) == 1 else []
+
+
+def _trials(found: Mapping[str, Sequence[int]], columns: Mapping[str, str]) -> int:
+    """Return how many tests stand side by side: as many deflections as forces, in turn, and one time or as many."""
+    deflections, forces = found.get("deflection", ()), found.get("force", ())
+    count = len(forces)
+    if count < 2 or len(deflections) != count or len(found.get("time", ())) not in (0, 1, count):
+        return 1
+    starts = [min(pair) for pair in zip(deflections, forces, strict=True)]
+    ends = [max(pair) for pair in zip(deflections, forces, strict=True)]
+    apart = all(end < start for end, start in zip(ends, starts[1:], strict=False))
+    return count if apart else 1
+
+
+def _of_trial(
+    origin: Origin, found: Mapping[str, list[int]], trials: int, trial: int | None
+) -> dict[str, list[int]]:
+    """Return the columns of one of the tests side by side; a column that all share stays."""
+    if trial is None:
+        raise SeveralTrials(origin, trials)
+    if not 1 <= trial <= trials:
+        raise RecordingError(f"{origin}: has {trials} trials side by side; name @trial1 to @trial{trials}")
+    return {
+        name: [columns[trial - 1]] if len(columns) == trials else columns if len(columns) == 1 else []
+        for name, columns in found.items()
+    }
+
+
+class SeveralTrials(RecordingError):
+    """Several tests stand side by side in a table, and none is named."""
+
+    def __init__(self, origin: Origin, trials: int) -> None:
+        how = (
+            f"{origin}@trial1 to {origin}@trial{trials}"
+            if origin.kind == "file"
+            else 'columns={"force": "#3", ...}'
+        )
+        super().__init__(f"{origin}: holds {trials} trials side by side; name one: {how}")
+        self.trials = trials
+
+
+def _several(
+    origin: Origin, headers: Sequence[Header], channel: Channel, found: Sequence[int]
+) -> RecordingError:
+    candidates = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in found)
+    which = origin.columns(**{channel.name: f"#{found[0] + 1}"})
+    without = "" if channel.required else f", or leave it out with {origin.columns(**{channel.name: ''})}"
+    return RecordingError(
+        f"{origin}: {candidates} may each be the {channel.name}; say which with {which}{without}"
+    )
 
 
 def recognised(headers: Sequence[Header], columns: Mapping[str, str]) -> frozenset[str]:
     """The channels that have a column by its name: one that the user names, or one of the words and symbols."""
-    found = {channel.name for channel in CHANNELS if any(_may_be(header, channel) for header in headers)}
+    found = {channel.name for channel in CHANNELS if _found(headers, channel, set())}
     for name, text in columns.items():
         column = text.strip()
         if not column.lstrip("+- ").startswith("#") and (
@@ -171,8 +264,11 @@ def unit_of_column(header: Header, channel: str) -> str | None:
     if header.unit:
         return header.unit
     _, mark, tail = header.name.rpartition("_")
-    fits = mark and tail not in _NO_SUFFIX_UNITS and measures(tail, UNIT_OF[channel])
-    return tail if fits else None
+    if mark and tail not in _NO_SUFFIX_UNITS and measures(tail, UNIT_OF[channel]):
+        return tail
+    parts = name_and_unit(header.name)
+    fits = parts is not None and parts[1] not in _NO_SUFFIX_UNITS and measures(parts[1], UNIT_OF[channel])
+    return parts[1] if parts is not None and fits else None
 
 
 def says_absolute(header: Header) -> bool:
@@ -188,7 +284,7 @@ def _named(origin: Origin, headers: Sequence[Header], channel: str, text: str) -
         exact, sign = _finds(headers, text[1:].strip()), 1 if text[0] == "+" else -1
     if not exact:
         raise RecordingError(
-            f"{origin}: has no column {quoted(text)}; its columns are {_all(headers)}; "
+            f"{origin}: has no column {quoted(text)}; its columns are {columns_listed(headers)}; "
             f"correct {origin.columns(**{channel: 'NAME'})}"
         )
     if len(exact) > 1:
@@ -226,22 +322,38 @@ def _may_be(header: Header, channel: Channel) -> bool:
     return _words(base) in channel.words and unit_of_column(header, channel.name) is not None
 
 
+def _may_be_foreign(header: Header, channel: Channel) -> bool:
+    """Whether the name is a word for the channel in another language, or an English one with its unit behind it.
+
+    A channel that is not required needs a fitting unit too: it must not get in the way.
+    """
+    unit = header.unit
+    names = [header.name]
+    parts = name_and_unit(header.name)
+    if unit is None and parts is not None and measures(parts[1], channel.unit):
+        names, unit = [parts[0]], parts[1]
+    fits = unit is not None and measures(unit, channel.unit)
+    if (unit is not None and not fits) or (not channel.required and not fits):
+        return False
+    return any(
+        foreign_channel(name) == channel.name or (parts is not None and _words(name) in channel.words)
+        for name in names
+    )
+
+
+def _may_be_counted(header: Header, channel: Channel) -> bool:
+    """Whether the name without the number that counts a trial is one of the channel's."""
+    name = without_count(header.name)
+    if name is None or not channel.required:
+        return False
+    bare = Header(name, header.unit, header.text, header.dated)
+    return _may_be(bare, channel) or _may_be_foreign(bare, channel)
+
+
 def _words(name: str) -> str:
     return " ".join(name.lower().replace("_", " ").replace("-", " ").split())
 
 
-def _all(headers: Sequence[Header]) -> str:
+def columns_listed(headers: Sequence[Header]) -> str:
+    """The columns of a table as a message names them."""
     return listed([quoted(header.text) for header in headers], most=20) or "none"
-
-
-def _missing(origin: Origin, headers: Sequence[Header], missing: Sequence[str]) -> RecordingError:
-    if headers and all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
-        return RecordingError(
-            f"{origin}: has no header row; put one above the numbers, such as time [s],deflection [mm],"
-            f"force [N], or name columns by number: {origin.columns(time='#1', deflection='#2', force='#3')} "
-            f"{origin.units(time='s', deflection='mm', force='N')}"
-        )
-    return RecordingError(
-        f"{origin}: no column for {', '.join(missing)}; its columns are {_all(headers)}; "
-        f"name it with {origin.columns(**dict.fromkeys(missing, 'NAME'))}"
-    )

@@ -15,10 +15,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import TirelabError
-from .channels import recognised
+from .channels import SeveralTrials, match_channels, recognised
 from .formats import LOADERS, TEXT_SUFFIXES, Header, RecordingError, open_table
 from .formats.excel import ExcelTable
 from .metadata import read_sidecar
+from .origin import Origin
+from .pieces import split_piece
 from .units import measures
 
 HEAD = 65_536
@@ -54,6 +56,7 @@ def recording_files(
     given     files and folders; a file is kept as it is given, whether or not it is there
     columns   channel -> column as the user names them: a file that has one of them is a recording
 
+    A file in which several tests stand side by side gives one recording for each: FILE@trial1, FILE@trial2.
     Errors: TirelabError for a folder without a recording.
     """
     files: list[Path] = []
@@ -67,7 +70,26 @@ def recording_files(
             skipped += others
         else:
             files.append(place)
-    return tuple(files), tuple(skipped)
+    return tuple(piece for file in files for piece in _trials_of(file, columns)), tuple(skipped)
+
+
+def _trials_of(file: Path, columns: Mapping[str, str] | None) -> tuple[Path, ...]:
+    """Return a file as FILE@trial1, FILE@trial2, ... where several tests stand side by side in it; else as it is."""
+    path, piece = split_piece(file)
+    if piece.trial is not None or not path.is_file():
+        return (file,)
+    try:
+        sidecar = read_sidecar(path)
+        table = open_table(path, sidecar.skip_rows)
+        match_channels(
+            Origin(path.name), table.headers, table.time_axis, {**sidecar.columns, **(columns or {})}
+        )
+    except SeveralTrials as several:
+        rest = file.name.removeprefix(path.name)
+        return tuple(file.with_name(f"{path.name}@trial{n}{rest}") for n in range(1, several.trials + 1))
+    except RecordingError:
+        pass  # refused with its reason when it is read
+    return (file,)
 
 
 def folder_recordings(

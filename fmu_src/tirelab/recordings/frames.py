@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from numbers import Real
 from typing import Any
 
@@ -12,8 +13,10 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 from .channels import known_channel
+from .formats.clock import is_clock
 from .formats.parquet import frame_headers, series_values
 from .formats.table import Columns, Header, RecordingError, Wanted, numbers, of_one_length, sample_place
+from .formats.table_search import bare_unit, is_units
 from .origin import Origin
 from .units import QUANTITIES, measures, split_header
 
@@ -107,7 +110,7 @@ def frame_table(origin: Origin, frame: Any) -> ColumnTable:
     if isinstance(frame, pl.LazyFrame):
         frame = frame.collect()
     if hasattr(frame, "iloc") and hasattr(frame, "columns"):
-        return _pandas_table(origin, frame)
+        return _with_units(origin, _pandas_table(origin, frame))
     if hasattr(frame, "__arrow_c_stream__") and not isinstance(frame, (pl.DataFrame, pl.Series)):
         frame = pl.DataFrame(frame)
     if not isinstance(frame, pl.DataFrame):
@@ -115,13 +118,49 @@ def frame_table(origin: Origin, frame: Any) -> ColumnTable:
             f"{origin}: {type(frame).__name__} is no data frame; give one of pandas or polars, an Arrow table, "
             "or arrays to Recording.from_arrays"
         )
-    return ColumnTable(origin, frame_headers(frame.schema), frame.get_columns())
+    return _with_units(origin, ColumnTable(origin, frame_headers(frame.schema), frame.get_columns()))
+
+
+def _with_units(origin: Origin, table: ColumnTable) -> ColumnTable:
+    """Return a table without a first row of units, which stand in the headers then, and with its clock times known."""
+    first = [column[0] if isinstance(column, pl.Series) and len(column) else None for column in table.columns]
+    texts = [text if isinstance(text, str) else "" for text in first]
+    headers, columns = list(table.headers), list(table.columns)
+    # a cell that is no text speaks against a row of units, an empty one does not
+    if is_units(texts) and not any(cell is not None and not isinstance(cell, str) for cell in first):
+        units = [bare_unit(text) or None for text in texts]
+        headers = [replace(h, unit=h.unit or unit) for h, unit in zip(headers, units, strict=True)]
+        columns = [column[1:] for column in columns]
+        texts = [str(c[0]) if isinstance(c, pl.Series) and len(c) else "" for c in columns]
+    headers = [
+        replace(h, unit="s", dated=True) if is_clock(t) else h for h, t in zip(headers, texts, strict=True)
+    ]
+    return ColumnTable(origin, headers, columns, table.time_axis)
+
+
+def _pandas_text(column: Any) -> Any:
+    """Return a column of pandas that holds text as a series of polars, any other as it is."""
+    values = np.asarray(column.to_numpy(), dtype=object) if _may_hold_text(column) else None
+    if values is None:
+        return column
+    absent = np.asarray(column.isna(), dtype=bool)
+    if absent.all() or not all(isinstance(value, str) for value in values[~absent]):
+        return column
+    return pl.Series(
+        [None if gone else value for value, gone in zip(values, absent, strict=True)], dtype=pl.String
+    )
+
+
+def _may_hold_text(column: Any) -> bool:
+    return hasattr(column, "isna") and (
+        getattr(column.dtype, "kind", "") == "O" or str(column.dtype) in ("str", "string")
+    )
 
 
 def _pandas_table(origin: Origin, frame: Any) -> ColumnTable:
     """Return the table of a pandas frame; columns are taken by position, as names may repeat."""
-    columns = [frame.iloc[:, number] for number in range(len(frame.columns))]
-    headers = [_pandas_header(text, column) for text, column in zip(frame.columns, columns, strict=True)]
+    columns = [_pandas_text(frame.iloc[:, number]) for number in range(len(frame.columns))]
+    headers = [_pandas_header(text, frame.iloc[:, number]) for number, text in enumerate(frame.columns)]
     index = frame.index
     dated = getattr(index.dtype, "kind", "") in "Mm"
     if index.name is None and not dated:
@@ -139,7 +178,8 @@ def _pandas_header(label: object, column: Any) -> Header:
         parts = [f"{parts[0]} [{parts[1]}]"]
     text = " ".join(parts)
     name, unit = split_header(text)
-    return Header(name, "s" if getattr(column.dtype, "kind", "") in "Mm" else unit, text)
+    dated = getattr(column.dtype, "kind", "") in "Mm"
+    return Header(name, "s" if dated else unit, text, dated)
 
 
 def _array(column: Any) -> NDArray[Any]:

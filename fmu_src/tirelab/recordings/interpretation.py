@@ -3,41 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .asking import Lacking, asked, rises
 from .channels import UNIT_OF, Match, known_channel, match_channels, says_absolute, unit_of_column
 from .formats import Columns, Header, RecordingError, Table, Wanted
 from .formats.table import quoted
 from .metadata import Settings
 from .origin import Origin
+from .pieces import Piece, samples_within
+from .plausibility import doubts_of, too_deep
 from .rows import Rows, complete_rows
 from .samples import gap_notes
 from .sign_convention import compressive_signs
-from .units import STANDARD_ATMOSPHERE, Conversion, UnitError, conversion, parse_radius
+from .units import STANDARD_ATMOSPHERE, Conversion, UnitError, conversion, parse_interval, parse_radius
 
 FloatArray = NDArray[np.float64]
+
+MOST_LOOKED_AT = 8
+"""So many columns without a channel are looked at for a time."""
 
 DEEPEST = 1.0
 """A compression [m] beyond the diameter of any bicycle wheel: its unit is wrong."""
 
-EXAMPLE_UNITS: Mapping[str, str] = {
-    "time": "s",
-    "deflection": "mm",
-    "radius": "cm",
-    "force": "N",
-    "pressure": "kPa",
-    "temperature": "degC",
-    "speed": "m/s",
-}
-"""The unit of each channel that advice names."""
-
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be read from a table: columns by channel, their units, and the radius if no column gives it."""
+    """What is to be read from a table: columns by channel, their units, and the radius if no column gives it.
+
+    interval: between samples [s] where no column gives the time; timed: whether the time was measured, or its interval
+    given; trials: how many tests stand side by side in the table
+    """
 
     origin: Origin
     matches: Mapping[str, Match]
@@ -45,6 +44,9 @@ class Plan:
     conversions: Mapping[str, Conversion]
     radius: float | None
     notes: tuple[str, ...]
+    interval: float | None = None
+    timed: bool = True
+    trials: int = 1
 
     @property
     def wanted(self) -> tuple[Wanted, ...]:
@@ -57,12 +59,22 @@ class Interpreted:
     """Channels in SI with compression positive, by name, and the rows that they came from.
 
     doubt: why the signs could not be determined, "" where they could
+    turned: the channels of which the sign was turned; units: of the channels as they were read
+    doubts: what is doubtful of their sizes; first: how many samples were left out before those of the piece
     """
 
     values: Mapping[str, FloatArray]
     rows: Rows
     notes: tuple[str, ...]
     doubt: str
+    turned: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+    doubts: tuple[str, ...] = ()
+    first: int = 0
+
+    def error(self, index: int, channel: str, what: str) -> RecordingError:
+        """Return the error for one sample, with its place in the file."""
+        return self.rows.error(index + self.first, channel, what)
 
     def check_loading(self) -> None:
         """Refuse a deflection that never changes or is deeper than a wheel, and signs that are in doubt."""
@@ -70,7 +82,7 @@ class Interpreted:
         if deflection.min() == deflection.max():
             still = f"is {deflection[0]:.6g} m in every row"
             naming = self.rows.origin.columns(deflection="NAME")
-            raise self.rows.error(0, "deflection", f"{still}; name the column that moves with {naming}")
+            raise self.error(0, "deflection", f"{still}; name the column that moves with {naming}")
         if self.doubt:
             naming = self.rows.origin.columns(deflection="-NAME", force="+NAME")
             raise RecordingError(
@@ -79,46 +91,138 @@ class Interpreted:
             )
         deepest = int(np.argmax(deflection))
         if deflection[deepest] > DEEPEST:
+            guess = too_deep(self.rows.origin, float(np.ptp(deflection)), self.units.get("deflection", ""))
             what = f"{deflection[deepest]:.6g} m is deeper than a wheel; correct its unit"
-            raise self.rows.error(deepest, "deflection", what)
+            raise self.error(deepest, "deflection", what + (f" ({guess})" if guess else ""))
 
 
-def plan_reading(origin: Origin, table: Table, settings: Settings) -> Plan:
+def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | None = None) -> Plan:
     """Return which columns of a table become which channels, in which units, on which surface.
 
-    Errors: RecordingError where a channel has no column or several, a unit or the radius is not known.
+    trial: which of several tests side by side, from 1
+    Errors: IncompleteRecording where a required column, a unit or the radius is not known, for all of them at once;
+    RecordingError where several columns may be a channel or a unit is none.
     """
-    matches = match_channels(origin, table.headers, table.time_axis, settings.columns)
-    radius, notes = _given_radius(origin, table, matches, settings)
+    found = match_channels(origin, table.headers, table.time_axis, settings.columns, trial)
+    matches = dict(found.columns)
+    interval, notes = _given_interval(origin, matches, settings)
+    radius, more = _given_radius(origin, table, matches, settings)
     if radius is not None:
         matches.pop("radius", None)
     headers = {name: table.headers[match.index] for name, match in matches.items()}
-    conversions = _conversions(origin, headers, settings.units)
-    return Plan(origin, matches, headers, conversions, radius, tuple(notes))
+    conversions, without_unit = _conversions(origin, headers, settings.units)
+    lacking = tuple(name for name in found.missing if name != "time")
+    no_time = "time" not in matches and interval is None
+    if no_time and settings.columns.get("time") is None and (lacking or _may_hold_time(table, matches)):
+        lacking = ("time", *lacking)
+    wanted = Lacking(lacking, without_unit, radius is None and "radius" not in matches)
+    if wanted:
+        raise asked(origin, table, matches, wanted, settings)
+    if no_time:
+        interval = 1.0
+        notes.append(
+            "time was not measured: one second from sample to sample is made up, and nothing of rate, time or "
+            f"acceleration can be told (if the sampling is known: {origin.sampling('10Hz')})"
+        )
+    return Plan(
+        origin,
+        matches,
+        headers,
+        conversions,
+        radius,
+        (*notes, *more),
+        None if "time" in matches else interval,
+        not no_time,
+        found.trials,
+    )
 
 
-def interpret(plan: Plan, read: Columns, sources: tuple[str, ...] = ()) -> Interpreted:
+def interpret(
+    plan: Plan,
+    read: Columns,
+    sources: tuple[str, ...] = (),
+    piece: Piece = Piece(),  # noqa: B008
+) -> Interpreted:
     """Return the columns read as channels in SI, rows without a value skipped, clearly wrong signs turned.
 
-    sources: names of the files from which settings were read
-    Errors: RecordingError where too many rows lack a value.
+    sources: names of the files from which settings were read; piece: the part of the samples that is kept
+    Errors: RecordingError where too many rows lack a value, or the piece holds too few.
     """
     rows = complete_rows(plan.origin, plan.headers, read)
     values = {name: _in_si(column, plan.conversions[name]) for name, column in rows.values.items()}
+    samples = len(values["deflection"])
+    if plan.interval is not None:
+        kept = np.arange(samples) if rows.kept is None else rows.kept
+        values = {"time": np.asarray(kept * plan.interval, dtype=np.float64), **values}
     if plan.radius is not None:
-        values["radius"] = np.full(len(values["time"]), plan.radius)
+        values["radius"] = np.full(samples, plan.radius)
     notes = [*read.notes, *rows.notes, *plan.notes]
     notes += [f"settings read from {source}" for source in sources]
     notes += _unit_notes(plan.conversions, plan.headers)
-    doubt = _turn_signs(values, plan.matches, notes)
+    doubt, turned = _turn_signs(values, plan.matches, notes)
+    part = samples_within(plan.origin.name, piece, values["time"], _numbered(rows, samples))
+    if part is not None:
+        values = {name: column[part] for name, column in values.items()}
+        notes.append(f"{part.stop - part.start} of {samples} samples read: {_part_text(piece)}")
     notes += gap_notes(values["time"])
-    return Interpreted(values, rows, tuple(notes), doubt)
+    units = {name: convert.unit for name, convert in plan.conversions.items()}
+    first = 0 if part is None else int(part.start)
+
+    def where(channel: str, sample: int | None) -> str:
+        header = plan.headers.get(channel)
+        if header is None:
+            return ""
+        column = f"column {quoted(header.text)}"
+        return column if sample is None else f"{rows.place(sample + first)}, {column}"
+
+    doubts = doubts_of(plan.origin, values, units, where) if not doubt else ()
+    notes += [f"doubtful: {sentence}" for sentence in doubts]
+    return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first)
+
+
+def _part_text(piece: Piece) -> str:
+    kind = "" if any(c.isalpha() for c in piece.start + piece.stop) else "rows "
+    return f"{kind}{piece.start or 'the start'} to {piece.stop or 'the end'}"
+
+
+def _numbered(rows: Rows, samples: int) -> NDArray[np.int64]:
+    """Return the number by which messages call each sample: its row, or its place among the samples."""
+    first, last = (int(rows.place(i).split()[-1]) for i in (0, samples - 1))
+    if last - first == samples - 1:
+        return np.arange(first, last + 1)
+    return np.array([int(rows.place(i).split()[-1]) for i in range(samples)])
+
+
+def _given_interval(
+    origin: Origin, matches: dict[str, Match], settings: Settings
+) -> tuple[float | None, list[str]]:
+    """Return the interval between samples [s] that a sampling rate gives, None without one; it goes over a column."""
+    if settings.sampling is None:
+        return None, []
+    try:
+        interval = parse_interval(settings.sampling)
+    except UnitError as error:
+        raise RecordingError(f"{origin}: {error}") from None
+    instead = ", not taken from its column" if matches.pop("time", None) is not None else ""
+    return interval, [f"time made of samples {interval:.6g} s apart, as given{instead}"]
+
+
+def _may_hold_time(table: Table, matches: Mapping[str, Match]) -> bool:
+    """Return whether a column that is no channel may be the time: its numbers rise evenly."""
+    taken = {match.index for match in matches.values()}
+    for index in [i for i in range(len(table.headers)) if i not in taken][:MOST_LOOKED_AT]:
+        try:
+            if rises(table.read((Wanted(index, "time"),)).values[0]):
+                return True
+        except RecordingError:
+            continue
+    return False
 
 
 def _given_radius(
     origin: Origin, table: Table, matches: Mapping[str, Match], settings: Settings
 ) -> tuple[float | None, list[str]]:
-    """Return the radius of every row and the note of where it is from; None where a column gives it."""
+    """Return the radius of every row and the note of where it is from; None where a column gives it, or nothing."""
     column = quoted(table.headers[matches["radius"].index].text) if "radius" in matches else ""
     source = settings.radius_source
     try:
@@ -135,11 +239,7 @@ def _given_radius(
             return length, [f"surface radius {_radius_text(length)} from {source}"]
     except UnitError as error:
         raise RecordingError(f"{source if settings.radius is None else origin}: {error}") from None
-    in_file = "" if origin.kind != "file" else ', or write radius = "flat" into recording.toml beside it'
-    raise RecordingError(
-        f"{origin}: the radius of the surface is not known; add a column such as radius [cm] (inf: flat), "
-        f"or give {origin.radius('flat')} (25.4cm, -50.8cm){in_file}"
-    )
+    return None, []
 
 
 def _radius_text(radius: float) -> str:
@@ -148,19 +248,18 @@ def _radius_text(radius: float) -> str:
 
 def _conversions(
     origin: Origin, headers: Mapping[str, Header], units: Mapping[str, str]
-) -> dict[str, Conversion]:
-    found = {}
+) -> tuple[dict[str, Conversion], tuple[str, ...]]:
+    """Return how each column becomes SI, and the channels of which no unit is known."""
+    found: dict[str, Conversion] = {}
+    without: list[str] = []
     for name in units:
         known_channel(name, f"{origin}, units")
     for name, header in headers.items():
         place = f"{origin}, column {quoted(header.text)}"
         unit = units.get(name) or unit_of_column(header, name)
         if not unit:
-            example = EXAMPLE_UNITS[name]
-            raise RecordingError(
-                f"{place}: has no unit; write it into the header, such as {name} [{example}], "
-                f"or give it: {origin.units(**{name: example})}"
-            )
+            without.append(name)
+            continue
         try:
             found[name] = conversion(unit, UNIT_OF[name])
             if name == "pressure" and not found[name].absolute_pressure and says_absolute(header):
@@ -168,7 +267,7 @@ def _conversions(
         except UnitError as error:
             giving = origin.units(**{name: "UNIT"})
             raise RecordingError(f"{place}: {error} (or give it: {giving})") from None
-    return found
+    return found, tuple(without)
 
 
 def _in_si(values: FloatArray, convert: Conversion) -> FloatArray:
@@ -190,8 +289,11 @@ def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Hea
     return notes
 
 
-def _turn_signs(values: dict[str, FloatArray], matches: Mapping[str, Match], notes: list[str]) -> str:
-    """Turn channels that count the other way round; return why, where that cannot be determined."""
+def _turn_signs(
+    values: dict[str, FloatArray], matches: Mapping[str, Match], notes: list[str]
+) -> tuple[str, tuple[str, ...]]:
+    """Turn channels that count the other way round; return why, where that cannot be determined, and those turned."""
+    asked_for = tuple(name for name, match in matches.items() if match.sign < 0 and name in values)
     for name, match in matches.items():
         if match.sign < 0 and name in values:
             values[name] = -values[name]
@@ -200,11 +302,11 @@ def _turn_signs(values: dict[str, FloatArray], matches: Mapping[str, Match], not
     given = {name for name in ("deflection", "force") if matches[name].sign}
     turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
     if len(given) == 2:
-        return ""
+        return "", asked_for
     if signs.doubt or turned & given:
-        return signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned"
+        return signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned", asked_for
     for name in sorted(turned):
         values[name] = -values[name]
     if turned:
         notes.append(f"the rig counts compression negative: {' and '.join(sorted(turned))} turned in sign")
-    return ""
+    return "", (*asked_for, *sorted(turned))

@@ -19,7 +19,11 @@ else:
 FOLDER_SIDECAR = "recording.toml"
 """The sidecar of every recording in its folder."""
 
-_KEYS = ("radius", "columns", "units")
+_TEXTS = ("radius", "sampling", "from", "to")
+_TABLES = ("columns", "units")
+_KEYS = (*_TEXTS, *_TABLES, "skip_rows", "files")
+_SAID = ("table", "provenance", "doubtful")
+"""Keys that `inspect` writes for the reader of the file alone."""
 
 
 @dataclass(frozen=True)
@@ -31,12 +35,17 @@ class Sidecar:
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     sources: tuple[str, ...] = ()
+    sampling: str | None = None
+    skip_rows: int | None = None
+    start: str = ""
+    stop: str = ""
 
     def overruled(
         self,
         columns: Mapping[str, str] | None,
         units: Mapping[str, str] | None,
         radius: str | float | None,
+        sampling: str | float | None = None,
     ) -> Settings:
         """Return the settings where the user's go over these."""
         return Settings(
@@ -45,6 +54,21 @@ class Sidecar:
             radius,
             self.radius,
             self.radius_source,
+            self.sampling if sampling is None else sampling,
+        )
+
+    def below(self, over: Sidecar) -> Sidecar:
+        """Return this sidecar with what another says put over it."""
+        return Sidecar(
+            radius=over.radius or self.radius,
+            radius_source=over.radius_source if over.radius else self.radius_source,
+            columns={**self.columns, **over.columns},
+            units={**self.units, **over.units},
+            sources=(*self.sources, *(s for s in over.sources if s not in self.sources)),
+            sampling=over.sampling or self.sampling,
+            skip_rows=self.skip_rows if over.skip_rows is None else over.skip_rows,
+            start=over.start or self.start,
+            stop=over.stop or self.stop,
         )
 
 
@@ -53,6 +77,7 @@ class Settings:
     """What is known beside the table: columns and units by channel, and the radius.
 
     radius: as the user gave it; radius_in_file: as `radius_source` states it, over which the former goes
+    sampling: rate or interval of the samples, where the table has no time
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -60,32 +85,52 @@ class Settings:
     radius: str | float | None = None
     radius_in_file: str | None = None
     radius_source: str = ""
+    sampling: str | float | None = None
 
 
-def read_sidecar(path: Path) -> Sidecar:
+def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None) -> Sidecar:
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
-    For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), and the tables `[columns]`
-    and `[units]`, which say per channel what `--columns` and `--units` say. Without a sidecar, an empty one.
+    For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
+    `skip_rows = 3`, and the tables `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say.
+    The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
+    named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of
+    which may have a table of its own, `[files."flat.csv@trial2"]`
     Errors: RecordingError for TOML that does not parse, an unknown key, or a value that is not text.
     """
+    if named is not None and not named.is_file():
+        raise RecordingError(f"{named}: there is no such file of settings; check the path")
+    beside = (path.with_name(FOLDER_SIDECAR), path.with_suffix(".toml"))
     found = Sidecar()
-    for file in (path.with_name(FOLDER_SIDECAR), path.with_suffix(".toml")):
-        if not file.is_file():
-            continue
-        if file.name in found.sources:
-            continue
-        content = _content(file)
-        radius = content.get("radius")
-        found = Sidecar(
-            radius=radius or found.radius,
-            radius_source=file.name if radius else found.radius_source,
-            columns={**found.columns, **content.get("columns", {})},
-            units={**found.units, **content.get("units", {})},
-            sources=(*found.sources, file.name),
-        )
+    for file in dict.fromkeys(beside if named is None else (named,)):
+        if file.is_file():
+            for content in _parts(_content(file), path.name, trial):
+                found = found.below(_sidecar(content, file.name))
     return found
+
+
+def _parts(content: Mapping[str, Any], name: str, trial: int | None) -> list[Mapping[str, Any]]:
+    """Return what a file of settings says of every recording, and of one of them: nothing where that is all others."""
+    files = content.get("files", {})
+    own = [files[key] for key in (name, f"{name}@trial{trial}") if key in files]
+    common = {key: value for key, value in content.items() if key != "files"}
+    return [*([common] if common else []), *own]
+
+
+def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
+    radius = content.get("radius")
+    return Sidecar(
+        radius=radius,
+        radius_source=source if radius else "",
+        columns=content.get("columns", {}),
+        units=content.get("units", {}),
+        sources=(source,),
+        sampling=content.get("sampling"),
+        skip_rows=content.get("skip_rows"),
+        start=content.get("from", ""),
+        stop=content.get("to", ""),
+    )
 
 
 def _content(file: Path) -> dict[str, Any]:
@@ -95,21 +140,40 @@ def _content(file: Path) -> dict[str, Any]:
         raise RecordingError(
             f'{file.name}: is not TOML ({error}); write for instance radius = "25.4 cm"'
         ) from None
+    _check(file, content, "")
+    files = content.get("files", {})
+    if not isinstance(files, dict) or not all(isinstance(part, dict) for part in files.values()):
+        raise RecordingError(f'{file.name}: files is a table; write [files."NAME.csv"] and lines below it')
+    for name, part in files.items():
+        _check(file, part, f'files."{name}".')
+    return content
+
+
+def _check(file: Path, content: Mapping[str, Any], inside: str) -> None:
     for key, value in content.items():
-        if key not in _KEYS:
-            raise RecordingError(f"{file.name}: {key!r} is not known here; the keys are {', '.join(_KEYS)}")
-        if key in ("columns", "units"):
+        if key in _SAID and inside:
+            continue
+        if key not in _KEYS or (inside and key == "files"):
+            keys = ", ".join(key for key in _KEYS if not (inside and key == "files"))
+            raise RecordingError(f"{file.name}: {inside + key!r} is not known here; the keys are {keys}")
+        if key in _TABLES:
             if not isinstance(value, dict):
                 raise RecordingError(f"{file.name}: {key} is a table; write [{key}] and lines below it")
             for channel, text in value.items():
                 known_channel(channel, f"{file.name}, [{key}]")
                 _as_text(file, f"{key}.{channel}", text)
-        else:
+        elif key == "skip_rows":
+            if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+                raise RecordingError(
+                    f"{file.name}: skip_rows is {value!r}; write the number of rows above the table"
+                )
+        elif key in _TEXTS:
             _as_text(file, key, value)
-    return dict(content)
 
 
 def _as_text(file: Path, key: str, value: object) -> None:
     if not isinstance(value, str) or (not value.strip() and not key.startswith("columns.")):
-        advice = 'radius = "25.4 cm"' if key == "radius" else f'{key} = "..."'
-        raise RecordingError(f"{file.name}: {key} is {value!r}, not text; write {advice}")
+        examples = {"radius": "25.4 cm", "sampling": "10 Hz", "from": "10 s", "to": "20 s"}
+        raise RecordingError(
+            f'{file.name}: {key} is {value!r}, not text; write {key} = "{examples.get(key, "...")}"'
+        )

@@ -32,6 +32,10 @@ class Origin:
             return f"--radius {text}"
         return f'radius="{text}"' if self.kind == "frame" else f'surface_radius="{text}"'
 
+    def sampling(self, text: str) -> str:
+        """Return what to write for samples that are so far apart."""
+        return f"--sampling {text}" if self.kind == "file" else f'sampling="{text}"'
+
     def _assignments(self, option: str, values: dict[str, str]) -> str:
         if self.kind != "file":
             return f"{option}={json.dumps(values)}"

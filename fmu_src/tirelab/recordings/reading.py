@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from .choices import Choices
 
 if TYPE_CHECKING:
     from .recording import Recording
 
 
 @dataclass(frozen=True)
-class Reading:
-    """The columns, units and surface radius of recordings, where these differ from what the files say.
-
-    columns: channel -> column; units: channel -> unit; radius: "flat", "25.4cm" or a number [m], None: as in the file;
-    each as for `read_recording`. Called with a file it returns its recording.
-    """
-
-    columns: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
-    radius: str | float | None = None
+class Reading(Choices):
+    """How recordings are to be read; called with a file, or a piece of one, it returns its recording."""
 
     def __call__(self, file: Path | str) -> Recording:
         """Return the recording in a file. Errors: RecordingError, see `read_recording`."""
         # here, since the command line states a reading before it loads the readers
-        from .recording import read_recording
+        from .recording import understand
 
-        return read_recording(file, columns=self.columns, radius=self.radius, units=self.units)
+        return understand(file, self).recording
 
     def words(self) -> list[str]:
         """Return the words of a command line that read recordings in the same way."""
@@ -41,6 +34,14 @@ class Reading:
                 words += [option, assignments_text(values)]
         if self.radius is not None:
             words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
+        if self.sampling is not None:
+            sampling = self.sampling if isinstance(self.sampling, str) else f"{self.sampling!r}Hz"
+            words += ["--sampling", sampling]
+        if self.skip_rows is not None:
+            words += ["--skip-rows", str(self.skip_rows)]
+        words += ["--from", self.start] if self.start else []
+        words += ["--to", self.stop] if self.stop else []
+        words += ["--settings", str(self.settings)] if self.settings is not None else []
         return words
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,19 +12,22 @@ import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
+from .asking import EXAMPLE_UNITS
 from .channels import UNIT_OF
+from .choices import Choices
 from .description import facts, html_table, one_line
 from .formats import RecordingError, Table, open_table
 from .formats.table import quoted
 from .frames import array_table, array_units, frame_table, is_single, single_radius
-from .interpretation import EXAMPLE_UNITS, Interpreted, interpret, plan_reading
+from .interpretation import Interpreted, Plan, interpret, plan_reading
 from .memory import memory_available, readable_size
 from .metadata import Settings, read_sidecar
 from .origin import Origin
+from .pieces import Piece, split_piece
 from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
 from .units import conversion
 
-__all__ = ["Recording", "RecordingError", "read_recording", "write_recording"]
+__all__ = ["Recording", "RecordingError", "Understood", "read_recording", "understand", "write_recording"]
 
 FloatArray = NDArray[np.float64]
 
@@ -46,6 +49,9 @@ class Recording:
     speed            [m/s], or None
     source           the file read, or None
     notes            everything that reading did to the numbers, in sentences
+    timed            whether time was measured, or its sampling given; otherwise the times are made up
+    doubts           what is doubtful of the sizes of the numbers, in sentences (among the notes too)
+    provenance       what the file says above its table: of the machine, the tire, the test
 
     All arrays have the shape (samples,), samples >= 2, and are read-only.
     Errors: RecordingError (SampleFault where one sample is at fault) for unequal lengths, fewer than two
@@ -62,6 +68,9 @@ class Recording:
     speed: FloatArray | None = None
     source: Path | None = None
     notes: tuple[str, ...] = ()
+    timed: bool = True
+    doubts: tuple[str, ...] = ()
+    provenance: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         samples = len(self.time)
@@ -87,7 +96,7 @@ class Recording:
     @classmethod
     def from_arrays(
         cls,
-        time: ArrayLike,
+        time: ArrayLike | None,
         deflection: ArrayLike,
         force: ArrayLike,
         surface_radius: ArrayLike | None = None,
@@ -98,7 +107,8 @@ class Recording:
         """Return a recording of arrays, lists or columns, with the checks and the sign rule of a file.
 
         Parameters
-        time, deflection, force   shape (samples,); copied; [s], [m], [N] unless `units` says otherwise
+        time, deflection, force   shape (samples,); copied; [s], [m], [N] unless `units` says otherwise;
+                                  time None where it was not measured
         surface_radius            the same, or one for all samples: a number [m], inf, "flat" or "25.4 cm"
         units                     channel -> unit: {"deflection": "mm", "force": "kN", "radius": "cm"}
 
@@ -107,7 +117,11 @@ class Recording:
         """
         origin = Origin(name, "arrays")
         channel_units = array_units(origin, units)
-        arrays = {"time": time, "deflection": deflection, "force": force}
+        arrays = {"deflection": deflection, "force": force}
+        if time is None:
+            channel_units.pop("time")
+        else:
+            arrays = {"time": time, **arrays}
         radius = None
         if surface_radius is None or is_single(surface_radius):
             radius = single_radius(origin, surface_radius, channel_units["radius"])
@@ -115,7 +129,8 @@ class Recording:
         else:
             arrays["radius"] = surface_radius
         table = array_table(origin, arrays)
-        return _recording_of(origin, table, Settings(units=channel_units, radius=radius))
+        left_out = {"time": ""} if time is None else {}
+        return _recording_of(origin, table, Settings(left_out, channel_units, radius))
 
     @classmethod
     def from_dataframe(
@@ -126,20 +141,24 @@ class Recording:
         columns: Mapping[str, str] | None = None,
         radius: str | float | None = None,
         units: Mapping[str, str] | None = None,
+        sampling: str | float | None = None,
     ) -> Recording:
         """Return a recording of a pandas, polars or Arrow table, read like a file of the same columns.
 
         Parameters
         frame    units stand in the column names, such as `Load [kN]`; a named or dated index is a column too
-        columns, radius, units   as for `read_recording`
+        columns, radius, units, sampling   as for `read_recording`
 
         Errors: RecordingError, one sentence with column, sample, value and the next step.
         """
         origin = Origin(name, "frame")
-        return _recording_of(origin, frame_table(origin, frame), Settings(columns or {}, units or {}, radius))
+        settings = Settings(columns or {}, units or {}, radius, sampling=sampling)
+        return _recording_of(origin, frame_table(origin, frame), settings)
 
     def __repr__(self) -> str:
-        return one_line(self.name, self._facts())
+        return one_line(
+            self.name, [f if f[0] != "time" else ("time", "time not measured") for f in self._facts()]
+        )
 
     def _repr_html_(self) -> str:
         extra = [
@@ -151,7 +170,12 @@ class Recording:
         return html_table(self.name, [*self._facts(), *extra, *notes])
 
     def _facts(self) -> tuple[tuple[str, str], ...]:
-        return facts(self.time, self.deflection, self.surface_radius, self.force)
+        found = facts(self.time, self.deflection, self.surface_radius, self.force)
+        return (
+            found
+            if self.timed
+            else tuple(("time", "not measured") if f[0] == "duration" else f for f in found)
+        )
 
     def __len__(self) -> int:
         return len(self.time)
@@ -191,35 +215,67 @@ def read_recording(
     columns: Mapping[str, str] | None = None,
     radius: str | float | None = None,
     units: Mapping[str, str] | None = None,
+    sampling: str | float | None = None,
+    skip_rows: int | None = None,
 ) -> Recording:
     """A recording from a file: CSV, TSV, Parquet, .mat, MDF4, TDMS or Excel, by its suffix.
 
     Parameters
+    path      of the file; `press.csv@10s:20s` is that part of it, `@100:2000` those rows, `@trial2` the second of tests
+              that stand side by side
     columns   channel -> column: its name whatever the case, or #number from 1; `-NAME` turns its sign,
-              `+NAME` says that its sign is right; an empty name leaves an optional channel out
+              `+NAME` says that its sign is right; an empty name leaves a channel out (the time: not measured)
     radius    of the surface, over a column of it: "flat", "25.4cm", "-50.8 cm", or a number [m]
     units     channel -> unit, over what the file says
+    sampling  rate or interval of the samples, over a column of time: "10 Hz", "0.1 s", or a number [Hz]
+    skip_rows rows of text above the table, which is found without it too
 
     What is not said here may stand in a sidecar (`metadata`). Rows that lack a value are skipped, signs that
     are clearly the other way round are turned, gaps are left as they are; `notes` lists all of it.
 
-    Errors: RecordingError, one sentence with file, row, column, value and the next step.
+    Errors: RecordingError, one sentence with file, row, column, value and the next step; IncompleteRecording, one of
+    them, where columns, units or the radius have to be given.
     """
-    path = Path(path)
-    table = open_table(path)
-    sidecar = read_sidecar(path)
-    settings = sidecar.overruled(columns, units, radius)
-    plan = plan_reading(Origin(path.name), table, settings)
+    how = Choices(columns or {}, units or {}, radius, sampling, skip_rows)
+    return understand(path, how).recording
+
+
+@dataclass(frozen=True)
+class Understood:
+    """A recording with how it was understood: the file, the piece of it, the table, the plan, and what came of it."""
+
+    recording: Recording
+    path: Path
+    piece: Piece
+    table: Table
+    plan: Plan
+    found: Interpreted
+
+
+def understand(path: Path | str, how: Choices) -> Understood:
+    """Return the recording in a file, or in a piece of it, and how it was understood. Errors: as `read_recording`."""
+    path, piece = split_piece(path)
+    sidecar = read_sidecar(path, how.settings, piece.trial)
+    skip_rows = sidecar.skip_rows if how.skip_rows is None else how.skip_rows
+    table = open_table(path, skip_rows)
+    settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling)
+    plan = plan_reading(Origin(path.name), table, settings, piece.trial)
     _refuse_too_large(path, table, len(plan.headers) + 1)
-    return _checked(interpret(plan, table.read(plan.wanted), sidecar.sources), path.stem, path)
+    piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)
+    found = interpret(plan, table.read(plan.wanted), sidecar.sources, piece)
+    recording = _checked(found, plan, path.stem + piece.suffix, path)
+    provenance = tuple(getattr(table, "provenance", ()))
+    if provenance:
+        recording = replace(recording, provenance=provenance)
+    return Understood(recording, path, piece, table, plan, found)
 
 
 def _recording_of(origin: Origin, table: Table, settings: Settings) -> Recording:
     plan = plan_reading(origin, table, settings)
-    return _checked(interpret(plan, table.read(plan.wanted)), origin.name, None)
+    return _checked(interpret(plan, table.read(plan.wanted)), plan, origin.name, None)
 
 
-def _checked(found: Interpreted, name: str, source: Path | None) -> Recording:
+def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> Recording:
     """Return the recording; a sample that cannot be is refused with its place in the file or table."""
     values = found.values
     try:
@@ -234,9 +290,11 @@ def _checked(found: Interpreted, name: str, source: Path | None) -> Recording:
             speed=values.get("speed"),
             source=source,
             notes=found.notes,
+            timed=plan.timed,
+            doubts=found.doubts,
         )
     except SampleFault as fault:
-        raise found.rows.error(fault.index, fault.channel, fault.what) from None
+        raise found.error(fault.index, fault.channel, fault.what) from None
     found.check_loading()
     return recording
 

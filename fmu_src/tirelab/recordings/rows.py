@@ -50,7 +50,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
     """
     values = dict(zip(headers, columns.values, strict=True))
-    samples = len(values["time"])
+    samples = len(columns.values[0])
     if samples == 0:
         raise RecordingError(f"{origin}: has a header and no rows below it; record again, or export it anew")
     # The greatest value is NaN as soon as one is: one pass, and no array of flags for a clean column.
@@ -79,7 +79,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             notes.append(f"skipped as empty: {_places(columns, np.flatnonzero(empty))}")
         kept = np.flatnonzero(~(lacking | empty))
         values = {name: column[kept] for name, column in values.items()}
-    left = len(values["time"])
+    left = samples if kept is None else len(kept)
     if left < 2:
         raise RecordingError(
             f"{origin}: has {'a single row' if left else 'no row'} with a value in every column; "

@@ -188,6 +188,30 @@ def parse_radius(text: str | float) -> float:
     return math.inf if math.isinf(radius) else radius
 
 
+def parse_interval(text: str | float) -> float:
+    """The time between samples [s] from a rate or an interval: "10 Hz", "0.1s", "100 ms", or a number of hertz.
+
+    Errors: UnitError for what is neither, or not positive.
+    """
+    found = _MAGNITUDE.match(str(text).strip())
+    unit = found["unit"].strip() if found else ""
+    if found is None or (not unit and isinstance(text, str)):
+        raise UnitError(
+            f"sampling {str(text)[:40]!r} cannot be read; write a rate or an interval: 10Hz, 0.1s"
+        )
+    value = float(found["value"])
+    if unit.lower() in ("", "hz", "khz", "1/s", "s^-1"):
+        rate = value * (1e3 if unit.lower() == "khz" else 1.0)
+        interval = 1.0 / rate if rate > 0.0 else 0.0
+    else:
+        interval = float(conversion(unit, "s").to_si(np.array([value]))[0])
+    if not (0.0 < interval < math.inf):
+        raise UnitError(
+            f"sampling {str(text)[:40]!r} is not positive; write a rate or an interval: 10Hz, 0.1s"
+        )
+    return interval
+
+
 def _advice(unit: str, si: str) -> str:
     known = {name.lower(): name for name in _COMMON[si]}
     hint = _LIKELY.get((si, unit.lower()))

@@ -10,6 +10,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from .thinning import COLUMNS, envelope
+
+PIXELS, FEW = 1000, 20_000
+"""Across and up of the picture; fewer samples than the second are all drawn."""
+
 if TYPE_CHECKING:
     from ..recordings.recording import Recording
 
@@ -34,10 +39,12 @@ class Comparison:
         r = self.recording
         surface = _surface(float(r.surface_radius[self.at]))
         scale = float(np.max(np.abs(r.force)))
+        over = f" over {r.time[-1] - r.time[0]:g} s" if r.timed else ""
+        at = f"t = {r.time[self.at]:g} s" if r.timed else f"sample {self.at + 1}"
         return [
-            f"{len(r.time)} samples over {r.time[-1] - r.time[0]:g} s, forces up to {scale:.0f} N",
+            f"{len(r.time)} samples{over}, forces up to {scale:.0f} N",
             f"RMSE {self.rmse:.2f} N ({100 * self.rmse / scale:.2f} % of the largest force)",
-            f"peak error {self.peak:+.1f} N (recorded minus simulated) at t = {r.time[self.at]:g} s, "
+            f"peak error {self.peak:+.1f} N (recorded minus simulated) at {at}, "
             f"deflection {1000 * r.deflection[self.at]:.2f} mm, {surface}",
         ]
 
@@ -58,12 +65,14 @@ def plot(comparison: Comparison, path: Path) -> None:
     mm = 1000 * r.deflection
     measured: dict[str, Any] = {"color": "0.55", "lw": 1.0, "label": "recorded"}
     computed: dict[str, Any] = {"color": "tab:blue", "lw": 1.0, "label": "simulated"}
-    loops.plot(mm, r.force, ".", ms=2, color="0.55", label="recorded", rasterized=True)
+    shown = _distinct(mm, r.force)
+    loops.plot(mm[shown], r.force[shown], ".", ms=2, color="0.55", label="recorded", rasterized=True)
     order = np.lexsort((r.deflection, r.surface_radius))
     sorted_radii = r.surface_radius[order]
     breaks = np.flatnonzero(sorted_radii[1:] != sorted_radii[:-1]) + 1
     for i, part in enumerate(np.split(order, breaks)):
-        loops.plot(mm[part], simulated[part], color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
+        line = envelope(mm[part], simulated[part]) if part.size > 2 * COLUMNS else (mm[part], simulated[part])
+        loops.plot(*line, color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
     mark: dict[str, Any] = {
         "marker": "o",
         "ms": 9,
@@ -75,14 +84,15 @@ def plot(comparison: Comparison, path: Path) -> None:
     }
     loops.plot(mm[comparison.at], r.force[comparison.at], **mark)
     loops.set(xlabel="deflection [mm]", ylabel="radial force [N]", title=r.name)
-    forces.plot(r.time, r.force, **measured)
-    forces.plot(r.time, simulated, **computed)
+    course = r.time if r.timed else np.arange(1.0, len(r.time) + 1.0)
+    forces.plot(*envelope(course, r.force), **measured)
+    forces.plot(*envelope(course, simulated), **computed)
     forces.set(ylabel="radial force [N]")
-    residuals.plot(r.time, comparison.residual, color="tab:blue", lw=0.7)
-    residuals.plot(r.time[comparison.at], comparison.peak, **mark)
+    residuals.plot(*envelope(course, comparison.residual), color="tab:blue", lw=0.7)
+    residuals.plot(course[comparison.at], comparison.peak, **mark)
     residuals.axhline(0.0, color="0.3", lw=0.8)
     residuals.set(
-        xlabel="time [s]",
+        xlabel="time [s]" if r.timed else "sample",
         ylabel="recorded − simulated [N]",
         title=f"RMSE {comparison.rmse:.2f} N, peak {comparison.peak:+.1f} N",
     )
@@ -92,6 +102,19 @@ def plot(comparison: Comparison, path: Path) -> None:
     loops.legend(frameon=False, loc="upper left")
     forces.legend(frameon=False, loc="upper right", ncols=2)
     figure.savefig(path, dpi=120)
+
+
+def _distinct(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the first sample of each pixel that the dots (x, y) fall on, all of them where they are few."""
+    if x.size <= FEW:
+        return np.arange(x.size)
+    pixel = np.zeros(x.size, dtype=np.int64)
+    for values in (x, y):
+        low, high = float(values.min()), float(values.max())
+        pixel = pixel * PIXELS + ((values - low) * ((PIXELS - 1) / max(high - low, 1e-300))).astype(np.int64)
+    first = np.full(PIXELS * PIXELS, -1, dtype=np.intp)
+    first[pixel[::-1]] = np.arange(x.size)[::-1]
+    return first[first >= 0]
 
 
 def _surface(radius: float) -> str:

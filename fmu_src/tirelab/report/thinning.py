@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter
 
 FloatArray = NDArray[np.float64]
 
@@ -64,6 +63,9 @@ def occupancy(
 
     wide: pixels by which a dot is wider than the number of points asks for
     """
+    # here, since it takes half a second that a picture of lines does not need
+    from scipy.ndimage import maximum_filter
+
     rows, columns = shape
     across_at, up_at = _pixels(x, across, columns), _pixels(y, up, rows)
     inside = (across_at >= 0) & (across_at < columns) & (up_at >= 0) & (up_at < rows)

@@ -63,11 +63,11 @@ class TestColumns:
         assert "no column for force" in refusal(path, radius="flat", units={"force": "N"})
 
     def test_a_missing_column_is_told_with_those_there_are(self, tmp_path: Path) -> None:
-        path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],kraft [N]", *loading())
+        path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],cell [N]", *loading())
         said = refusal(path, radius="flat")
         assert "no column for force" in said
-        assert "'kraft [N]'" in said
-        assert "--columns force=NAME" in said
+        assert "'cell [N]'" in said
+        assert "--columns force=#3" in said
 
     def test_a_column_named_and_not_there_is_told(self, rig: Path) -> None:
         assert "has no column 'Stroke'" in refusal(rig, columns={"deflection": "Stroke"})
@@ -91,7 +91,7 @@ class TestUnitsOfColumns:
         path = write_rows(tmp_path / "a.csv", "time [s],deflection,force [N]", *loading())
         said = refusal(path, radius="flat")
         assert "column 'deflection': has no unit" in said
-        assert "--units deflection=mm" in said
+        assert "--units deflection=cm" in said
         assert read_recording(
             path, radius="flat", units={"deflection": "mm"}
         ).deflection.max() == pytest.approx(0.0025)

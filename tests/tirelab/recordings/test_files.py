@@ -159,10 +159,10 @@ class TestWhatMayBeARecording:
         monkeypatch.setattr(Path, "open", locked)
         assert why_no_recording(tmp_path / "a.csv") is None
 
-    @pytest.mark.parametrize("columns", [{"force": "Kraft"}, {"force": "-kraft"}, {"force": "+#2"}])
+    @pytest.mark.parametrize("columns", [{"force": "Ch2"}, {"force": "-ch2"}, {"force": "+#2"}])
     def test_a_column_that_the_user_names(self, tmp_path: Path, columns: dict[str, str]) -> None:
         file = tmp_path / "a.csv"
-        file.write_text("Zeit,Kraft\n1,2\n", encoding="utf-8")
+        file.write_text("Ch1,Ch2\n1,2\n", encoding="utf-8")
         assert why_no_recording(file) is not None
         assert why_no_recording(file, columns) is None
 

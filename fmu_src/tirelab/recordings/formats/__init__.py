@@ -48,9 +48,10 @@ _SIGNATURES = (
 )
 
 
-def open_table(path: Path) -> Table:
+def open_table(path: Path, skip_rows: int | None = None) -> Table:
     """The table in a file, its loader chosen by the suffix.
 
+    skip_rows: rows above the table of a text file; None: it is found
     Errors: RecordingError when there is no such file, it is empty, its suffix is not known, its content is of
     another kind than its suffix says, or the library for it is not installed.
     """
@@ -77,4 +78,8 @@ def open_table(path: Path) -> Table:
             f"{path.name}: recordings ending in {quoted(suffix)} cannot be read; "
             f"export it as one of {', '.join(LOADERS)}"
         )
-    return LOADERS[suffix](path)
+    if skip_rows is None:
+        return LOADERS[suffix](path)
+    if suffix not in TEXT_SUFFIXES:
+        raise RecordingError(f"{path.name}: rows can be skipped in text files alone; leave out --skip-rows")
+    return DelimitedTable(path, skip_rows)

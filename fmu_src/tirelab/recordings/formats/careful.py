@@ -8,10 +8,13 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
+import polars as pl
 from numpy.typing import NDArray
 
 from ..units import FLAT_WORDS
-from .layout import DECIMAL_COMMA, MAYBE_THOUSANDS, Layout
+from .clock import Clock, ClockError
+from .layout import Layout
+from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS
 from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
 
 LONGEST_LINE = 1_048_576
@@ -35,6 +38,7 @@ class RowReader:
         self.layout = layout
         self.wanted = wanted
         self.comments: list[int] = []
+        self.clocks = {want.index: Clock() for want in wanted if layout.headers[want.index].dated}
         self.cells = _Cells(path, layout)
 
     def read(self, source: Iterable[str], first_line: int) -> Rows:
@@ -43,7 +47,9 @@ class RowReader:
         Errors: RecordingError naming row, column and value for text in a number, too many fields, two kinds
         of decimal mark, a quote left open.
         """
-        columns = [array("d") for _ in self.wanted]
+        columns: list[array[float] | list[str]] = [
+            [] if want.index in self.clocks else array("d") for want in self.wanted
+        ]
         lines = array("q")
         targets = [
             (column, want.index, self.layout.headers[want.index].text, want.channel == "radius")
@@ -63,13 +69,34 @@ class RowReader:
                     self._refuse_extra_fields(start, row)
                 lines.append(start)
                 for column, index, header, flat in targets:
-                    column.append(number(row[index] if index < len(row) else "", start, header, flat))
+                    cell = row[index] if index < len(row) else ""
+                    if isinstance(column, list):
+                        column.append(cell)
+                    else:
+                        column.append(number(cell, start, header, flat))
         except csv.Error as error:
             raise RecordingError(
                 f"{self.path.name}, row {line}: {error}; a quote may be left open there: close it"
             ) from None
-        values = [np.frombuffer(column, dtype=np.float64) if column else np.empty(0) for column in columns]
+        values = [
+            self._seconds(column, want, lines)
+            if isinstance(column, list)
+            else (np.frombuffer(column, dtype=np.float64) if column else np.empty(0))
+            for column, want in zip(columns, self.wanted, strict=True)
+        ]
         return Rows(tuple(values), np.array(lines, dtype=np.int64), first_line + rows.line_num)
+
+    def _seconds(self, texts: Sequence[str], want: Wanted, lines: Sequence[int]) -> FloatArray:
+        """The seconds that clock times say; RecordingError with the row of one that is none."""
+        try:
+            return self.clocks[want.index].seconds(pl.Series(texts, dtype=pl.String))
+        except ClockError as fault:
+            raise not_a_time(
+                self.path.name,
+                lines[fault.index],
+                self.layout.headers[want.index].text,
+                texts[fault.index],
+            ) from None
 
     def read_file(self) -> Rows:
         """The rows of the whole file, whichever way its lines end."""
@@ -107,18 +134,29 @@ class RowReader:
         )
 
 
+def not_a_time(origin: str, line: int, header: str, text: str) -> RecordingError:
+    """The error for a text among clock times."""
+    return RecordingError(
+        f"{origin}, row {line}, column {quoted(header)}: {quoted(text)} is not a time like those before it; "
+        "correct it, or delete the row"
+    )
+
+
 class _Cells:
     """The cells of one file, held to one decimal mark."""
 
     def __init__(self, path: Path, layout: Layout) -> None:
         self.path = path
-        self.commas = layout.separator != ","
+        self.commas = layout.separator != "," or layout.style.decimal_comma
+        self.style = layout.style
         self.mark = ""
         self.mark_line = 0
-        self.certain = layout.decimal_comma
+        self.certain = layout.style.decimal_comma
         self.doubtful: RecordingError | None = None
 
     def number(self, text: str, line: int, header: str, flat: bool) -> float:
+        if self.style.thousands:
+            text = self.style.ungrouped(text)
         if "," in text:
             return self._with_comma(text, line, header)
         # float() also takes 1_000 and the digits of other scripts; a recording means neither.

@@ -11,7 +11,10 @@ import polars as pl
 from numpy.typing import NDArray
 
 from .careful import LONGEST_LINE, RowReader, Rows
+from .clock import ClockError
+from .encoding import BY_BYTES
 from .layout import Layout, find_layout
+from .number_style import NumberStyle
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed
 
 BLOCK = 2 * 2**20
@@ -23,9 +26,10 @@ class DelimitedTable:
 
     time_axis: int | None = None
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, skip_rows: int | None = None) -> None:
         self.path = path
-        self.layout = find_layout(path)
+        self.layout = find_layout(path, skip_rows)
+        self.provenance = self.layout.provenance
 
     @property
     def headers(self) -> Sequence[Header]:
@@ -46,9 +50,11 @@ class DelimitedTable:
             pieces = _Pieces(len(wanted))
             reader = RowReader(self.path, self.layout, wanted)
             pieces.add_rows(reader.read_file())
-        notes = list(self.layout.notes)
+        notes = [*self.layout.notes, *(note for clock in reader.clocks.values() for note in clock.notes)]
         if reader.cells.decimal_mark() == ",":
             notes.append("commas read as decimal commas")
+        if self.layout.style.thousands:
+            notes.append(f"{self.layout.style.thousands!r} read as the mark between thousands")
         if reader.comments:
             lines = listed([str(line) for line in reader.comments])
             notes.append(f"comment lines (#) skipped: row {lines}")
@@ -70,10 +76,15 @@ class _Pieces:
             column.append(values)
         self._count(len(rows.lines), rows.lines)
 
-    def add_frame(self, frame: pl.DataFrame, names: Sequence[str], first_line: int) -> None:
+    def add_frame(self, frame: pl.DataFrame, reader: RowReader, first_line: int) -> None:
         """Rows that follow line by line: views of what polars parsed, copied once when all are there."""
-        for column, name in zip(self.columns, names, strict=True):
-            column.extend(chunk.to_numpy() for chunk in frame[name].get_chunks())
+        # all clock times are read before anything is kept, since one that is none ends the reading by columns
+        clocks = {i: clock.seconds(frame[_named(i)]) for i, clock in reader.clocks.items()}
+        for column, want in zip(self.columns, reader.wanted, strict=True):
+            if want.index in clocks:
+                column.append(clocks[want.index])
+            else:
+                column.extend(chunk.to_numpy() for chunk in frame[_named(want.index)].get_chunks())
         self._count(frame.height, first_line)
 
     def _count(self, samples: int, lines: NDArray[np.int64] | int) -> None:
@@ -100,56 +111,84 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
     """Read a file in blocks; False where only a reading from the first row to the last can judge it."""
     path, layout = reader.path, reader.layout
     line = layout.lines_before_data + 1
-    codec = "latin-1" if layout.encoding == "latin-1" else "utf-8"
-    names = [f"column_{want.index}" for want in reader.wanted]
+    codec = layout.encoding if layout.encoding in ("latin-1", "gb18030") else "utf-8"
+    wanted = [want.index for want in reader.wanted]
     try:
         for block in _blocks(path, layout):
             quotes = block.count(b'"') if b'"' in block else 0
             if quotes % 2:
                 return False
-            frame = _parsed(block, layout, names)
+            frame = _parsed(block, layout, wanted)
             if frame is not None and (
                 not quotes or frame.height == block.count(b"\n") + (block[-1:] != b"\n")
             ):
-                pieces.add_frame(frame, names, line)
+                pieces.add_frame(frame, reader, line)
                 line += frame.height
-                if layout.decimal_comma or b"." in block:
-                    reader.cells.hold_to("," if layout.decimal_comma else ".", line)
+                comma = layout.style.decimal_comma
+                if comma or b"." in block:
+                    reader.cells.hold_to("," if comma else ".", line)
             else:
                 text = io.StringIO(block.decode(codec, "surrogateescape"), newline="")
                 rows = reader.read(text, line)
                 pieces.add_rows(rows)
                 line = rows.next_line
-    except (RecordingError, UnicodeError):
+    except (RecordingError, UnicodeError, ClockError):
         return False
     return True
 
 
-def _parsed(block: bytes, layout: Layout, names: Sequence[str]) -> pl.DataFrame | None:
-    """The columns of a block, or None where it holds anything but rows of numbers."""
+def _named(index: int) -> str:
+    return f"column_{index}"
+
+
+def _parsed(block: bytes, layout: Layout, wanted: Sequence[int]) -> pl.DataFrame | None:
+    """The columns of a block, or None where it holds anything but rows of numbers and clock times."""
+    comma, thousands = layout.style.decimal_comma, layout.style.thousands
+    clocks = {i for i in wanted if layout.headers[i].dated}
+    as_text = bool(thousands) or (comma and bool(clocks))
     # A comment may pass for a row, a point for a decimal comma; polars 1 skips empty lines at the start.
-    if b"#" in block or (layout.decimal_comma and b"." in block) or block[:1] in b"\r\n":
+    if b"#" in block or block[:1] in b"\r\n" or (comma and not as_text and b"." in block):
         return None
+    numbers = pl.String if as_text else pl.Float64
+    kinds = {i: pl.String if i in clocks else numbers for i in range(len(layout.headers))}
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             frame = pl.read_csv(
-                block,
+                block if layout.encoding != "gb18030" else block.decode(layout.encoding).encode(),
                 has_header=False,
-                schema={f"column_{i}": pl.Float64 for i in range(len(layout.headers))},
-                columns=list(names),
+                schema={_named(i): kind for i, kind in kinds.items()},
+                columns=[_named(i) for i in wanted],
                 separator=layout.separator,
-                decimal_comma=layout.decimal_comma,
+                decimal_comma=comma,
                 ignore_errors=True,
             )
+            if as_text:
+                frame = frame.with_columns(
+                    _ungrouped(pl.col(_named(i)), layout.style).alias(_named(i))
+                    for i in wanted
+                    if i not in clocks
+                )
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, UserWarning):
         return None
-    return None if any(frame[name].null_count() for name in names) else frame
+    return None if any(frame[_named(i)].null_count() for i in wanted) else frame
+
+
+def _ungrouped(text: pl.Expr, style: NumberStyle) -> pl.Expr:
+    """Numbers from texts with marks between thousands; null where a text is no number or has the other mark."""
+    bare_text = text
+    if style.thousands:
+        bare = pl.when(text.str.contains(style.pattern))
+        bare_text = bare.then(text.str.replace_all(style.thousands, "", literal=True)).otherwise(text)
+    if not style.decimal_comma:
+        return bare_text.cast(pl.Float64, strict=False)
+    plain = pl.when(bare_text.str.contains(".", literal=True)).then(None).otherwise(bare_text)
+    return plain.str.replace(",", ".", literal=True).cast(pl.Float64, strict=False)
 
 
 def _blocks(path: Path, layout: Layout) -> Iterator[bytes]:
     """The rows of the file as UTF-8, in blocks that end with a line; the last without its line end."""
-    blocks = _byte_blocks if layout.encoding in ("utf-8", "utf-8-sig", "latin-1") else _decoded_blocks
+    blocks = _byte_blocks if layout.encoding in BY_BYTES else _decoded_blocks
     previous = b""
     for block in blocks(path, layout):
         if previous:

@@ -122,7 +122,7 @@ def _holds_any(row: Sequence[Any]) -> bool:
 def _header(cell: object, number: int, dated: bool) -> Header:
     text = "" if cell is None else " ".join(str(cell).split())
     name, unit = split_header(text)
-    return Header(name or f"#{number}", "s" if dated else unit, text or f"#{number}")
+    return Header(name or f"#{number}", "s" if dated else unit, text or f"#{number}", dated)
 
 
 def _seconds(cell: object) -> float:

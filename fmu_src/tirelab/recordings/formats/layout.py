@@ -1,5 +1,7 @@
 """How a text file is laid out: its encoding, its separator, its header and where its numbers start."""
 
+from __future__ import annotations
+
 import codecs
 import csv
 import io
@@ -8,105 +10,184 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..units import QUANTITIES, measures, split_header
+from ..units import split_header
+from .clock import is_clock
+from .encoding import find_encoding
+from .number_style import NumberStyle, style_of
 from .table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
+from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value
 
 HEAD = 65_536
 """How much of the file [B] is looked at to find its layout."""
 
 SAMPLE = 500
-"""How many of its lines are looked at for decimal commas."""
+"""How many of its lines are looked at for decimal commas and clock times."""
 
-_SEPARATORS = "\t;,"
-_BYTE_ORDER_MARKS = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF32_LE, "utf-32"),
-    (codecs.BOM_UTF32_BE, "utf-32"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
-DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
-MAYBE_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
+BELOW_NAMES = 3
+"""So many rows of text may stand between the names of the columns and the numbers: units, addresses, remarks."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """What the head of a text file says about the whole."""
+    """What the head of a text file says about the whole.
+
+    table_line: of the header, from 1, or of the first numbers where there is no header; provenance: the lines above it
+    plain: whether lines end as they usually do, so that a parser by columns may be tried
+    """
 
     encoding: str
     separator: str
     headers: tuple[Header, ...]
     lines_before_data: int
-    decimal_comma: bool
+    style: NumberStyle
     bytes_per_row: float
     plain: bool
-    """Whether lines end as they usually do, so that a parser by columns may be tried."""
     notes: tuple[str, ...]
+    table_line: int = 1
+    provenance: tuple[str, ...] = ()
 
 
-def find_layout(path: Path) -> Layout:
+def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     """The layout of a CSV or TSV file, from its first 64 KiB.
 
-    Comment lines (#) and empty lines before the header are passed over, `sep=;` is obeyed, a second row of
-    units is understood. Errors: RecordingError for a file that is not text, has one column, or no header.
+    The table is found below lines about the test, comments (#) and empty lines; `sep=;` is obeyed, a row of units below
+    the names is understood. skip_rows: the number of lines above the table, where it is given instead
+    Errors: RecordingError for a file that is not text, has one column, or no header.
     """
     with path.open("rb") as file:
         raw = file.read(HEAD)
-    encoding, notes = _encoding(path, raw)
+    encoding, notes = find_encoding(path, raw, len(raw) < HEAD)
     lines = _whole_lines(path, raw, encoding)
-    start, separator = _preamble(lines)
-    if start == len(lines):
-        raise RecordingError(
-            f"{path.name}: holds no header and no numbers; record again, or export the file anew"
-        )
-    separator = separator or _separator(path, lines[start:])
+    first, declared = _preamble(lines)
+    if skip_rows is not None:
+        first = skip_rows + _preamble(lines[skip_rows:])[0]
+    if first >= len(lines):
+        raise RecordingError(_no_table(path, len(lines), skip_rows))
+    place = find_table(lines, first, declared) if skip_rows is None else None
+    start = first if place is None else place.line
+    separator = declared or (place.separator if place else _separator(path, lines[start:]))
     rows = csv.reader(lines[start : start + SAMPLE], delimiter=separator)
     try:
         header = next(rows)
-        data_line = rows.line_num
+        header_lines = rows.line_num
         body = [row for row in rows if row and not is_comment(row[0])]
     except csv.Error as error:
         raise RecordingError(
             f"{path.name}, row {start + 1}: {error}; correct the quotes of the header"
         ) from None
-    plain = data_line == 1 and all(line.endswith("\n") for line in lines[: start + 1])
-    bytes_per_row = len(raw) / max(len(lines) - start, 1)
-    cells = [cell for row in (header, *body) for cell in row]
-    decimal_comma = separator != "," and any(map(_is_decimal_comma, cells))
-    if _is_numeric(header):
-        names = _commented_names(lines[:start], separator)
-        if len(names) == len(header):
-            notes = (*notes, f"column names taken from the comment in row {start}")
-        else:
-            names = [""] * len(header)
-            notes = (*notes, "the file has no header row: its columns are known by number only")
-        headers = tuple(_header(cell, number) for number, cell in enumerate(names, 1))
-        return Layout(encoding, separator, headers, start, decimal_comma, bytes_per_row, plain, notes)
-    headers = tuple(_header(cell, number) for number, cell in enumerate(header, 1))
-    if body and _is_units(body[0], len(header)):
-        headers = tuple(_with_unit(h, cell) for h, cell in zip(headers, body[0], strict=True))
-        notes = (*notes, f"units taken from row {start + data_line + 1}, below the names")
-        data_line += 1
-    return Layout(encoding, separator, headers, start + data_line, decimal_comma, bytes_per_row, plain, notes)
+    names, in_table, said = _names(lines, start, header, separator)
+    headers = tuple(_header(cell, number) for number, cell in enumerate(names, 1))
+    before = 0
+    if in_table:
+        before = header_lines
+        headers, below, more = _below_names(lines, start + header_lines, headers, separator)
+        before += below
+        said = (*said, *more)
+    if start > first:
+        said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
+    clocks = _clock_columns(body)
+    headers = tuple(
+        Header(h.name, "s", h.text, dated=True) if i in clocks else h for i, h in enumerate(headers)
+    )
+    return Layout(
+        encoding,
+        separator,
+        headers,
+        start + before,
+        style_of((cell for row in (header, *body) for cell in row), separator),
+        len(raw) / max(len(lines) - start, 1),
+        header_lines == 1 and all(line.endswith("\n") for line in lines[: start + 1]),
+        (*notes, *said),
+        start + 1,
+        _provenance(lines[:start], separator, declared),
+    )
 
 
-def _encoding(path: Path, raw: bytes) -> tuple[str, tuple[str, ...]]:
-    for mark, name in _BYTE_ORDER_MARKS:
-        if raw.startswith(mark):
-            return name, ()
-    if b"\x00" in raw:
-        for name, empty, filled in (("utf-16-le", raw[1::2], raw[::2]), ("utf-16-be", raw[::2], raw[1::2])):
-            if empty.count(0) > 0.9 * len(empty) and b"\x00" not in filled:
-                return name, ("read as UTF-16 without a byte order mark",)
-        raise RecordingError(
-            f"{path.name}: is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
-        )
+def _no_table(path: Path, lines: int, skip_rows: int | None) -> str:
+    if skip_rows:
+        return f"{path.name}: has no table below its first {skip_rows} rows; give a smaller --skip-rows"
+    return f"{path.name}: holds no header and no numbers; record again, or export the file anew"
+
+
+def _names(
+    lines: Sequence[str], start: int, header: Sequence[str], separator: str
+) -> tuple[Sequence[str], bool, tuple[str, ...]]:
+    """Return the names of the columns, whether they stand in the row `start` itself, and a note where they do not."""
+    if not _is_numeric(header, separator):
+        return header, True, ()
+    names = _commented_names(lines[:start], separator)
+    if len(names) == len(header):
+        return names, False, (f"column names taken from the comment in row {start}",)
+    return [""] * len(header), False, ("the file has no header row: its columns are known by number only",)
+
+
+def _below_names(
+    lines: Sequence[str], line: int, headers: tuple[Header, ...], separator: str
+) -> tuple[tuple[Header, ...], int, tuple[str, ...]]:
+    """Return the headers with the units of a row below them, how many lines stand above the numbers, and notes.
+
+    A row of text that is not of units is skipped too, with a note, where rows of numbers follow it.
+    """
+    texts, numbers_follow = _rows_of_text(lines, line, separator)
+    units = next(
+        (row for row in texts[:BELOW_NAMES] if len(row[1]) == len(headers) and is_units(row[1])), None
+    )
+    if units is None and not texts:
+        return headers, 0, ()
+    whole = numbers_follow and len(texts) <= BELOW_NAMES and all(len(row) == len(headers) for _, row in texts)
+    if not whole and (units is None or units is not texts[0]):
+        return headers, 0, ()
+    notes = []
+    if units is not None:
+        headers = tuple(_with_unit(h, cell) for h, cell in zip(headers, units[1], strict=True))
+        notes.append(f"units taken from row {units[0]}, below the names")
+    others = [str(row) for row, _ in texts if units is None or row != units[0]] if whole else []
+    if others:
+        notes.append(f"text between the names and the numbers skipped: row {', '.join(others)}")
+    last = texts[-1][0] if whole else (units or texts[0])[0]
+    return headers, last - line, tuple(notes)
+
+
+def _rows_of_text(
+    lines: Sequence[str], line: int, separator: str
+) -> tuple[list[tuple[int, list[str]]], bool]:
+    """Return the rows below the names that hold no number, with their rows in the file, and whether numbers follow."""
+    texts: list[tuple[int, list[str]]] = []
+    reader = csv.reader(lines[line : line + 4 * BELOW_NAMES], delimiter=separator)
     try:
-        codecs.getincrementaldecoder("utf-8")().decode(raw, final=len(raw) < HEAD)
-    except UnicodeDecodeError as error:
-        byte = raw[error.start]
-        return "latin-1", (f"not UTF-8 (byte 0x{byte:02x} at {error.start}): read as Latin-1",)
-    return "utf-8", ()
+        for row in reader:
+            filled = [cell for cell in row if cell.strip().lower() not in BLANK_WORDS]
+            if filled and is_comment(row[0]):
+                break
+            if any(is_value(cell, separator) for cell in filled):
+                return texts, len(filled) > 1 and all(is_value(cell, separator) for cell in filled)
+            if filled:
+                texts.append((line + reader.line_num, row))
+    except csv.Error:
+        pass
+    return texts, False
+
+
+def _clock_columns(body: Sequence[Sequence[str]]) -> frozenset[int]:
+    """Return the columns that hold clock times: nine of ten of the cells that hold something, in the first rows."""
+    found = []
+    width = max((len(row) for row in body), default=0)
+    for i in range(width):
+        cells = [row[i] for row in body[:60] if i < len(row) and row[i].strip()]
+        clocks = sum(map(is_clock, cells))
+        if clocks > 1 and clocks >= 0.9 * (len(cells) - BELOW_NAMES):
+            found.append(i)
+    return frozenset(found)
+
+
+def _provenance(lines: Sequence[str], separator: str, declared: str | None) -> tuple[str, ...]:
+    """Return the lines above the table as texts: without # and without separators that end a line."""
+    texts = []
+    for line in lines:
+        text = line.strip().lstrip("#").rstrip(separator + " ").strip()
+        if text and not (declared and line.startswith("sep=")):
+            texts.append(text.replace("\t", " "))
+    return tuple(texts)
 
 
 def _whole_lines(path: Path, raw: bytes, encoding: str) -> list[str]:
@@ -135,7 +216,7 @@ def _preamble(lines: Sequence[str]) -> tuple[int, str | None]:
 def _separator(path: Path, lines: Sequence[str]) -> str:
     sample = [line for line in lines[:50] if line.strip()]
     likely: list[tuple[bool, int, str]] = []
-    for candidate in _SEPARATORS:
+    for candidate in SEPARATORS:
         try:
             fields = [len(row) for row in csv.reader(sample, delimiter=candidate)]
         except csv.Error:
@@ -165,34 +246,9 @@ def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
     return next(csv.reader([text], delimiter=separator), [])
 
 
-def _is_numeric(cells: Sequence[str]) -> bool:
+def _is_numeric(cells: Sequence[str], separator: str) -> bool:
     values = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS]
-    return bool(values) and all(_reads_as_number(cell) for cell in values)
-
-
-def _reads_as_number(cell: str) -> bool:
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
-
-
-def _is_decimal_comma(cell: str) -> bool:
-    return bool(DECIMAL_COMMA.fullmatch(cell)) and not MAYBE_THOUSANDS.fullmatch(cell)
-
-
-def _is_units(cells: Sequence[str], columns: int) -> bool:
-    units = [unit for unit in map(_bare_unit, cells) if unit]
-    if len(cells) != columns or not units or any(_reads_as_number(cell) for cell in cells):
-        return False
-    return all(any(measures(unit, si) for si in QUANTITIES) for unit in units)
-
-
-def _bare_unit(cell: str) -> str:
-    text = cell.strip()
-    bare = text[1:-1].strip() if text[:1] + text[-1:] in ("[]", "()") else text
-    return bare.strip("-")
+    return bool(values) and all(is_value(cell, separator) for cell in values)
 
 
 def _header(cell: str, number: int) -> Header:
@@ -201,4 +257,4 @@ def _header(cell: str, number: int) -> Header:
 
 
 def _with_unit(header: Header, cell: str) -> Header:
-    return Header(header.name, header.unit or _bare_unit(cell) or None, header.text)
+    return Header(header.name, header.unit or bare_unit(cell) or None, header.text)

@@ -9,6 +9,7 @@ from ..origin import Origin
 from ..units import split_header
 from .libraries import reading_with
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, numbers, sample_place
+from .text_column import numbers_of_text
 
 
 class ParquetTable:
@@ -48,17 +49,22 @@ def frame_headers(schema: Mapping[str, pl.DataType]) -> tuple[Header, ...]:
     made = []
     for text, kind in schema.items():
         name, unit = split_header(text)
-        made.append(Header(name, "s" if kind.is_temporal() else unit, text))
+        dated = kind.is_temporal()
+        made.append(Header(name, "s" if dated else unit, text, dated))
     return tuple(made)
 
 
 def series_values(origin: Origin, header: Header, series: pl.Series, channel: str) -> FloatArray:
-    """A column of a frame as float64, nulls as NaN; RecordingError for lists, text and the like."""
+    """A column of a frame as float64, nulls as NaN; text that holds numbers is read, lists are refused."""
     if series.dtype.is_nested():
         raise RecordingError(
             f"{origin}, column {header.text!r}: holds lists, not numbers; "
             f"name another column with {origin.columns(**{channel: 'NAME'})}"
         )
+    if series.dtype == pl.String:
+        read = numbers_of_text(series, channel)
+        if read is not None:
+            return read
     if series.dtype.is_numeric():
         series = series.cast(pl.Float64).fill_null(float("nan"))
     return numbers(origin, header, series.to_numpy(), channel)

@@ -26,11 +26,15 @@ class RecordingError(TirelabError):
 
 @dataclass(frozen=True)
 class Header:
-    """One column as its file names it: its name, its unit if the file gives one, and the whole text."""
+    """One column as its file names it: its name, its unit if the file gives one, and the whole text.
+
+    dated: whether it holds dates, clock times or durations, which become seconds
+    """
 
     name: str
     unit: str | None
     text: str
+    dated: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,7 +117,8 @@ def numbers(origin: Origin, header: Header, values: NDArray[Any], channel: str) 
         return column.astype(np.float64, copy=False)
     kinds = {"b": "true and false", "c": "complex numbers", "M": "dates", "m": "durations"}
     held = kinds.get(column.dtype.kind, "text")
-    first = f", {quoted(column.flat[0])} the first" if column.size and held == "text" else ""
+    shown = next((value for value in column.flat if value is not None), None)
+    first = f", {quoted(shown)} the first" if column.size and held == "text" else ""
     raise RecordingError(
         f"{origin}, column {quoted(header.text)}: holds {held}{first}, not numbers; "
         f"name another column with {origin.columns(**{channel: 'NAME'})}"

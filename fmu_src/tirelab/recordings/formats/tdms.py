@@ -90,7 +90,7 @@ def _header(channel: Any, repeated: bool) -> Header:
     text = f"{channel.group_name}/{channel.name}" if repeated else channel.name
     stated = str(channel.properties.get("unit_string", "") or "").strip()
     dated = channel.dtype is not None and np.dtype(channel.dtype).kind == "M"
-    return Header(name, "s" if dated else (stated or unit), text)
+    return Header(name, "s" if dated else (stated or unit), text, dated)
 
 
 def _waveform_time(channel: Any) -> FloatArray:

@@ -1,0 +1,240 @@
+"""Laws of springs, bushings and tires side by side: what each leaves of recordings of one part, and its constants.
+
+Deflection x and force F may have both signs. All samples count alike.
+
+    linear        F = F0 + k x
+    linear_gap    F = k max(x - x0, 0)                   x0: where the force begins (a gap > 0, a preload < 0)
+    power         F = A sign(x) |x|^B                    x in cm, as the tire's law
+    power_gap     F = A max(x - x0, 0)^B
+    polynomial    F = F0 + k1 x + k2 x^2 + k3 x^3
+    piecewise     straight lines between the forces at x1 ... x6, which divide the samples alike
+    mf_tyre       F = (q1 x + q2 x^2) (1 + p dp)         dp = pressure over the mean one, less 1, where it was recorded
+
+mf_tyre is the vertical force of MF-Tyre without speed and camber: H. Pacejka, "Tire and Vehicle Dynamics", 3rd ed.
+2012, eq. 4.E68, with q1 = Fz0 qFz1 / R0, q2 = Fz0 qFz2 / R0^2 and p = pFz1 for the mean pressure as reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
+
+from ..errors import TirelabError
+from ..recordings.plausibility import force_begins
+from ..recordings.recording import Recording
+from .surfaces import CM_PER_M
+
+Array = NDArray[np.float64]
+
+SAMPLES_MOST = 20_000
+"""So many samples, evenly spaced, are fitted."""
+
+KNOTS = 6
+
+LARGEST_OFFSET = 0.01
+"""The deflection offset [m] that a tire file can hold."""
+
+AS_TIRES = ("linear_gap", "power_gap")
+"""Laws that a tire file holds, as a power law whose deflection is shifted."""
+
+
+@dataclass(frozen=True)
+class LawFit:
+    """One law fitted: its constants with standard uncertainties for white noise, and the RMSE [N] it leaves.
+
+    constants: symbol, value, uncertainty and unit of each; bic: Bayesian criterion relative to nothing, lower is better
+    """
+
+    name: str
+    constants: tuple[tuple[str, float, float, str], ...]
+    rmse: float
+    bic: float
+
+    def value(self, symbol: str) -> float:
+        """Return a constant; raises KeyError where the law has none of that symbol."""
+        return {s: value for s, value, _, _ in self.constants}[symbol]
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Deflection [cm] and force [N] of all recordings together, pressure [Pa] or None."""
+
+    x: Array
+    force: Array
+    pressure: Array | None
+    begins: float
+
+
+def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
+    """Return every law fitted to recordings of one part on one surface, the one of the least criterion first.
+
+    Raises TirelabError where the surface changes.
+    """
+    samples = _samples(recordings)
+    fits = (
+        _linear(samples),
+        _shifted(samples, "linear_gap"),
+        _power(samples),
+        _shifted(samples, "power_gap"),
+        _polynomial(samples),
+        _piecewise(samples),
+        _mf_tyre(samples),
+    )
+    return tuple(sorted(fits, key=lambda fit: fit.bic))
+
+
+def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireModel:
+    """Return a tire with a fitted law: a power law, and a deflection offset for its gap or preload.
+
+    Raises TirelabError where a tire file cannot hold the law.
+    """
+    if fit.name not in AS_TIRES:
+        raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {', '.join(AS_TIRES)}")
+    x0 = 1e-3 * fit.value("x0")
+    if abs(x0) > LARGEST_OFFSET:
+        raise TirelabError(
+            f"the force begins at {1e3 * x0:.3g} mm, and a tire file holds at most "
+            f"{1e3 * LARGEST_OFFSET:g} mm; shift the gauge's zero before the export"
+        )
+    exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
+    scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
+    law = PowerLaw(scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
+    recorded = ", ".join(dict.fromkeys(r.name for r in recordings))
+    flat = 1.0 / FLAT_RADIUS
+    curvature = 1.0 / float(recordings[0].surface_radius[0])
+    return TireModel(
+        law=law,
+        effects=((CATALOGUE["deflection_offset"], (-x0,)),),
+        tested_range=TestedRange(
+            curvature_min=curvature - flat,
+            curvature_max=curvature + flat,
+            deflection_max=max(float(r.deflection.max()) for r in recordings),
+            force_max=max(float(r.force.max()) for r in recordings),
+        ),
+        name=name or f"part identified from {recorded}",
+        source=f"identified by tirelab from the recordings {recorded}",
+    )
+
+
+def _samples(recordings: Sequence[Recording]) -> _Samples:
+    radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
+    if radii.size > 1:
+        raise TirelabError(
+            f"the recordings were made on {radii.size} surfaces; the laws are compared on one surface at a time"
+        )
+    step = max(1, sum(len(r) for r in recordings) // SAMPLES_MOST)
+    x = np.concatenate([r.deflection[::step] for r in recordings])
+    force = np.concatenate([r.force[::step] for r in recordings])
+    pressures = [r.pressure[::step] for r in recordings if r.pressure is not None]
+    pressure = np.concatenate(pressures) if len(pressures) == len(recordings) else None
+    zero = force_begins(x, force, np.zeros_like(x))
+    return _Samples(CM_PER_M * x, force, pressure, 0.0 if zero is None else CM_PER_M * zero.begins)
+
+
+def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fitted: _Fitted) -> LawFit:
+    """Return a law from its values in the units of the fit; symbols: name, factor to the shown unit, unit."""
+    residual, derivatives = fitted
+    n, k = residual.size, values.size
+    squares = float(residual @ residual)
+    variance = squares / max(n - k, 1)
+    covariance = variance * np.linalg.pinv(derivatives.T @ derivatives)
+    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    constants = tuple(
+        (symbol, float(value * factor), float(abs(factor) * deviation), unit)
+        for (symbol, factor, unit), value, deviation in zip(symbols, values, spread, strict=True)
+    )
+    rmse = (squares / n) ** 0.5
+    return LawFit(name, constants, rmse, n * float(np.log(max(squares / n, 1e-300))) + k * float(np.log(n)))
+
+
+_Fitted = tuple[Array, Array]
+"""Residual (n,) and derivatives (n, k) of the law by its values."""
+
+
+def _lstsq(columns: Sequence[Array], samples: _Samples) -> tuple[Array, _Fitted]:
+    matrix = np.stack(columns, axis=1)
+    values = np.asarray(np.linalg.lstsq(matrix, samples.force, rcond=None)[0], dtype=np.float64)
+    return values, (samples.force - matrix @ values, matrix)
+
+
+def _linear(s: _Samples) -> LawFit:
+    values, fitted = _lstsq([np.ones_like(s.x), s.x], s)
+    return _fit("linear", (("F0", 1.0, "N"), ("k", 0.1, "N/mm")), values, fitted)
+
+
+def _polynomial(s: _Samples) -> LawFit:
+    values, fitted = _lstsq([s.x**i for i in range(4)], s)
+    units = [("F0", 1.0, "N"), *((f"k{i}", 0.1**i, f"N/mm^{i}" if i > 1 else "N/mm") for i in (1, 2, 3))]
+    return _fit("polynomial", units, values, fitted)
+
+
+def _piecewise(s: _Samples) -> LawFit:
+    knots = np.unique(np.quantile(s.x, np.linspace(0.0, 1.0, KNOTS)))
+    hats = [np.interp(s.x, knots, np.eye(knots.size)[i]) for i in range(knots.size)]
+    values, fitted = _lstsq(hats, s)
+    units = [(f"F({10.0 * knot:.3g} mm)", 1.0, "N") for knot in knots]
+    return _fit("piecewise", units, values, fitted)
+
+
+def _mf_tyre(s: _Samples) -> LawFit:
+    plain = [s.x, s.x**2]
+    units = (("q1", 0.1, "N/mm"), ("q2", 0.01, "N/mm^2"))
+    if s.pressure is None or np.ptp(s.pressure) <= 0.0:
+        values, fitted = _lstsq(plain, s)
+        return _fit("mf_tyre", units, values, fitted)
+    relative = s.pressure / float(s.pressure.mean()) - 1.0
+
+    def law(v: Array) -> Array:
+        return np.asarray((v[0] * s.x + v[1] * s.x**2) * (1.0 + v[2] * relative))
+
+    start = np.append(_lstsq(plain, s)[0], 0.5)
+    values, fitted = _searched(law, start, s)
+    return _fit("mf_tyre", (*units, ("p", 1.0, "1")), values, fitted)
+
+
+def _power(s: _Samples) -> LawFit:
+    size = np.abs(s.x) + 1e-12
+
+    def law(v: Array) -> Array:
+        return np.asarray(v[0] * np.sign(s.x) * size ** v[1])
+
+    values, fitted = _searched(law, _power_start(s, 0.0), s)
+    return _fit("power", (("A", 1.0, "N/cm^B"), ("B", 1.0, "1")), values, fitted)
+
+
+def _shifted(s: _Samples, name: str) -> LawFit:
+    linear = name == "linear_gap"
+    start = _power_start(s, s.begins)
+
+    def law(v: Array) -> Array:
+        beyond = np.maximum(s.x - v[-1], 0.0)
+        return np.asarray(v[0] * (beyond if linear else (beyond + 1e-12) ** v[1]))
+
+    begin = [start[0], s.begins] if linear else [*start, s.begins]
+    values, fitted = _searched(law, np.array(begin), s)
+    gap = ("x0", 10.0, "mm")
+    symbols = (("k", 0.1, "N/mm"), gap) if linear else (("A", 1.0, "N/cm^B"), ("B", 1.0, "1"), gap)
+    return _fit(name, symbols, values, fitted)
+
+
+def _power_start(s: _Samples, begins: float) -> Array:
+    """Return A and B through the largest force and that at half its deflection."""
+    beyond = np.maximum(s.x - begins, 0.0)
+    top = float(beyond.max()) or 1.0
+    high = float(np.median(s.force[beyond > 0.9 * top]))
+    half = float(np.median(s.force[np.abs(beyond - 0.5 * top) < 0.1 * top]))
+    ratio = high / half if half > 0.0 < high else 2.0
+    exponent = float(np.clip(np.log(ratio) / np.log(1.9), 0.3, 4.0))
+    return np.array([high / (0.95 * top) ** exponent, exponent])
+
+
+def _searched(law: Callable[[Array], Array], start: Array, s: _Samples) -> tuple[Array, _Fitted]:
+    """Return the values of least squares from a start, by SciPy's trust region."""
+    from scipy.optimize import least_squares
+
+    found = least_squares(lambda v: law(v) - s.force, start, x_scale=np.maximum(np.abs(start), 0.1))
+    return np.asarray(found.x), (s.force - law(found.x), np.asarray(found.jac))

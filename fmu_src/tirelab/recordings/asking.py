@@ -1,0 +1,204 @@
+"""What a table does not say, asked for all at once, in options that work when they are copied."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .channels import Match, assignments_text, columns_listed
+from .formats import Header, RecordingError, Table, Wanted
+from .formats.table import quoted
+from .metadata import Settings
+from .origin import Origin
+from .plausibility import guessed_units
+
+FloatArray = NDArray[np.float64]
+
+EXAMPLE_UNITS: Mapping[str, str] = {
+    "time": "s",
+    "deflection": "mm",
+    "radius": "cm",
+    "force": "N",
+    "pressure": "kPa",
+    "temperature": "degC",
+    "speed": "m/s",
+}
+"""The unit of each channel that advice names."""
+
+MOST_COLUMNS = 16
+"""So many columns are looked at for one that may be a channel."""
+
+
+class IncompleteRecording(RecordingError):
+    """A table that leaves something open: what, and the whole of what has to be written.
+
+    what: the sentence without the advice; columns, units, radius: all settings, those given and those proposed
+    """
+
+    def __init__(self, what: str, advice: str, settings: Settings) -> None:
+        super().__init__(f"{what}; {advice}")
+        self.what = what
+        self.settings = settings
+
+    def words(self) -> list[str]:
+        """Return the words of a command line that say all of it."""
+
+        words = []
+        for option, values in (("--columns", self.settings.columns), ("--units", self.settings.units)):
+            words += [option, assignments_text(values)] if values else []
+        radius = self.settings.radius
+        if radius is not None:
+            words += ["--radius", radius if isinstance(radius, str) else f"{radius!r}m"]
+        if self.settings.sampling is not None:
+            words += ["--sampling", str(self.settings.sampling)]
+        return words
+
+
+@dataclass(frozen=True)
+class Lacking:
+    """What is not known: channels without a column, channels without a unit, the radius of the surface."""
+
+    columns: tuple[str, ...]
+    units: tuple[str, ...]
+    radius: bool
+
+    def __bool__(self) -> bool:
+        return bool(self.columns or self.units or self.radius)
+
+
+def asked(
+    origin: Origin, table: Table, matches: Mapping[str, Match], lacking: Lacking, settings: Settings
+) -> IncompleteRecording:
+    """Return the error that asks for all that is lacking, with guesses from the sizes of the numbers."""
+    headers = table.headers
+    values = _numbers(table, {**matches}, headers)
+    guessed = _guessed_columns(lacking.columns, matches, values) if lacking.columns else {}
+    sized = {name: values[i] for name, i in guessed.items()}
+    sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
+    likely = guessed_units(sized)
+    columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
+    without_unit = [*lacking.units, *(n for n in guessed if headers[guessed[n]].unit is None)]
+    units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
+    radius = "flat" if lacking.radius else None
+    whole = Settings(
+        {**settings.columns, **columns},
+        {**settings.units, **units},
+        settings.radius if radius is None else radius,
+        sampling=settings.sampling,
+    )
+    parts = _parts(origin, headers, matches, lacking, whole)
+    if len(parts) == 1 and len(lacking.units) < 2:
+        return IncompleteRecording(parts[0][0], parts[0][1], whole)
+    options = [
+        *([origin.columns(**columns)] if columns else []),
+        *([origin.units(**units)] if units else []),
+        *([origin.radius(radius)] if radius else []),
+    ]
+    what = "; ".join(
+        dict.fromkeys(
+            what if i == 0 else what.removeprefix(f"{origin}: ") for i, (what, _) in enumerate(parts)
+        )
+    )
+    joined = " ".join(options) if origin.kind == "file" else ", ".join(options)
+    return IncompleteRecording(what, f"give all of it, and check what is guessed: {joined}", whole)
+
+
+def _parts(
+    origin: Origin,
+    headers: Sequence[Header],
+    matches: Mapping[str, Match],
+    lacking: Lacking,
+    whole: Settings,
+) -> list[tuple[str, str]]:
+    """Return what is lacking, sentence by sentence, each with its advice."""
+    parts = []
+    unnamed = bool(headers) and all(header.text == f"#{i + 1}" for i, header in enumerate(headers))
+    if lacking.columns:
+        columns = {name: whole.columns[name] for name in lacking.columns}
+        if unnamed:
+            units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
+            parts.append(
+                (
+                    f"{origin}: has no header row",
+                    "put one above the numbers, such as time [s],deflection [mm],force [N], or name columns by number: "
+                    f"{origin.columns(**columns)} {origin.units(**units)}",
+                )
+            )
+        else:
+            what = f"{origin}: no column for {', '.join(lacking.columns)}; its columns are {columns_listed(headers)}"
+            units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
+            advice = origin.columns(**columns) + (f" and {origin.units(**units)}" if units else "")
+            parts.append((what, f"name it with {advice}"))
+    for name in lacking.units:
+        unit = whole.units[name]
+        header = headers[matches[name].index]
+        parts.append(
+            (
+                f"{origin}, column {quoted(header.text)}: has no unit",
+                f"write it into the header, such as {name} [{unit}], or give it: {origin.units(**{name: unit})}",
+            )
+        )
+    if lacking.radius:
+        in_file = "" if origin.kind != "file" else ', or write radius = "flat" into recording.toml beside it'
+        parts.append(
+            (
+                f"{origin}: the radius of the surface is not known",
+                f"add a column such as radius [cm] (inf: flat), or give {origin.radius('flat')} (25.4cm, -50.8cm)"
+                f"{in_file}",
+            )
+        )
+    if len(parts) > 1 and len(lacking.units) > 1:
+        named = ", ".join(quoted(headers[matches[name].index].text) for name in lacking.units)
+        others = [part for part in parts if "has no unit" not in part[0]]
+        parts = [*others, (f"{origin}: no unit for {named}", "")]
+    return parts
+
+
+def _numbers(table: Table, matches: Mapping[str, Match], headers: Sequence[Header]) -> dict[int, FloatArray]:
+    """Return the columns that hold numbers, by their index; those of channels by the channel, others as any."""
+    channel_of = {match.index: name for name, match in matches.items()}
+    found: dict[int, FloatArray] = {}
+    for index in range(min(len(headers), MOST_COLUMNS)):
+        try:
+            read = table.read(
+                (Wanted(index, channel_of.get(index, "time" if headers[index].dated else "speed")),)
+            )
+        except RecordingError:
+            continue
+        if len(read.values[0]) > 1:
+            found[index] = read.values[0]
+    return found
+
+
+def rises(values: FloatArray) -> bool:
+    """Whether numbers rise from each to the next, evenly enough for a clock."""
+    steps = np.diff(values[np.isfinite(values)])
+    return (
+        bool(len(steps))
+        and bool(steps.min() > 0.0)
+        and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
+    )
+
+
+def _guessed_columns(
+    missing: Sequence[str], matches: Mapping[str, Match], values: Mapping[int, FloatArray]
+) -> dict[str, int]:
+    """Return a likely column for each channel that has none: time rises, of the others the larger is the force."""
+    taken = {match.index for match in matches.values()}
+    free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
+    guessed: dict[str, int] = {}
+    if "time" in missing:
+        clocks = [i for i in free if rises(values[i])]
+        if clocks:
+            guessed["time"] = clocks[0]
+            free.remove(clocks[0])
+    both = [name for name in ("deflection", "force") if name in missing]
+    if len(both) == 2 and len(free) == 2:
+        small, large = sorted(free, key=lambda i: float(np.nanmax(np.abs(values[i]))))
+        guessed |= {"deflection": small, "force": large}
+    elif len(both) == 1 and len(free) == 1:
+        guessed[both[0]] = free[0]
+    return guessed

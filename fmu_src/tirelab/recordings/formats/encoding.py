@@ -1,0 +1,61 @@
+"""The encoding of a text file: what its first bytes say, or what its letters make likely."""
+
+from __future__ import annotations
+
+import codecs
+from pathlib import Path
+
+from .table import RecordingError
+
+BYTE_ORDER_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+
+JUDGED = 16_384
+"""So many bytes [B] of a file are shown to the detector."""
+
+BY_BYTES = frozenset({"utf-8", "utf-8-sig", "latin-1", "gb18030"})
+"""Encodings in which the bytes of separators, quotes, line ends and # stand for nothing else, so far as tables go."""
+
+
+def find_encoding(path: Path, raw: bytes, whole: bool) -> tuple[str, tuple[str, ...]]:
+    """Return the encoding of a text that begins with `raw`, and notes where it had to be found.
+
+    whole: whether `raw` is all of the file
+    Errors: RecordingError for bytes that are no text.
+    """
+    for mark, name in BYTE_ORDER_MARKS:
+        if raw.startswith(mark):
+            return name, ()
+    if b"\x00" in raw:
+        return _without_mark(path, raw), ("read as UTF-16 without a byte order mark",)
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(raw, final=whole)
+    except UnicodeDecodeError as error:
+        where = f"not UTF-8 (byte 0x{raw[error.start]:02x} at {error.start})"
+        if _is_chinese(raw):
+            return "gb18030", (f"{where}: read as GBK (GB 18030)",)
+        return "latin-1", (f"{where}: read as Latin-1",)
+    return "utf-8", ()
+
+
+def _without_mark(path: Path, raw: bytes) -> str:
+    """Return which UTF-16 it is: text of a table has a zero in nearly every second byte."""
+    for name, empty, filled in (("utf-16-le", raw[1::2], raw[::2]), ("utf-16-be", raw[::2], raw[1::2])):
+        if empty.count(0) > 0.9 * len(empty) and b"\x00" not in filled:
+            return name
+    raise RecordingError(
+        f"{path.name}: is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
+    )
+
+
+def _is_chinese(raw: bytes) -> bool:
+    """Return whether the bytes beyond ASCII are likelier Chinese than western letters."""
+    from charset_normalizer import from_bytes
+
+    best = from_bytes(raw[:JUDGED], cp_isolation=["cp1252", "gb18030"]).best()
+    return best is not None and best.encoding == "gb18030"

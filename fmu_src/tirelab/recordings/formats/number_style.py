@@ -1,0 +1,68 @@
+"""How the numbers of a text file are written: which mark is decimal, and which parts thousands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
+MAYBE_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
+
+_SPACES = " \u00a0\u202f\u2009'\u2019"
+_CERTAIN = (
+    (".", ",", re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+,\d+")),
+    (",", ".", re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+\.\d+")),
+    (".", ",", re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3}){2,}")),
+    (",", ".", re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3}){2,}")),
+)
+_SPACED = re.compile(rf"[+-]?[1-9]\d{{0,2}}([{_SPACES}])\d{{3}}(?:\1\d{{3}})*(?:[.,]\d+)?")
+
+
+@dataclass(frozen=True)
+class NumberStyle:
+    """The decimal mark, a comma or a point, and the mark between thousands, none where it is empty."""
+
+    decimal_comma: bool = False
+    thousands: str = ""
+
+    @cached_property
+    def pattern(self) -> str:
+        """A regular expression of a whole number with thousands marks."""
+        decimal = "," if self.decimal_comma else r"\."
+        return rf"^\s*[+-]?[1-9]\d{{0,2}}(?:{re.escape(self.thousands)}\d{{3}})+(?:{decimal}\d+)?\s*$"
+
+    @cached_property
+    def _compiled(self) -> re.Pattern[str]:
+        return re.compile(self.pattern, re.ASCII)
+
+    def ungrouped(self, text: str) -> str:
+        """Return a number without its thousands marks; any other text as it is."""
+        if self.thousands and self.thousands in text and self._compiled.match(text):
+            return text.replace(self.thousands, "")
+        return text
+
+
+def style_of(cells: Iterable[str], separator: str) -> NumberStyle:
+    """Return how numbers are written, from cells of which at least one leaves no doubt.
+
+    `1.234,5` has a decimal comma and points between thousands, `1,234.5` the reverse; a lone `1,234` may be either,
+    and `0,5` or `12,34` is a decimal comma where commas do not separate the columns.
+    """
+    commas = False
+    for cell in cells:
+        text = cell.strip()
+        if len(text) > 4:
+            for thousands, decimal, pattern in _CERTAIN:
+                if pattern.fullmatch(text):
+                    return NumberStyle(decimal == ",", thousands)
+            if spaced := _SPACED.fullmatch(text):
+                return NumberStyle("," in text or commas, spaced[1])
+        if not commas and separator != "," and _is_decimal_comma(cell):
+            commas = True
+    return NumberStyle(commas)
+
+
+def _is_decimal_comma(cell: str) -> bool:
+    return bool(DECIMAL_COMMA.fullmatch(cell)) and not MAYBE_THOUSANDS.fullmatch(cell)

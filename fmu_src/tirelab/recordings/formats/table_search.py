@@ -1,0 +1,156 @@
+"""Where the table stands in a text: the lines above it, its header, and its first row of numbers."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ..units import QUANTITIES, measures, split_header
+from ..vocabulary import foreign_channel
+from .clock import is_clock
+from .number_style import style_of
+from .table import BLANK_WORDS, is_comment
+
+SEPARATORS = "\t;,"
+
+SEARCHED = 300
+"""So many lines are searched for the beginning of the table."""
+
+LONGEST_ROW = 8
+"""A row between quotes that takes more lines than this is a quote left open above the table."""
+
+CONFIRMED = 3
+"""So many rows of numbers in a row make a table; one above them is a line of text with numbers in it."""
+
+_KNOWN = frozenset(
+    {"time", "deflection", "displacement", "stroke", "force", "load", "radius", "travel", "pressure"}
+)
+
+
+@dataclass(frozen=True)
+class TablePlace:
+    """The separator of the columns, and the line of the header, from 0."""
+
+    separator: str
+    line: int
+
+
+@dataclass(frozen=True)
+class _Row:
+    line: int
+    cells: tuple[str, ...]
+    numeric: bool
+
+
+def find_table(lines: Sequence[str], start: int, separator: str | None) -> TablePlace | None:
+    """Return where the table below any lines about the test begins; None where no line looks like a row of numbers.
+
+    lines: of the text; start: the first that is no comment; separator: of the columns where the file declares it
+
+    The longest run of rows of numbers of one width is the table. Its header is the row above it, of the same width and
+    without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run.
+    """
+    best: tuple[int, list[_Row], int, str] | None = None
+    for candidate in separator or SEPARATORS:
+        rows = list(_rows(lines[start : start + SEARCHED], candidate))
+        length, first = _longest_run(rows)
+        if length and (best is None or length > best[0]):
+            best = (length, rows, first, candidate)
+    if best is None:
+        return None
+    length, rows, first, found = best
+    width = len(rows[first].cells)
+    above = [row for row in rows[:first] if len(row.cells) == width and not row.numeric and any(row.cells)]
+    above = [row for row in above if not is_units(row.cells)]
+    header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
+    if header is not None and _named(header.cells) > 0:
+        header = next(row for row in above if _named(row.cells) == _named(header.cells))
+    if header is not None:
+        return TablePlace(found, start + header.line)
+    # without a header the numbers begin with the first row of that width, unless a run confirms a later one
+    begin = first if length >= CONFIRMED else next(i for i, row in enumerate(rows) if row.numeric)
+    while begin and rows[begin - 1].numeric and len(rows[begin - 1].cells) == width:
+        begin -= 1
+    return TablePlace(found, start + rows[begin].line)
+
+
+def is_value(cell: str, separator: str) -> bool:
+    """Whether a cell holds a number, a time or the word for flat ground."""
+    text = cell.strip().lower()
+    if is_clock(text):
+        return True
+    text = style_of([text], separator).ungrouped(text)
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return False
+    return text not in BLANK_WORDS
+
+
+def is_units(cells: Sequence[str]) -> bool:
+    """Whether a row holds units, in brackets or not, and nothing else; some columns may have none."""
+    units = [unit for unit in map(bare_unit, cells) if unit]
+    return bool(units) and all(any(measures(unit, si) for si in QUANTITIES) for unit in units)
+
+
+def bare_unit(cell: str) -> str:
+    """Return a unit without the brackets or dashes around it."""
+    text = cell.strip()
+    bare = text[1:-1].strip() if text[:1] + text[-1:] in ("[]", "()") else text
+    return bare.strip("-")
+
+
+def _rows(lines: Sequence[str], separator: str) -> Iterator[_Row]:
+    """Return the rows of some lines, each with its first line; a quote that is left open ends with its line."""
+    line = 0
+    while line < len(lines):
+        cells, taken = _row(lines, line, separator)
+        if cells and any(cell.strip() for cell in cells) and not is_comment(cells[0]):
+            yield _Row(line, tuple(cells), _is_numeric(cells, separator))
+        line += taken
+
+
+def _row(lines: Sequence[str], line: int, separator: str) -> tuple[list[str], int]:
+    reader = csv.reader(lines[line : line + LONGEST_ROW], delimiter=separator)
+    try:
+        cells = next(reader)
+    except (csv.Error, StopIteration):
+        return [], 1
+    if reader.line_num == 1:
+        return cells, 1
+    if reader.line_num >= min(LONGEST_ROW, len(lines) - line):
+        return lines[line].split(separator), 1
+    return cells, reader.line_num
+
+
+def _is_numeric(cells: Sequence[str], separator: str) -> bool:
+    """Whether half of the cells that hold something hold numbers, two at least."""
+    filled = [cell for cell in cells if cell.strip().lower() not in BLANK_WORDS]
+    values = sum(is_value(cell, separator) for cell in filled)
+    return values > 1 and 2 * values >= len(filled)
+
+
+def _longest_run(rows: Sequence[_Row]) -> tuple[int, int]:
+    """Return the length of the longest run of rows of numbers of one width, and the index of its first row."""
+    best, first, begin = 0, 0, 0
+    for i, row in enumerate(rows):
+        if not row.numeric:
+            begin = i + 1
+        elif i > begin and len(row.cells) != len(rows[begin].cells):
+            begin = i
+        if row.numeric and i - begin + 1 > best:
+            best, first = i - begin + 1, begin
+    return best, first
+
+
+def _named(cells: Sequence[str]) -> int:
+    """Return how many cells name a channel or state a unit."""
+    return sum(map(_names_something, cells))
+
+
+def _names_something(cell: str) -> bool:
+    name, unit = split_header(cell)
+    if unit and any(measures(unit, si) for si in QUANTITIES):
+        return True
+    return bool(_KNOWN & set(name.lower().split())) or foreign_channel(name) is not None

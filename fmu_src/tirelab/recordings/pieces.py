@@ -1,0 +1,122 @@
+"""Parts of a file: one of several tests side by side, and a range of time or rows, as FILE@trial2@10s:20s."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .formats import RecordingError
+from .formats.table import quoted
+from .units import UnitError, conversion
+
+_TRIAL = re.compile(r"trial(\d{1,4})", re.IGNORECASE)
+_BOUND = re.compile(r"(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµμ]*)")
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Which part of a file is read, all of it where nothing is said.
+
+    trial: of tests side by side, from 1; start, stop: times such as "10s" or "2 min" (from the one up to the other,
+    without it), or numbers of rows (both among those read), "" where there is no bound
+    """
+
+    trial: int | None = None
+    start: str = ""
+    stop: str = ""
+
+    def within(self, start: str, stop: str) -> Piece:
+        """Return this piece with bounds where it has none itself."""
+        return self if self.start or self.stop else replace(self, start=start, stop=stop)
+
+    @property
+    def suffix(self) -> str:
+        """What the name of its recording ends in: "@trial2", "@10s-20s"."""
+        trial = "" if self.trial is None else f"@trial{self.trial}"
+        bounds = "".join(f"{self.start}-{self.stop}".split()) if self.start or self.stop else ""
+        return trial + (f"@{bounds}" if bounds else "")
+
+
+def split_piece(path: Path | str) -> tuple[Path, Piece]:
+    """Return the file and the piece that a text such as `press.csv@10s:20s` names; a file of just that name goes first.
+
+    Errors: RecordingError where what follows the @ is no piece, although the file before it is there.
+    """
+    whole = Path(path)
+    if "@" not in whole.name or whole.exists():
+        return whole, Piece()
+    name, *parts = whole.name.split("@")
+    file = whole.with_name(name) if name else whole
+    if not name or not file.exists():
+        return whole, Piece()
+    return file, parse_piece("@".join(parts), str(path))
+
+
+def parse_piece(text: str, where: str) -> Piece:
+    """Return the piece that a text names: `trial2`, `10s:20s`, `100:2000`, `trial1@:30s`.
+
+    Errors: RecordingError for anything else.
+    """
+    piece = Piece()
+    for part in text.split("@"):
+        if trial := _TRIAL.fullmatch(part.strip()):
+            piece = replace(piece, trial=int(trial[1]))
+            continue
+        start, colon, stop = (bit.strip() for bit in part.partition(":"))
+        if (
+            not colon
+            or not all(not bit or _BOUND.fullmatch(bit) for bit in (start, stop))
+            or not (start or stop)
+        ):
+            raise RecordingError(
+                f"{where}: {quoted(part)} is no part of a file; write 10s:20s (time), 100:2000 (rows) or trial2"
+            )
+        piece = replace(piece, start=start, stop=stop)
+    return piece
+
+
+def is_range(text: str) -> bool:
+    """Whether a text is a range of time or rows and not the name of a file: 10s:20s, 100:2000."""
+    start, colon, stop = (bit.strip() for bit in text.partition(":"))
+    bounds = [bit for bit in (start, stop) if bit]
+    return bool(colon and bounds) and all(map(_BOUND.fullmatch, bounds))
+
+
+def samples_within(
+    where: str, piece: Piece, time: NDArray[np.float64], rows: NDArray[np.int64]
+) -> slice | None:
+    """Return the samples of a piece, None for all of them.
+
+    time [s], rows: of each sample, the number that messages call it by, both rising
+    Errors: RecordingError for a unit that is no time, and for fewer than two samples.
+    """
+    if not (piece.start or piece.stop):
+        return None
+    begin = _index(where, piece.start, time, rows, first=True) if piece.start else 0
+    end = _index(where, piece.stop, time, rows, first=False) if piece.stop else len(time)
+    if end - begin < 2:
+        raise RecordingError(
+            f"{where}: {piece.start or 'the start'} to {piece.stop or 'the end'} holds {max(end - begin, 0)} samples; "
+            f"the recording has {time[0]:.6g} to {time[-1]:.6g} s, rows {rows[0]} to {rows[-1]}"
+        )
+    return slice(begin, end)
+
+
+def _index(where: str, bound: str, time: NDArray[np.float64], rows: NDArray[np.int64], first: bool) -> int:
+    found = _BOUND.fullmatch(bound.strip())
+    if found is None:
+        raise RecordingError(
+            f"{where}: {quoted(bound)} is no time and no row; write 10s, 2min or a row such as 100"
+        )
+    if not found["unit"]:
+        return int(np.searchsorted(rows, float(found["value"]), "left" if first else "right"))
+    try:
+        seconds = conversion(found["unit"], "s").to_si(np.array([float(found["value"])]))[0]
+    except UnitError as error:
+        raise RecordingError(f"{where}: {error}") from None
+    # 0.3 s is the sample at 0.30000000000000004 s too
+    return int(np.searchsorted(time, seconds - 1e-9 * max(1.0, abs(seconds)), "left"))

@@ -1,0 +1,254 @@
+"""Whether what was read has the size of a tire: units, the zero of the gauge, the radius of the surface.
+
+Nothing here is certain, so nothing is refused or changed: what is doubtful is said, with the value and what to write.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .origin import Origin
+from .samples import LARGEST_PLAUSIBLE
+
+FloatArray = NDArray[np.float64]
+
+LOOKED_AT = 20_000
+"""So many samples, evenly spaced, are looked at."""
+
+USUAL = (550.9, 1.422)
+"""Coefficient [N/cm^B] and exponent of the article's tire on flat ground (Hull, Wang, Moore 1996, eq. 5, 6)."""
+
+FAR = 25.0
+"""A force this many times larger or smaller than the article's tire has at that deflection is doubted: a
+wrong thousand always is, another tire or pressure never."""
+
+NEAR = 6.0
+"""A unit is proposed where the force is within this factor of the article's tire in it."""
+
+GROUND = 3.0
+"""Convex or concave ground of a larger radius [m] is as good as flat: A of the article differs by less than 1e-10."""
+
+LARGEST_RADIUS = 2.0
+"""A curved rig has no larger radius [m]."""
+
+EARLY, EARLY_PART = 2e-3, 0.08
+"""The force begins at another deflection than zero where it is farther away than this [m], this part of the stroke."""
+
+FORCES = (("kN", 1e3), ("lbf", 4.4482216152605), ("kgf", 9.80665), ("mN", 1e-3))
+LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0))
+
+FLAT_BINS = 60
+
+UNLOADED, AT_START = 0.03, 0.04
+"""The force begins with the least deflection where it is below this part of the largest force there, and the law's own
+beginning is within this part of the stroke."""
+
+NO_FORCE = 0.01
+"""Before the force begins it is below this part of the largest everywhere: a law that rises from zero is not."""
+
+
+@dataclass(frozen=True)
+class Zero:
+    """Where the force begins [m], and how far the deflection goes beyond that [m]."""
+
+    begins: float
+    stroke: float
+
+
+def doubts_of(
+    origin: Origin,
+    values: Mapping[str, FloatArray],
+    units: Mapping[str, str],
+    where: Callable[[str, int | None], str],
+) -> tuple[str, ...]:
+    """Return what is doubtful of the channels in SI, each in one sentence with its row and column.
+
+    units: of each channel as it was read; where: returns the place of a sample of a channel, of None its column alone
+    """
+    for name in ("deflection", "force"):
+        largest = max(abs(float(values[name].min())), abs(float(values[name].max())))
+        if not largest <= LARGEST_PLAUSIBLE[name]:
+            return ()  # the recording refuses it
+    step = max(1, len(values["force"]) // LOOKED_AT)
+    x, f = values["deflection"][::step], values["force"][::step]
+    radius = values["radius"][::step]
+    found = [
+        _placed(where("radius", step * at), sentence)
+        for at, sentence in _radius_doubts(origin, radius, units.get("radius", ""))
+    ]
+    zero = force_begins(x, f, radius)
+    size = _size_doubt(origin, x, f, units)
+    if size:
+        found.append(_placed(where("force", step * int(np.argmax(f))), size))
+    if zero is not None and abs(zero.begins) > max(EARLY, EARLY_PART * zero.stroke):
+        sentence = (
+            f"the force begins at {1e3 * zero.begins:.1f} mm of deflection: if that is the gauge's zero, subtract it "
+            "before the export, or let the diagnosis find the offset"
+        )
+        found.append(_placed(where("deflection", None), sentence))
+    return tuple(found)
+
+
+def _placed(place: str, sentence: str) -> str:
+    return f"{place}: {sentence}" if place else sentence
+
+
+def too_deep(origin: Origin, deepest: float, unit: str) -> str:
+    """Return what to write where a deflection [m] read in a unit is deeper than a wheel, "" where no unit helps."""
+    factor = dict(LENGTHS).get(unit)
+    fits = [] if factor is None else [(name, deepest / factor * f) for name, f in LENGTHS if f < factor]
+    fits = [(name, length) for name, length in fits if 2e-3 <= length <= 0.12]
+    if not fits:
+        return ""
+    name, length = fits[0]
+    return f"in {name} it would be {1e3 * length:.3g} mm: {origin.units(deflection=name)}"
+
+
+def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) -> Zero | None:
+    """Return where the force begins, by the power law that fits the medians of the force over the deflection best.
+
+    F = A max(x - x0, 0)^B with x0 and B on a grid, A by least squares, on the surface with the most samples; None where
+    the force is not that of a spring that is pressed once over most of its stroke.
+    """
+    surface = _commonest(radius)
+    x, f = deflection[surface], force[surface]
+    low, high = float(x.min()), float(x.max())
+    if not high > low or len(x) < 2 * FLAT_BINS:
+        return None
+    edges = np.linspace(low, high, FLAT_BINS + 1)
+    place = np.clip(np.searchsorted(edges, x, "right") - 1, 0, FLAT_BINS - 1)
+    filled = [b for b in range(FLAT_BINS) if np.count_nonzero(place == b)]
+    if len(filled) < FLAT_BINS // 2:
+        return None
+    centre = np.array([float(np.mean(x[place == b])) for b in filled])
+    level = np.array([float(np.median(f[place == b])) for b in filled])
+    stroke = high - low
+    # where the force begins shows where it is small: a bin counts by its force and a twentieth of the largest
+    weight = 1.0 / (np.abs(level) + 0.05 * float(np.abs(level).max()))
+    best: tuple[float, float] | None = None
+    for begins in np.linspace(low - 0.5 * stroke, low + 0.7 * stroke, 241):
+        beyond = np.maximum(centre - begins, 0.0)
+        for exponent in (1.0, 1.15, 1.3, 1.45, 1.6, 1.8, 2.0):
+            shape = beyond**exponent
+            weighted, target = weight * shape, weight * level
+            scale = float(weighted @ target) / max(float(weighted @ weighted), 1e-300)
+            missed = float(np.sum((target - scale * weighted) ** 2))
+            if scale > 0.0 and (best is None or missed < best[0]):
+                best = missed, float(begins)
+    if best is None or best[0] > 2e-2 * float(np.sum((weight * level) ** 2)):
+        return None
+    largest = float(level.max())
+    if abs(float(level[0])) < UNLOADED * largest and abs(best[1] - low) < AT_START * stroke:
+        return Zero(low, stroke)
+    below = level[centre < best[1]]
+    if below.size and float(np.abs(below).max()) > NO_FORCE * largest:
+        return None
+    return Zero(best[1], high - best[1])
+
+
+def _commonest(radius: FloatArray) -> NDArray[np.bool_]:
+    found, counts = np.unique(radius, return_counts=True)
+    return np.asarray(radius == found[np.argmax(counts)])
+
+
+def _radius_doubts(origin: Origin, radius: FloatArray, unit: str) -> list[tuple[int, str]]:
+    """Return a sentence for a radius that is as good as flat, with the first sample that has one."""
+    sizes = np.unique(np.abs(radius[np.isfinite(radius)]))
+    large = sizes[sizes > GROUND]
+    if not len(large):
+        return []
+    shown = f"{large[0]:.4g} m"
+    at = int(np.argmax(np.abs(radius) == large[0]))
+    factor = dict(LENGTHS).get(unit)
+    finer = [
+        (name, large[0] / factor * f)
+        for name, f in LENGTHS
+        if factor is not None and f < factor and 5e-3 <= large[0] / factor * f <= LARGEST_RADIUS
+    ]
+    if not finer:
+        return [(at, f"a surface radius of {shown} is as good as flat: say so with {origin.radius('flat')}")]
+    name, length = finer[0]
+    sentence = (
+        f"a surface radius of {shown} is as good as flat: {name}? Then it is {100.0 * length:.4g} cm, "
+        f"{origin.units(radius=name)}; if the ground is flat, {origin.radius('flat')}"
+    )
+    return [(at, sentence)]
+
+
+def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str, str]) -> str:
+    """Return a sentence where the force is far from a tire's at that deflection, "" where it is not."""
+    stroke, load = (
+        float(x.max() - x.min()),
+        float(np.quantile(f, 0.999) - np.median(f[x <= x.min() + 0.05 * np.ptp(x)])),
+    )
+    if not (stroke > 0.0 and load > 0.0):
+        return ""
+    usual = USUAL[0] * (100.0 * stroke) ** USUAL[1]
+    ratio = load / usual
+    if 1.0 / FAR < ratio < FAR:
+        return ""
+    far = f"{1.0 / ratio:.0f} times too small" if ratio < 1.0 else f"{ratio:.0f} times too large"
+    rounded = 10.0 ** round(np.log10(ratio))
+    # within a factor of three of a power of ten a round figure says it better
+    if 1 / 3.2 < ratio / rounded < 3.2:
+        far = f"{max(rounded, 1.0 / rounded):.0f} times too {'small' if ratio < 1.0 else 'large'}"
+    what = f"the force, up to {load:.3g} N, is about {far} for a tire at {1e3 * stroke:.3g} mm of deflection"
+    guess = _unit_guess(stroke, load, units)
+    return (
+        f"{what}: {guess[1]}? Then {origin.units(**{guess[0]: guess[1]})}"
+        if guess
+        else f"{what}: check both units"
+    )
+
+
+def _unit_guess(stroke: float, load: float, units: Mapping[str, str]) -> tuple[str, str] | None:
+    """Return the channel and the unit in which the force is nearest to a tire's; None where none is near."""
+    fits: list[tuple[float, str, str]] = []
+    for channel, table in (("force", FORCES), ("deflection", LENGTHS)):
+        given = {"N": 1.0, **dict(table)}.get(units.get(channel, ""))
+        if given is None:
+            continue
+        for unit, factor in (("N", 1.0), *table) if channel == "force" else table:
+            if unit == units.get(channel):
+                continue
+            other_load = load / given * factor if channel == "force" else load
+            other_stroke = stroke / given * factor if channel == "deflection" else stroke
+            ratio = other_load / (USUAL[0] * (100.0 * other_stroke) ** USUAL[1])
+            if 2e-3 <= other_stroke <= 0.12 and 1.0 / NEAR < ratio < NEAR:
+                # a wrong thousand is commoner than pounds
+                rare = 1.0 if unit in ("kN", "N", "mm", "m", "cm") else 2.0
+                fits.append((abs(float(np.log(ratio))) + rare, channel, unit))
+    return min(fits)[1:] if fits else None
+
+
+def guessed_units(columns: Mapping[str, FloatArray]) -> dict[str, str]:
+    """Return the likeliest unit of each of the channels time, deflection, radius and force, from their sizes alone."""
+    guesses: dict[str, str] = {}
+    if "time" in columns:
+        steps = np.diff(columns["time"])
+        guesses["time"] = "ms" if np.median(steps) >= 1.0 and np.ptp(columns["time"]) > 3600.0 else "s"
+    stroke = (
+        float(np.nanmax(columns["deflection"]) - np.nanmin(columns["deflection"]))
+        if "deflection" in columns
+        else 0.0
+    )
+    if stroke > 0.0:
+        sized = [(abs(float(np.log(stroke * f / 0.02))), name) for name, f in LENGTHS if name != "in"]
+        guesses["deflection"] = min(sized)[1]
+    if "force" in columns and stroke > 0.0:
+        usual = USUAL[0] * (100.0 * stroke * dict(LENGTHS)[guesses["deflection"]]) ** USUAL[1]
+        load = max(float(np.nanmax(np.abs(columns["force"]))), 1e-300)
+        guesses["force"] = min(
+            (abs(float(np.log(load * f / usual))), u) for u, f in (("N", 1.0), ("kN", 1e3))
+        )[1]
+    if "radius" in columns:
+        sizes = np.abs(columns["radius"][np.isfinite(columns["radius"])])
+        size = float(np.median(sizes)) if len(sizes) else 25.0
+        guesses["radius"] = min(
+            (abs(float(np.log(max(size, 1e-9) * f / 0.25))), u) for u, f in LENGTHS if u != "in"
+        )[1]
+    return guesses

@@ -1,0 +1,62 @@
+"""recording.toml as `tirelab inspect` writes it: what was understood of each file; what others wrote there stays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Table
+
+from .formats import RecordingError
+
+HEAD = (
+    "How the recordings beside this file are read, as `tirelab inspect` understood them.",
+    "Correct it where it is wrong: every command reads it, and says so.",
+)
+
+
+def write_settings(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> None:
+    """Write what was understood of each recording, by the name of its file, into a file of settings.
+
+    Where the file is there, the tables of these recordings are written anew, and all else in it stays as it is.
+    Errors: RecordingError where it is no TOML, or cannot be written.
+    """
+    try:
+        if file.exists():
+            document = tomlkit.parse(file.read_text(encoding="utf-8"))
+        else:
+            document = tomlkit.document()
+            for line in HEAD:
+                document.add(tomlkit.comment(line))
+        files = document.setdefault("files", tomlkit.table(is_super_table=True))
+        for name, settings in understood.items():
+            files[name] = _table(settings)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(tomlkit.dumps(document), encoding="utf-8")
+    except (TOMLKitError, UnicodeDecodeError) as error:
+        raise RecordingError(
+            f"{file}: is not TOML ({error}); correct it, or name another with --out"
+        ) from None
+    except OSError as error:
+        raise RecordingError(
+            f"{file} cannot be written ({error.strerror}); name another with --out"
+        ) from None
+
+
+def _table(settings: Mapping[str, Any]) -> Table:
+    table = tomlkit.table()
+    plain = {key: value for key, value in settings.items() if not isinstance(value, Mapping)}
+    for key, value in plain.items():
+        if isinstance(value, list):
+            lines = tomlkit.array()
+            lines.extend(value)
+            table[key] = lines.multiline(True)
+        else:
+            table[key] = value
+    for key, value in settings.items():
+        if key not in plain:
+            table[key] = {name: str(text) for name, text in value.items()}
+    return table

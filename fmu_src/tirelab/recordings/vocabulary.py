@@ -1,0 +1,90 @@
+"""The words by which the field calls the channels, in the languages of its test machines."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+FOREIGN: dict[str, tuple[str, ...]] = {
+    "time": (
+        *("zeit", "testzeit", "prufzeit", "pruefzeit", "messzeit", "versuchszeit", "laufzeit", "zeitstempel"),
+        *("temps", "temps ecoule", "temps d essai", "horodatage"),
+        *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
+        *("datetime", "date time", "running time", "total time", "ts", "时间", "時間", "试验时间"),
+    ),
+    "deflection": (
+        *("weg", "traversenweg", "standardweg", "federweg", "kolbenweg", "hub", "stauchung", "verformung"),
+        *("einfederung", "eindruckung", "eindrueckung", "prufweg", "pruefweg"),
+        *("deplacement", "deplacement traverse", "deplacement de la traverse", "course", "ecrasement"),
+        *("enfoncement", "fleche"),
+        *("desplazamiento", "desplazamiento del cabezal", "recorrido", "carrera", "deformacion", "deflexion"),
+        *(
+            "crosshead",
+            "crosshead displacement",
+            "crosshead travel",
+            "crosshead position",
+            "axial displacement",
+        ),
+        *("compressive displacement", "compressive extension", "extension", "position"),
+        *("位移", "变形", "行程", "横梁位移"),
+    ),
+    "radius": (
+        "oberflachenradius",
+        "krummungsradius",
+        "rayon",
+        "rayon de courbure",
+        "radio",
+        "radio de curvatura",
+    ),
+    "force": (
+        *(
+            "kraft",
+            "standardkraft",
+            "prufkraft",
+            "pruefkraft",
+            "normalkraft",
+            "radialkraft",
+            "druckkraft",
+            "last",
+        ),
+        *("force verticale", "effort", "charge", "charge verticale"),
+        *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
+        *("compressive load", "axial force", "axial load", "standard force"),
+        *("力", "载荷", "负荷", "试验力", "荷重"),
+    ),
+    "pressure": ("druck", "luftdruck", "reifendruck", "innendruck", "pression", "presion", "压力", "气压"),
+    "temperature": ("temperatur", "reifentemperatur", "temperature du pneu", "temperatura", "温度"),
+    "speed": ("geschwindigkeit", "vitesse", "velocidad", "速度"),
+}
+"""Names of each channel that are taken where no column has one of the usual English names; without accents."""
+
+_UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
+_COUNTED = re.compile(r"(?P<name>.*?[^\W\d_])(?:[ ._#-]*\d+|_duplicated_\d+)")
+
+
+def plain(name: str) -> str:
+    """Return a name in small letters, without accents, dots and underscores: `Déplacement_traverse` becomes
+    `deplacement traverse`."""
+    letters = unicodedata.normalize("NFKD", name.casefold().replace("ß", "ss"))
+    kept = "".join(c for c in letters if not unicodedata.combining(c))
+    return " ".join(re.sub(r"[\s_.'’-]+", " ", kept).split())
+
+
+def foreign_channel(name: str) -> str | None:
+    """Return the channel that a name is a word for in one of the languages, None where it is none."""
+    return _CHANNEL_OF.get(plain(name))
+
+
+def without_count(name: str) -> str | None:
+    """Return a name without the number that counts a trial: `Kraft 2`, `Kraft.1`; None where it has none."""
+    found = _COUNTED.fullmatch(name.strip())
+    return found["name"].strip() if found else None
+
+
+def name_and_unit(text: str) -> tuple[str, str] | None:
+    """Return the parts of `Kraft in N`, `Weg / mm`, `Force, kN` or `Force N`; None where there is only one."""
+    found = _UNIT_AFTER.fullmatch(text.strip())
+    return (found["name"].strip(), found["unit"].strip()) if found else None
+
+
+_CHANNEL_OF = {word: channel for channel, words in FOREIGN.items() for word in words}

@@ -1,0 +1,58 @@
+"""A law that leaves more than the noise of the readings says so, with the command that looks further."""
+
+import math
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from tirelab.cli import main
+from tirelab.identification.identify import identify
+from tirelab.identification.misfit import misfit_sentence
+from tirelab.recordings.recording import Recording, write_recording
+
+T = np.arange(3000) / 50.0
+X = 0.022 * (1.0 - np.abs(2.0 * (T / 20.0 % 1.0) - 1.0))
+WAY = np.sign(np.gradient(X))
+
+
+def pressed(friction: float, noise: float) -> Recording:
+    force = 600.0 * (100.0 * X) ** 1.4
+    force += friction * WAY * np.minimum(X / 2e-3, 1.0) + noise * np.random.default_rng(4).standard_normal(
+        T.size
+    )
+    return Recording("press", T, X, np.full(T.size, np.inf), force)
+
+
+@pytest.mark.parametrize("noise", [0.5, 4.0, 20.0])
+@pytest.mark.parametrize("friction", [0.0, 27.0])
+def test_the_noise_is_that_of_the_readings_whatever_the_law_leaves(friction: float, noise: float) -> None:
+    found = identify([pressed(friction, noise)])
+    assert found.reading_noise == pytest.approx(noise, rel=0.06)
+    assert found.rmse == pytest.approx(math.hypot(friction, noise), rel=0.08)
+
+
+def test_only_what_is_more_than_the_noise_is_said() -> None:
+    assert misfit_sentence(27.0, 4.0, "tirelab diagnose a.csv") == (
+        "the law leaves 27 N beside 4 N of noise, so something else acts here: try `tirelab diagnose a.csv`"
+    )
+    assert misfit_sentence(4.2, 4.0, "x") == ""
+    assert misfit_sentence(4.2, math.nan, "x") == ""
+    assert misfit_sentence(1e-9, 0.0, "x") == ""
+
+
+def test_the_command_proposes_one_that_runs(tmp_path: Path) -> None:
+    write_recording(pressed(27.0, 4.0), tmp_path / "press.csv")
+    out = tmp_path / "tire.json"
+    done = CliRunner().invoke(main, ["identify", str(tmp_path / "press.csv"), "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    (said,) = [line for line in done.output.splitlines() if "of noise" in line]
+    command = shlex.split(said.split("`")[1])
+    assert command[:3] == ["tirelab", "diagnose", str(tmp_path / "press.csv")]
+    diagnosed = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "d"), "--quiet"])
+    assert diagnosed.exit_code == 0, diagnosed.output
+    assert "hysteresis" in diagnosed.output
+    write_recording(pressed(0.0, 4.0), tmp_path / "press.csv")
+    done = CliRunner().invoke(main, ["identify", str(tmp_path / "press.csv"), "--out", str(out)])
+    assert "of noise" not in done.output

@@ -1,0 +1,106 @@
+"""Each law is found from what it makes itself, and the one that made the readings is the first."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from radialtire import read_tire
+from tirelab.cli import main
+from tirelab.errors import TirelabError
+from tirelab.identification.part_laws import fit_laws, tire_of
+from tirelab.recordings.recording import Recording, write_recording
+from tirelab.simulation.simulate import simulate
+
+X = np.linspace(0.0, 0.02, 600)
+"""[m]."""
+
+BOTH = np.linspace(-0.02, 0.02, 900)
+
+
+def recording(x: np.ndarray, force: np.ndarray, noise: float = 2.0, **more: np.ndarray) -> Recording:
+    read = force + noise * np.random.default_rng(8).standard_normal(x.size)
+    return Recording("part", np.arange(x.size) / 50.0, x, np.full(x.size, np.inf), read, **more)
+
+
+MADE = {
+    "linear": (BOTH, 15.0 + 40e3 * BOTH, {"F0": 15.0, "k": 40.0}),
+    "linear_gap": (X, 90e3 * np.maximum(X - 0.004, 0.0), {"k": 90.0, "x0": 4.0}),
+    "power": (BOTH, 700.0 * np.sign(BOTH) * np.abs(100.0 * BOTH) ** 1.45, {"A": 700.0, "B": 1.45}),
+    "power_gap": (
+        X,
+        700.0 * np.maximum(100.0 * (X - 0.003), 0.0) ** 1.45,
+        {"A": 700.0, "B": 1.45, "x0": 3.0},
+    ),
+    "polynomial": (
+        BOTH,
+        20.0 + 30e3 * BOTH - 4e5 * BOTH**2 + 8e7 * BOTH**3,
+        {"F0": 20.0, "k1": 30.0, "k2": -0.4, "k3": 0.08},
+    ),
+    "piecewise": (BOTH, np.interp(BOTH, [-0.02, -0.012, 0.004, 0.02], [-300.0, 0.0, 0.0, 900.0]), {}),
+}
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_the_law_that_made_the_readings_is_found(name: str) -> None:
+    x, force, constants = MADE[name]
+    fits = {fit.name: fit for fit in fit_laws([recording(x, force)])}
+    if name == "piecewise":  # its corners do not lie on the knots
+        x, force = BOTH, np.interp(BOTH, np.linspace(-0.02, 0.02, 6), [-300.0, -10.0, 0.0, 5.0, 300.0, 900.0])
+        fits = {fit.name: fit for fit in fit_laws([recording(x, force)])}
+    assert next(iter(fits)) == name
+    found = fits[name]
+    assert found.rmse == pytest.approx(2.0, rel=0.08)
+    for symbol, value in constants.items():
+        spread = {s: u for s, _, u, _ in found.constants}[symbol]
+        assert abs(found.value(symbol) - value) < 4.0 * spread + 1e-9
+        assert spread < 0.1 * abs(value) + 1.0
+
+
+def test_preload_is_a_gap_below_zero() -> None:
+    force = 80e3 * (X + 0.002)
+    fits = {fit.name: fit for fit in fit_laws([recording(X, force)])}
+    assert fits["linear_gap"].value("x0") == pytest.approx(-2.0, abs=0.05)
+    assert fits["linear"].value("F0") == pytest.approx(160.0, abs=1.0)
+
+
+def test_the_pressure_of_mf_tyre() -> None:
+    pressure = np.repeat([2e5, 3e5, 4e5], 300)
+    x = np.tile(np.linspace(0.0, 0.02, 300), 3)
+    force = (50e3 * x + 1e6 * x**2) * (1.0 + 0.7 * (pressure / 3e5 - 1.0))
+    (fit,) = [f for f in fit_laws([recording(x, force, pressure=pressure)]) if f.name == "mf_tyre"]
+    assert fit.value("q1") == pytest.approx(50.0, rel=0.01)
+    assert fit.value("q2") == pytest.approx(1.0, rel=0.02)
+    assert fit.value("p") == pytest.approx(0.7, abs=0.01)
+    assert fit.rmse == pytest.approx(2.0, rel=0.08)
+
+
+@pytest.mark.parametrize("name", ["linear_gap", "power_gap"])
+def test_a_tire_of_it_runs(name: str, tmp_path: Path) -> None:
+    x, force, _ = MADE[name]
+    part = recording(x, force)
+    write_recording(part, tmp_path / "part.csv")
+    out = tmp_path / "part.json"
+    done = CliRunner().invoke(
+        main, ["identify", str(tmp_path / "part.csv"), "--part", name, "--out", str(out)]
+    )
+    assert done.exit_code == 0, done.output
+    assert "Laws compared" in done.output
+    simulated = simulate(read_tire(out), part)
+    np.testing.assert_allclose(simulated, force, atol=1.5)
+
+
+def test_what_a_tire_file_cannot_hold_is_refused() -> None:
+    far = recording(X + 0.02, 90e3 * X)
+    fits = {fit.name: fit for fit in fit_laws([far])}
+    with pytest.raises(TirelabError, match="the force begins at 20 mm, and a tire file holds at most 10 mm"):
+        tire_of(fits["linear_gap"], [far], "")
+    with pytest.raises(TirelabError, match="cannot hold the law polynomial"):
+        tire_of(fits["polynomial"], [far], "")
+
+
+def test_one_surface_at_a_time() -> None:
+    flat = recording(X, 90e3 * X)
+    bump = Recording("bump", flat.time, X, np.full(X.size, 0.25), flat.force)
+    with pytest.raises(TirelabError, match="on 2 surfaces; the laws are compared on one surface"):
+        fit_laws([flat, bump])

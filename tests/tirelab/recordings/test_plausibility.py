@@ -1,0 +1,74 @@
+"""What has not the size of a tire is doubted, with the unit that would fit; what has it never is."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tirelab.recordings.inspection import step_of
+from tirelab.recordings.plausibility import force_begins
+from tirelab.recordings.recording import Recording
+
+X = 0.022 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
+T = np.arange(401) / 10.0
+
+
+def pressed(coefficient: float, exponent: float, x: np.ndarray = X, noise: float = 3.0) -> np.ndarray:
+    return coefficient * (100.0 * x) ** exponent + noise * np.random.default_rng(1).standard_normal(x.size)
+
+
+@given(st.floats(150.0, 1500.0), st.floats(1.0, 1.8), st.floats(0.006, 0.05))
+def test_no_tire_is_doubted(coefficient: float, exponent: float, stroke: float) -> None:
+    x = X * stroke / 0.022
+    recording = Recording.from_arrays(T, x, pressed(coefficient, exponent, x), "flat")
+    assert recording.doubts == ()
+
+
+@pytest.mark.parametrize(
+    ("scale_x", "scale_f", "units", "said"),
+    [
+        (1.0, 1e-3, {}, "about 1000 times too small"),
+        (1.0, 1e-3, {}, 'kN? Then units={"force": "kN"}'),
+        (1.0, 1e3, {"force": "kN"}, 'N? Then units={"force": "N"}'),
+        (0.001, 1.0, {"deflection": "mm"}, 'm? Then units={"deflection": "m"}'),
+    ],
+)
+def test_a_wrong_thousand_is(scale_x: float, scale_f: float, units: dict[str, str], said: str) -> None:
+    factor = {"mm": 1e3}.get(units.get("deflection", ""), 1.0)
+    force = scale_f * pressed(900.0, 1.45)
+    given_force = force / {"kN": 1e3}.get(units.get("force", ""), 1.0)
+    recording = Recording.from_arrays(T, factor * scale_x * X, given_force, "flat", units=units)
+    assert any(said in doubt for doubt in recording.doubts), recording.doubts
+
+
+@pytest.mark.parametrize("offset", [-0.004, 0.003, 0.005, 0.012])
+@pytest.mark.parametrize("exponent", [1.2, 1.45, 1.7])
+def test_a_zero_that_is_off_is_found(offset: float, exponent: float) -> None:
+    force = pressed(900.0, exponent)
+    found = force_begins(X + offset, force, np.full(X.size, np.inf))
+    assert found is not None
+    assert found.begins == pytest.approx(offset, abs=4e-4)
+    (doubt,) = Recording.from_arrays(T, X + offset, force, "flat").doubts
+    assert "the force begins at " in doubt
+
+
+def test_a_gap_before_the_force_is_found() -> None:
+    x = 0.03 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 2001)))
+    force = pressed(900.0, 1.45, np.maximum(x - 0.008, 0.0))
+    found = force_begins(x, force, np.full(x.size, np.inf))
+    assert found is not None
+    assert found.begins == pytest.approx(0.008, abs=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("radius", "said"), [(127.0, "as good as flat"), (-50.0, "as good as flat"), (2.5, "")]
+)
+def test_a_radius_that_is_as_good_as_flat(radius: float, said: str) -> None:
+    doubts = Recording.from_arrays(T, X, pressed(900.0, 1.45), radius).doubts
+    assert [said in doubt for doubt in doubts] == ([True] if said else [])
+
+
+@pytest.mark.parametrize("step", [0.01, 0.5, 3.0])
+def test_the_step_of_a_gauge(step: float) -> None:
+    wave = 40.0 * step * np.sin(np.linspace(0.0, 20.0, 3000))
+    assert step_of(np.round(wave / step) * step) == pytest.approx(step)
+    assert step_of(wave + 1e-3 * np.random.default_rng(0).standard_normal(3000)) is None

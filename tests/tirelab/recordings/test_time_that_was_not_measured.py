@@ -1,0 +1,90 @@
+"""A recording without time is read, with its sampling or without, and says so."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from house_form import loading, write_rows
+from tirelab.recordings.recording import Recording, RecordingError, read_recording
+from tirelab.recordings.units import UnitError, parse_interval
+
+
+@pytest.fixture
+def timeless(tmp_path: Path) -> Path:
+    _, deflection, force = loading()
+    return write_rows(tmp_path / "a.csv", "Stroke [cm],Load [N]", deflection, force)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("10Hz", 0.1),
+        ("10 Hz", 0.1),
+        ("0.1s", 0.1),
+        ("100 ms", 0.1),
+        ("2 kHz", 5e-4),
+        (10.0, 0.1),
+        ("2min", 120.0),
+    ],
+)
+def test_a_sampling_is_a_rate_or_an_interval(text: str | float, seconds: float) -> None:
+    assert parse_interval(text) == pytest.approx(seconds, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["10", "fast", "0Hz", "-1s", "3 mm", -5.0])
+def test_what_is_none_is_refused(text: str | float) -> None:
+    with pytest.raises(UnitError):
+        parse_interval(text)
+
+
+def test_with_a_sampling_the_time_counts_as_measured(timeless: Path) -> None:
+    recording = read_recording(timeless, radius="flat", sampling="5Hz")
+    np.testing.assert_array_equal(recording.time, np.arange(101) * 0.2)
+    assert recording.timed
+    assert "time made of samples 0.2 s apart, as given" in recording.notes
+
+
+def test_without_one_it_is_made_up_and_said(timeless: Path) -> None:
+    recording = read_recording(timeless, radius="flat")
+    np.testing.assert_array_equal(recording.time, np.arange(101.0))
+    assert not recording.timed
+    assert any(note.startswith("time was not measured: one second") for note in recording.notes)
+    assert "time not measured" in repr(recording)
+
+
+def test_a_skipped_row_leaves_its_gap(timeless: Path) -> None:
+    lines = timeless.read_text(encoding="utf-8").splitlines()
+    lines[11] = ","
+    timeless.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    recording = read_recording(timeless, radius="flat", sampling="1 s")
+    np.testing.assert_array_equal(recording.time, [*range(10), *range(11, 101)])
+    assert "1 gap in time, not filled: 2 s after 9 s" in recording.notes
+
+
+def test_a_column_that_rises_like_a_clock_is_asked_about(tmp_path: Path) -> None:
+    path = write_rows(tmp_path / "a.csv", "Elapsed [s],Stroke [cm],Load [N]", *loading())
+    with pytest.raises(RecordingError, match=r"no column for time.*--columns time=#1"):
+        read_recording(path, radius="flat")
+    assert not read_recording(path, radius="flat", columns={"time": ""}).timed
+    assert read_recording(path, radius="flat", columns={"time": "Elapsed"}).timed
+
+
+def test_arrays_and_frames_alike() -> None:
+    _, deflection, force = loading()
+    arrays = Recording.from_arrays(None, deflection / 100.0, force, "flat")
+    import polars as pl
+
+    frame = pl.DataFrame({"Weg [cm]": deflection, "Kraft [N]": force})
+    framed = Recording.from_dataframe(frame, radius="flat")
+    assert not arrays.timed
+    assert not framed.timed
+    np.testing.assert_array_equal(arrays.deflection, framed.deflection)
+    sampled = Recording.from_dataframe(frame, radius="flat", sampling=5.0)
+    assert sampled.timed
+    assert sampled.sampling_interval == pytest.approx(0.2)
+
+
+def test_a_sampling_goes_over_a_column_and_says_so(rig: Path) -> None:
+    recording = read_recording(rig, sampling="1s")
+    assert recording.duration == 100.0
+    assert "time made of samples 1 s apart, as given, not taken from its column" in recording.notes
