@@ -33,6 +33,9 @@ SHELL = "bicycle_tire_fmu"
 PHYSICS = "radialtire"
 MODEL = "BicycleTire"
 LINUX_BINARY = f"binaries/linux64/{MODEL}.so"
+WRAPPER = "resources/pythonfmu"
+BUILD_TIME = ("__main__", "builder", "csvbuilder", "deploy", "osutil")
+"""Modules of pythonfmu that make FMUs and that no FMU needs."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The date of every archive member: the earliest a ZIP can hold."""
 
@@ -64,6 +67,7 @@ def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> Bui
         members |= documentation.pages(tire, description, _wrapper_license())
         guid = _guid(members, description)
         description.set("guid", guid)
+        members["resources/guid.txt"] = f"{guid}\n".encode()
         ElementTree.indent(description)
         text = ElementTree.tostring(description, encoding="UTF-8", xml_declaration=True)
         members["modelDescription.xml"] = text + b"\n"
@@ -113,9 +117,16 @@ def _packed(tire: TireModel, work: Path) -> dict[str, bytes]:
         for module in [m for m in sys.modules if m not in modules_before and mark in m]:
             del sys.modules[module]
     with zipfile.ZipFile(archive) as packed:
-        return {
+        members = {
             n: packed.read(n) for n in packed.namelist() if "__pycache__" not in n and not n.endswith("/")
         }
+    for name in BUILD_TIME:
+        del members[f"{WRAPPER}/{name}.py"]
+    face = members[f"{WRAPPER}/__init__.py"].decode()
+    members[f"{WRAPPER}/__init__.py"] = re.sub(
+        rf"^from \.({'|'.join(BUILD_TIME)}) import .*\n", "", face, flags=re.MULTILINE
+    ).encode()
+    return members
 
 
 def _wrapper_license() -> str:

@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 typedef enum { OK, WARNING, DISCARD, ERROR, FATAL, PENDING } Status;
-enum { CO_SIMULATION = 1, LAST_SUCCESSFUL_TIME = 2, TERMINATED = 3 };
+enum { CO_SIMULATION = 1, LAST_SUCCESSFUL_TIME = 2, HAS_TERMINATED = 3 };
 typedef unsigned Reference;
 typedef const char *String;
 typedef struct {

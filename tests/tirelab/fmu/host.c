@@ -6,6 +6,8 @@
  * RESOURCES "-" hands over NULL, GUID is handed over as it is, the three value references are of Real variables.
  * Modes: run VALUE...          one full life, twice, closing and opening the library in between; prints the outputs
  *        bad                   a step with NaN, then one with a good value, with logging off
+ *        retry                 a step with NaN, again and again as long as it is discarded; prints the last status
+ *        first                 seconds of the first instantiation
  *        silent                one step without a logger
  *        threads N             N threads, each with instances of its own, all at once, two generations of threads
  *        relay N               one instance handed through N threads, one after another, which then end
@@ -182,11 +184,12 @@ static void *many_lives(void *unit)
 }
 
 static const Unit *relay_unit;
+static long relayed;
 static void *carry(void *instance)
 {
     if (!instance)
         return make(relay_unit, &callbacks);
-    if (!(step(relay_unit, instance, 0, 0.01) > 0))
+    if (!(step(relay_unit, instance, relayed++, 0.01) > 0))
         fail("no force after the hand-over");
     return instance;
 }
@@ -240,10 +243,10 @@ static double now(void)
 }
 
 /* Seconds for one chain of set, step and get. */
-static double chain(const Unit *unit, void *instance, long count)
+static double chain(const Unit *unit, void *instance, long first, long count)
 {
     double start = now();
-    for (long i = 0; i < count; i++)
+    for (long i = first; i < first + count; i++)
         step(unit, instance, i, 1e-3 * (double)(1 + i % 20));
     return (now() - start) / (double)count;
 }
@@ -273,6 +276,23 @@ int main(int argc, char **argv)
         check(unit.set(instance, reference, 2, values), "fmi2SetReal");
         printf("%d\n", unit.step(instance, 0, WIDTH, 1));
         printf("%.17g\n", step(&unit, instance, 0, 0.01));
+        unit.free_instance(instance);
+    } else if (!strcmp(mode, "retry")) {
+        void *instance = make(&unit, &callbacks);
+        double values[2] = {NAN, INFINITY};
+        int status = 2;
+        check(unit.set(instance, reference, 2, values), "fmi2SetReal");
+        while (status == 2) /* fmi2Discard */
+            status = unit.step(instance, 0, WIDTH, 1);
+        printf("%d\n", status);
+        check(unit.reset(instance), "fmi2Reset");
+        unit.free_instance(instance);
+    } else if (!strcmp(mode, "first")) {
+        double start = now();
+        void *instance = unit.instantiate("tire", 1, unit.guid, unit.resources, &callbacks, 0, 0);
+        printf("%.4f\n", now() - start);
+        if (!instance)
+            fail("fmi2Instantiate returned NULL");
         unit.free_instance(instance);
     } else if (!strcmp(mode, "silent")) {
         void *instance = make(&unit, &silent);
@@ -330,7 +350,8 @@ int main(int argc, char **argv)
         void *one = make(&unit, &callbacks), *two = make(&other, &callbacks);
         double best = INFINITY, best_other = INFINITY, ratios[ROUNDS];
         for (int i = 0; i < ROUNDS; i++) {
-            double time = chain(&unit, one, count / SHARE), other_time = chain(&other, two, count);
+            double time = chain(&unit, one, i * (count / SHARE), count / SHARE);
+            double other_time = chain(&other, two, i * count, count);
             best = fmin(best, time);
             best_other = fmin(best_other, other_time);
             ratios[i] = time / other_time;
