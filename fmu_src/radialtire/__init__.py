@@ -3,7 +3,7 @@
 This package is handed to the FMU whole, so it imports the standard library only.
 """
 
-from .effect import Effect, Instant, State
+from .effect import Effect, Flow, Instant, State
 from .effects import CATALOGUE
 from .hull1996 import FLAT_RADIUS, SECOND_READING, Hull1996
 from .model import InputError, TestedRange, TireModel, check_inputs
@@ -18,6 +18,7 @@ __all__ = [
     "FLAT_RADIUS",
     "SECOND_READING",
     "Effect",
+    "Flow",
     "Hull1996",
     "InputError",
     "Instant",

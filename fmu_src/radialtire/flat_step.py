@@ -24,11 +24,12 @@ one, 0 before; time [s] of the first one."""
 HEAD = 6
 """Index of the first number of an effect in the state."""
 
-TRACKED, FOLLOWED, NOISE = 0, 1, 2
+TRACKED, FOLLOWED, NOISE, CONTINUOUS = 0, 1, 2, 3
 """In the parameters: 1 where rate and acceleration follow from the readings (0: they are given, or not needed); 1 where
-the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading."""
+the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading; 1 where effects that
+are differential equations are a solver's: their numbers in n are then rates (see `Flow`)."""
 
-PARAMETERS = 3
+PARAMETERS = 4
 """Index of the first number of an effect in the parameters."""
 
 TRACK = 4 * 14 + 4 + 1
@@ -42,9 +43,14 @@ AHEAD = 1e-6
 
 
 class Stage(NamedTuple):
-    """One effect in the path of the signal: its response, where its switch stands in p, and its numbers in p and s."""
+    """One effect in the path of the signal: its responses, where its switch stands in p, and its numbers in p and s.
+
+    flow: its response as differential equations, where `flows`; else `respond`
+    """
 
     respond: Response
+    flow: Response
+    flows: int
     switch: int
     values: int
     values_end: int
@@ -79,7 +85,11 @@ def laid_out(
         values, state = len(p) + 1, len(s)
         s += effect.initial_state
         p += [0.0, *(parameter.start for parameter in effect.parameters)]
-        stages[effect.place].append(Stage(effect.respond, values - 1, values, len(p), state, len(s)))
+        flow = effect.respond if effect.flow is None else effect.flow.respond
+        flows = int(effect.flow is not None)
+        stages[effect.place].append(
+            Stage(effect.respond, flow, flows, values - 1, values, len(p), state, len(s))
+        )
     track = len(s)
     s += [0.0] * tracks
     deflection, series, scale, parallel, inertia, reading = (tuple(stages[place]) for place in PLACES)
@@ -179,7 +189,12 @@ def through(
 ) -> float:
     """Return the signal after the effects of one place, and write their states after it into `n`."""
     for stage in stages:
-        if p[stage.switch] != 0.0:
+        if stage.flows == 1 and p[stage.switch] != 0.0 and p[CONTINUOUS] != 0.0:
+            signal, flowed = stage.flow(
+                signal, at, tuple(s[stage.state : stage.state_end]), tuple(p[stage.values : stage.values_end])
+            )
+            n[stage.state : stage.state_end] = flowed
+        elif p[stage.switch] != 0.0:
             signal, after = stage.respond(
                 signal, at, tuple(s[stage.state : stage.state_end]), tuple(p[stage.values : stage.values_end])
             )

@@ -16,6 +16,9 @@
  *        steps N               N steps, with get and set of states
  *        bench N LIBRARY       against another FMU, in short turns, as the pace of a machine varies: the least seconds
  *                              for one chain of set (2 values), step and get (1 value) of both, the median ratio
+ *        pace N                nanoseconds of a chain of set, step and get, the least of many turns of N
+ *        lives N               nanoseconds of an instance made and freed, the least of turns of N, and kB lost over all
+ *        crowd N M             M instances in two threads, N steps in all; nanoseconds of a step
  *        two LIBRARY RESOURCES GUID   a second FMU beside the first: made at the same time, stepped in turn, closed
  *                              by threads that end after that; prints the outputs
  *        elsewhere             instantiate in a thread that ends, exit in another one, and free the instance after that
@@ -256,6 +259,26 @@ static int compare(const void *one, const void *other)
     return (*(const double *)one > *(const double *)other) - (*(const double *)one < *(const double *)other);
 }
 
+static const Unit *crowd_unit;
+static long crowd_size, crowd_steps;
+
+/* Half of the instances and half of the steps, each instance in turn. */
+static void *half_a_crowd(void *unused)
+{
+    const long size = crowd_size / 2, rounds = crowd_steps / crowd_size;
+    void **instances = malloc(sizeof(void *) * (size_t)size);
+    (void)unused;
+    for (long i = 0; i < size; i++)
+        instances[i] = make(crowd_unit, &callbacks);
+    for (long round = 0; round < rounds; round++)
+        for (long i = 0; i < size; i++)
+            step(crowd_unit, instances[i], round, 0.012 + 1e-6 * (double)i);
+    for (long i = 0; i < size; i++)
+        crowd_unit->free_instance(instances[i]);
+    free(instances);
+    return NULL;
+}
+
 int main(int argc, char **argv)
 {
     setvbuf(stdout, NULL, _IOLBF, 0);
@@ -360,6 +383,40 @@ int main(int argc, char **argv)
         printf("%.3e\n%.3e\n%.1f\n", best, best_other, ratios[ROUNDS / 2]);
         unit.free_instance(one);
         other.free_instance(two);
+    } else if (!strcmp(mode, "pace")) {
+        void *instance = make(&unit, &callbacks);
+        double best = INFINITY;
+        long number = 0;
+        for (int turn = 0; turn < 31; turn++) {
+            double start = now();
+            for (long i = 0; i < count; i++, number++)
+                step(&unit, instance, number, 0.012 + 0.011 * sin(0.03 * (double)number));
+            best = fmin(best, (now() - start) / (double)count);
+        }
+        printf("%.1f\n", 1e9 * best);
+        unit.free_instance(instance);
+    } else if (!strcmp(mode, "lives")) {
+        double best = INFINITY;
+        long before = 0;
+        for (int turn = 0; turn < 10; turn++) {
+            double start = now();
+            for (long i = 0; i < count; i++)
+                unit.free_instance(unit.instantiate("tire", 1, unit.guid, unit.resources, &callbacks, 0, 0));
+            best = fmin(best, (now() - start) / (double)count);
+            before = turn ? before : resident();
+        }
+        printf("%.0f\n%ld\n", 1e9 * best, resident() - before);
+    } else if (!strcmp(mode, "crowd")) {
+        pthread_t threads[2];
+        crowd_unit = &unit;
+        crowd_size = argc > 7 ? atol(argv[7]) : 1000;
+        crowd_steps = count;
+        double start = now();
+        for (int i = 0; i < 2; i++)
+            pthread_create(threads + i, NULL, half_a_crowd, NULL);
+        for (int i = 0; i < 2; i++)
+            pthread_join(threads[i], NULL);
+        printf("%.1f\n", 1e9 * (now() - start) / (double)count);
     } else if (!strcmp(mode, "two") && argc == 9) {
         Unit other = {.path = argv[6], .resources = argv[7], .guid = argv[8]};
         pthread_t threads[2];
