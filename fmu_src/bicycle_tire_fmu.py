@@ -16,7 +16,13 @@ from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Status, Fmi2Variabil
 from pythonfmu.fmi2slave import Fmi2Slave
 from pythonfmu.variables import Boolean, Real
 from radialtire import check_inputs, parameters_of, power_law, read_tire, with_parameters
-from radialtire.model import DEFLECTION_HIGHEST, DEFLECTION_LOWEST, ModelState
+from radialtire.effect import State
+from radialtire.flat_step import TIME
+from radialtire.model import DEFLECTION_HIGHEST, DEFLECTION_LOWEST
+from radialtire.tirefile import to_text
+
+MODEL = "BicycleTire"
+"""The model identifier: the name of the binaries."""
 
 DEFLECTION, SURFACE_RADIUS, RADIAL_FORCE, RADIAL_STIFFNESS, IN_TESTED_RANGE, FIRST_PARAMETER = range(6)
 """Value references: the index of a variable in the model description."""
@@ -26,6 +32,12 @@ BOTH_INPUTS, FORCE_ALONE = (DEFLECTION, SURFACE_RADIUS), (RADIAL_FORCE,)
 
 FLAT = 1e5
 """Start value of the surface radius [m]: flat, and unlike infinity read by every importer."""
+
+STOP_TIME, STEP_SIZE = 1.0, 2e-4
+"""[s] of the default experiment: the step that holds for a wheel on the tire (see the documentation's last section)."""
+
+ON_TIME = 1e-3
+"""Part of a step by which its start may differ from the end of the last one: hosts add times up in their own ways."""
 
 BASE_UNITS: dict[str, dict[str, str]] = {
     "m": {"m": "1"},
@@ -37,16 +49,19 @@ BASE_UNITS: dict[str, dict[str, str]] = {
     "N/m": {"kg": "1", "s": "-2"},
     "N.s/m": {"kg": "1", "s": "-1"},
     "N/s": {"kg": "1", "m": "1", "s": "-3"},
+    "N/s2": {"kg": "1", "m": "1", "s": "-4"},
     "m/s": {"m": "1", "s": "-1"},
+    "m/s2": {"m": "1", "s": "-2"},
     "m3": {"m": "3"},
     "1/s": {"s": "-1"},
     "1/m": {"m": "-1"},
     "1/cm": {"m": "-1", "factor": "100"},
     "1/N": {"kg": "-1", "m": "-1", "s": "2"},
+    "s/m": {"m": "-1", "s": "1"},
     "m/N": {"kg": "-1", "s": "2"},
     "1": {},
 }
-"""Units as products of SI base units; one that is not here (N/cm^B) has no fixed dimension and is declared by name."""
+"""Units as products of SI base units; one that is not here (N/cm^B) has no fixed dimension: it stands in words only."""
 
 DISPLAY_UNITS: dict[str, dict[str, str]] = {
     "m": {"mm": "1000", "cm": "100", "in": "39.37007874015748"},
@@ -73,15 +88,13 @@ TRAITS: dict[int, dict[str, str]] = {
 class BicycleTire(Fmi2Slave):
     """Radial force of the tire of tire.json, from its deflection and the radius of the surface under it."""
 
-    description = "Radial force of a bicycle tire pressed on flat or curved ground (Hull, Wang & Moore 1996)"
     author = "The tirelab developers"
     license = "MIT"
-    version = "1"
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.modelName = "BicycleTire"
-        self.default_experiment = DefaultExperiment(start_time=0.0, stop_time=30.0, step_size=0.2)
+        self.modelName = MODEL
+        self.default_experiment = DefaultExperiment(start_time=0.0, stop_time=STOP_TIME, step_size=STEP_SIZE)
         self._tire = read_tire(Path(self.resources) / "tire.json")
         self._parameters = {name: value for name, (_, value) in parameters_of(self._tire).items()}
         self._pending: dict[str, float] = {}
@@ -89,10 +102,9 @@ class BicycleTire(Fmi2Slave):
         self._surface = math.nan  # the surface of _elastic; NaN where every step needs the full evaluation
         self._elastic = power_law.on_surface(0.0, 1.0)
         self._state = self._tire.initial_state
-        self._start_time = 0.0
+        self._reached = 0.0  # [s], the end of the last step
         self._force = 0.0
         self._current = False
-        self._refused = ""
 
         self._declare(
             Real, "deflection", Fmi2Causality.input, "Radial compression of the tire; <= 0 in the air"
@@ -114,6 +126,8 @@ class BicycleTire(Fmi2Slave):
         self._names = list(self._parameters)
         for name, (parameter, _) in parameters_of(self._tire).items():
             text = f"{parameter.symbol}: {parameter.meaning}"
+            if parameter.unit not in BASE_UNITS:
+                text = f"{text} [{parameter.unit}]"
             self._declare(Real, name, Fmi2Causality.parameter, text)
 
     def _declare(
@@ -135,26 +149,29 @@ class BicycleTire(Fmi2Slave):
 
     # Values, by value reference: pythonfmu's own accessors check types at every call, ours are on the hot path.
 
-    def set_real(self, vrs: Sequence[int], values: Sequence[float]) -> None:
+    def set_real(self, vrs: Sequence[int], values: Sequence[float]) -> bool:
         """Take inputs and parameters; the step that would use a wrong value reports it."""
         self._current = False
         if vrs == BOTH_INPUTS:
             self._inputs = values
-            return
+            return True
+        for vr, value in zip(vrs, values, strict=True):
+            if not (0 <= vr < RADIAL_FORCE or FIRST_PARAMETER <= vr < FIRST_PARAMETER + len(self._names)):
+                name = self.vars[vr].name if vr in self.vars else f"value reference {vr}"
+                self._tell(f"{name} = {value:.17g} cannot be set; set inputs and parameters only")
+                return False
         self._surface = math.nan
         for vr, value in zip(vrs, values, strict=True):
             if vr < RADIAL_FORCE:
                 self._inputs = (value, self._inputs[1]) if vr == DEFLECTION else (self._inputs[0], value)
-            elif FIRST_PARAMETER <= vr < FIRST_PARAMETER + len(self._names):
-                self._pending[self._names[vr - FIRST_PARAMETER]] = value
             else:
-                name = self.vars[vr].name if vr in self.vars else f"value reference {vr}"
-                self._refused = f"{name} = {value:.17g} cannot be set; set inputs and parameters only"
+                self._pending[self._names[vr - FIRST_PARAMETER]] = value
+        return True
 
     def get_real(self, vrs: Sequence[int]) -> Sequence[float]:
         """Return values for the inputs as they are now, without a step's delay; NaN where there is none."""
         if not self._current:
-            self._try(self._state.time)
+            self._try(self._now)
         if vrs == FORCE_ALONE:
             return (self._force,)
         return [
@@ -164,20 +181,34 @@ class BicycleTire(Fmi2Slave):
 
     def get_boolean(self, vrs: Sequence[int]) -> list[bool]:
         """Return in_tested_range for the inputs as they are now; False where the inputs are not allowed."""
+        for vr in vrs:
+            if vr != IN_TESTED_RANGE:
+                raise ValueError(f"value reference {vr} is no Boolean variable of this tire")
         if not self._current:
-            self._try(self._state.time)
+            self._try(self._now)
         x, R = self._inputs
         inside = math.isfinite(self._force) and self._tire.in_tested_range(x, R, self._force)
-        return [inside and vr == IN_TESTED_RANGE for vr in vrs]
+        return [inside for _ in vrs]
 
     def _other(self, vr: int) -> float:
-        if vr == RADIAL_STIFFNESS and math.isfinite(self._force):
+        if vr == RADIAL_STIFFNESS:
             x, R = self._inputs
-            return self._tire.stiffness(x, R, self._state)
-        name = dict(enumerate(self._names, FIRST_PARAMETER)).get(vr, "")
-        return self._pending.get(name, self._parameters.get(name, math.nan))
+            return self._tire.stiffness(x, R, self._state) if math.isfinite(self._force) else math.nan
+        if not FIRST_PARAMETER <= vr < FIRST_PARAMETER + len(self._names):
+            raise ValueError(f"value reference {vr} is no Real variable of this tire")
+        name = self._names[vr - FIRST_PARAMETER]
+        return self._pending.get(name, self._parameters[name])
 
-    def _try(self, time: float) -> tuple[ModelState, str]:
+    def _tell(self, reason: str) -> None:
+        self._current = False
+        self.log(reason, Fmi2Status.error)
+
+    @property
+    def _now(self) -> float:
+        """The time [s] of the state, at which a value is evaluated again."""
+        return self._state[TIME]
+
+    def _try(self, time: float) -> tuple[State, str]:
         """Evaluate the inputs at `time` and return the state after it, with the reason where there is none."""
         self._current = True
         try:
@@ -200,50 +231,77 @@ class BicycleTire(Fmi2Slave):
 
     def setup_experiment(
         self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
-    ) -> None:
+    ) -> bool:
         """Store the start time of the experiment."""
-        self._start_time = start_time
+        if not math.isfinite(start_time):
+            self._tell(f"startTime = {start_time:.17g} s is not allowed; it must be a finite number")
+            return False
+        self._reached = start_time
+        return True
 
-    def exit_initialization_mode(self) -> None:
+    def exit_initialization_mode(self) -> bool:
         """Begin the history with the inputs of the start."""
-        self._state = self._tire.initial_state._replace(time=self._start_time)
-        self._state, _ = self._try(self._start_time)
+        start = self._tire.initial_state
+        self._state = (self._reached, *start[TIME + 1 :])
+        self._state, reason = self._try(self._reached)
+        if reason:
+            self._tell(reason)
+        return not reason
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Accept the inputs at the end of the step, or discard the step with one message and change nothing."""
+        """Accept the inputs at the end of the step, or refuse the step with one message and change nothing."""
         x, R = self._inputs
-        if self._surface == R and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST and step_size >= 0.0:
+        if (
+            self._surface == R
+            and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST
+            and current_time == self._reached
+            and 0.0 <= step_size < math.inf
+        ):
             self._force = self._elastic(x)
             self._current = True
+            self._reached += step_size
             return True
-        state, reason = self._try(current_time + step_size)
-        if step_size < 0.0:
-            reason = f"communicationStepSize = {step_size:.17g} s is not allowed; it must not be negative"
-        if self._refused:
-            reason, self._refused = self._refused, ""
+        reason = self._misplaced(current_time, step_size)
+        state = self._state
+        if not reason:
+            state, reason = self._try(current_time + step_size)
         if reason:
-            self._current = False
-            self.log(reason, Fmi2Status.discard)
+            self._tell(reason)
             return False
         self._state = state
+        self._reached = current_time + step_size
         if not self._tire.effects:
             self._surface, self._elastic = R, power_law.on_surface(*self._tire.law.coefficients(R))
         return True
+
+    def _misplaced(self, current_time: float, step_size: float) -> str:
+        """Return what is wrong with the times of a step, or nothing."""
+        if not 0.0 <= step_size < math.inf:
+            return (
+                f"communicationStepSize = {step_size:.17g} s is not allowed; it must be positive and finite"
+            )
+        tolerance = ON_TIME * step_size + 1e-9 * max(1.0, abs(self._reached))
+        if not abs(current_time - self._reached) <= tolerance:
+            return (
+                f"currentCommunicationPoint = {current_time:.17g} s is not allowed; it must be "
+                f"{self._reached:.17g} s, the end of the last step"
+            )
+        return ""
 
     def _get_fmu_state(self) -> dict[str, Any]:
         return {
             "inputs": list(self._inputs),
             "parameters": {**self._parameters, **self._pending},
             "history": self._state,
-            "start_time": self._start_time,
+            "reached": self._reached,
         }
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         self._inputs = tuple(state["inputs"])
         self._surface = math.nan
         self._pending = dict(state["parameters"])
-        self._state = ModelState.restored(state["history"])
-        self._start_time = state["start_time"]
+        self._state = tuple(state["history"])
+        self._reached = state["reached"]
         self._current = False
 
     # Description.
@@ -256,13 +314,21 @@ class BicycleTire(Fmi2Slave):
             "canSerializeFMUstate": "true",
             **(model_options or {}),
         }
+        import hashlib  # here, since it takes 10 ms, which an instance need not spend
+
         root: Element = super().to_xml(options)
         del root.attrib["generationDateAndTime"]
+        name = self._tire.name or MODEL
+        root.set("modelName", name)
+        source = f" ({self._tire.source})" if self._tire.source else ""
+        root.set("description", f"Radial force of a bicycle tire on flat or curved ground: {name}{source}")
+        root.set("version", hashlib.sha256(to_text(self._tire).encode()).hexdigest()[:12])
         traits = dict(TRAITS)
         for vr, (parameter, _) in enumerate(parameters_of(self._tire).values(), FIRST_PARAMETER):
             bounds = {"min": parameter.minimum, "max": parameter.maximum}
-            finite = {key: f"{bound:.16g}" for key, bound in bounds.items() if math.isfinite(bound)}
-            traits[vr] = {"unit": parameter.unit, **finite}
+            finite = {key: repr(float(bound)) for key, bound in bounds.items() if math.isfinite(bound)}
+            unit_of = {"unit": parameter.unit} if parameter.unit in BASE_UNITS else {}
+            traits[vr] = {**unit_of, **finite}
         if not self._tire.effects:  # damping, inertia or a wrong zero can make the force negative
             for vr in (RADIAL_FORCE, RADIAL_STIFFNESS):
                 traits[vr] = {**traits[vr], "min": "0"}
@@ -272,12 +338,13 @@ class BicycleTire(Fmi2Slave):
         assert structure is not None
         for vr, variable in enumerate(variables):
             variable[0].attrib.update(traits.get(vr, {}))
+            if "start" in variable[0].attrib:  # pythonfmu writes 16 digits, which are not always the number
+                variable[0].set("start", repr(float(self.get_real([vr])[0])))
 
         units = Element("UnitDefinitions")
-        for name in sorted({trait["unit"] for trait in traits.values()}):
+        for name in sorted({trait["unit"] for trait in traits.values() if "unit" in trait}):
             unit = SubElement(units, "Unit", name=name)
-            if name in BASE_UNITS:
-                SubElement(unit, "BaseUnit", BASE_UNITS[name])
+            SubElement(unit, "BaseUnit", BASE_UNITS[name])
             for display, factor in {name: "1", **DISPLAY_UNITS.get(name, {})}.items():
                 SubElement(unit, "DisplayUnit", name=display, factor=factor)
         root.insert(1, units)

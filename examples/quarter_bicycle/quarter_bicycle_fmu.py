@@ -160,7 +160,7 @@ class QuarterBicycleFmu(Fmi2Slave):
         self._start_time = start_time
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Move on by `step_size` [s] under the force as it is now, or discard the step with one message."""
+        """Move on by `step_size` [s] under the force as it is now, or refuse the step with one message."""
         force = self._radial_force
         try:
             for name, (_, least, _) in PARAMETERS.items():
@@ -179,7 +179,7 @@ class QuarterBicycleFmu(Fmi2Slave):
             upward = force * math.cos(middle.inclination)
             self._state = held_step(self._bicycle(), step_size).advance(self._state, upward)
         except (ValueError, OverflowError) as error:
-            self.log(str(error), Fmi2Status.discard)
+            self.log(str(error), Fmi2Status.error)
             return False
         self._upward = upward
         self._elapsed = current_time + step_size - self._start_time

@@ -3,10 +3,10 @@
 This package is handed to the FMU whole, so it imports the standard library only.
 """
 
-from .effect import Effect, Instant, State
+from .effect import Effect, Flow, Instant, State
 from .effects import CATALOGUE
 from .hull1996 import FLAT_RADIUS, SECOND_READING, Hull1996
-from .model import InputError, ModelState, TestedRange, TireModel, check_inputs
+from .model import InputError, TestedRange, TireModel, check_inputs
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
 from .prior import Prior
@@ -18,10 +18,10 @@ __all__ = [
     "FLAT_RADIUS",
     "SECOND_READING",
     "Effect",
+    "Flow",
     "Hull1996",
     "InputError",
     "Instant",
-    "ModelState",
     "Parameter",
     "ParameterError",
     "PowerLaw",

@@ -9,7 +9,6 @@ Moore (1996), Cycling Science, Spring 1996; their own functions of R are the mod
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,6 +34,25 @@ def _parameters() -> tuple[Parameter, ...]:
             Parameter(f"exponent_{i}", f"B{i}", "1", FLAT_EXPONENT, 0.1, 10.0, f"B on surface {i}"),
         ]
     return tuple(found)
+
+
+def coefficients(slots: Sequence[float], surface_radius: float) -> tuple[float, float]:
+    """Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m].
+
+    slots: curvature, A and B of every surface, by rising curvature; one whose A is 0 is left out, but not the first
+    """
+    curvature = 0.0 if abs(surface_radius) >= FLAT_RADIUS else 1.0 / surface_radius
+    k0, A0, B0 = slots[0], slots[1], slots[2]
+    if curvature <= k0:
+        return A0, B0
+    for i in range(1, SURFACES_MAX):
+        k1, A1, B1 = slots[3 * i], slots[3 * i + 1], slots[3 * i + 2]
+        if A1 > 0.0:
+            if curvature <= k1:
+                part = (curvature - k0) / (k1 - k0)
+                return A0 + part * (A1 - A0), B0 + part * (B1 - B0)
+            k0, A0, B0 = k1, A1, B1
+    return A0, B0
 
 
 @dataclass(frozen=True)
@@ -96,21 +114,16 @@ class CurvatureLaw:
     @cached_property
     def surfaces(self) -> tuple[tuple[float, float, float], ...]:
         """Curvature [1/m], A [N/cm^B] and B [1] of every surface that is not left out."""
-        slots = (
-            tuple(float(getattr(self, f"{word}_{i}")) for word in ("curvature", "coefficient", "exponent"))
-            for i in range(1, SURFACES_MAX + 1)
+        slots = self._slots
+        return tuple(
+            (k, A, B) for k, A, B in zip(slots[0::3], slots[1::3], slots[2::3], strict=True) if A > 0.0
         )
-        return tuple((k, A, B) for k, A, B in slots if A > 0.0)
 
     def coefficients(self, surface_radius: float) -> tuple[float, float]:
         """Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]: convex > 0, concave < 0."""
-        curvature = 0.0 if abs(surface_radius) >= FLAT_RADIUS else 1.0 / surface_radius
-        surfaces = self.surfaces
-        above = bisect_left([k for k, _, _ in surfaces], curvature)
-        if above == 0:
-            return surfaces[0][1:]
-        if above == len(surfaces):
-            return surfaces[-1][1:]
-        (k0, A0, B0), (k1, A1, B1) = surfaces[above - 1], surfaces[above]
-        part = (curvature - k0) / (k1 - k0)
-        return A0 + part * (A1 - A0), B0 + part * (B1 - B0)
+        return coefficients(self._slots, surface_radius)
+
+    @cached_property
+    def _slots(self) -> tuple[float, ...]:
+        """The parameters in their order."""
+        return tuple(float(getattr(self, parameter.name)) for parameter in self.parameters)

@@ -63,6 +63,21 @@ evaluates the last sample again, perhaps with another deflection.
 
 
 @dataclass(frozen=True)
+class Flow:
+    """An effect as differential equations, for a solver: Model Exchange.
+
+    respond: as that of the effect, but the numbers `states` of the state are the solver's, and in the state after it
+    stand their rates [per s], or their values at the first sample; the others are memory, kept at accepted steps
+    states: their indices in the effect's state; names: their names; units: their units
+    """
+
+    respond: Response
+    states: tuple[int, ...]
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Effect:
     """One piece of physics.
 
@@ -75,6 +90,7 @@ class Effect:
     source: where equation and magnitudes come from
     differentiates: whether it uses rate or acceleration; traits: of TRAITS
     form_error: part of its response by which other formulations of the same physics differ from it once fitted
+    flow: the effect as differential equations, or None: then its state is memory, kept at accepted steps
     """
 
     name: str
@@ -89,6 +105,7 @@ class Effect:
     differentiates: bool = False
     traits: tuple[str, ...] = ()
     form_error: float = 0.02
+    flow: Flow | None = None
 
     @property
     def signed(self) -> bool:

@@ -30,6 +30,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 from .parameter import Parameter, ParameterError
@@ -61,6 +62,24 @@ SECOND_READING = 0.02519
 
 FLAT_COEFFICIENT, FLAT_EXPONENT = 550.9, 1.422
 """C0 = C1 [N/cm^B] and C2 = C3 [1]: A and B on flat ground."""
+
+Constants = tuple[float, float, float, float, float, float, float, float, float, float]
+"""C0 = C1, D0, E0, D1, E1 of A; C2 = C3, D2, E2, D3, E3 of B; E [1/cm]."""
+
+
+def coefficients(constants: Constants, surface_radius: float) -> tuple[float, float]:
+    """Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]; see `Hull1996.coefficients`."""
+    C0, D0, E0, D1, E1, C2, D2, E2, D3, E3 = constants
+    if abs(surface_radius) >= FLAT_RADIUS:
+        return C0, C2
+    Rb = 100.0 * surface_radius
+    if Rb > 0.0:
+        A = C0 - D0 * math.exp(-E0 * Rb)  # 5a
+        B = C2 - D2 * math.exp(-E2 * Rb)  # 6a
+    else:
+        A = C0 + D1 * math.exp(E1 * Rb)  # 5b
+        B = C2 + D3 * math.exp(E3 * Rb)  # 6b
+    return A, B
 
 
 @dataclass(frozen=True)
@@ -164,27 +183,26 @@ class Hull1996:
                 f"flat_exponent = {self.flat_exponent:g}, or B is negative on sharp bumps"
             )
 
+    @cached_property
+    def _constants(self) -> Constants:
+        """The constants in the order of `coefficients`."""
+        return (
+            self.flat_coefficient,
+            self.convex_coefficient_drop,
+            self.convex_coefficient_decay,
+            self.concave_coefficient_rise,
+            self.concave_coefficient_decay,
+            self.flat_exponent,
+            self.convex_exponent_drop,
+            self.convex_exponent_decay,
+            self.concave_exponent_rise,
+            self.concave_exponent_decay,
+        )
+
     def coefficients(self, surface_radius: float) -> tuple[float, float]:
         """Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m].
 
         Convex > 0, concave < 0, flat = infinite or of magnitude FLAT_RADIUS and more; 0 and NaN are the caller's
         to refuse.
         """
-        if abs(surface_radius) >= FLAT_RADIUS:
-            return self.flat_coefficient, self.flat_exponent
-        Rb = 100.0 * surface_radius
-        if Rb > 0.0:
-            A = self.flat_coefficient - self.convex_coefficient_drop * math.exp(
-                -self.convex_coefficient_decay * Rb
-            )  # 5a
-            B = self.flat_exponent - self.convex_exponent_drop * math.exp(
-                -self.convex_exponent_decay * Rb
-            )  # 6a
-        else:
-            A = self.flat_coefficient + self.concave_coefficient_rise * math.exp(
-                self.concave_coefficient_decay * Rb
-            )  # 5b
-            B = self.flat_exponent + self.concave_exponent_rise * math.exp(
-                self.concave_exponent_decay * Rb
-            )  # 6b
-        return A, B
+        return coefficients(self._constants, surface_radius)

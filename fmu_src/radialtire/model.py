@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import ClassVar, Protocol
 
-from . import hull1996, power_law, tracking
-from .effect import PLACES, Effect, Instant, State
-from .hull1996 import FLAT_RADIUS, Hull1996
+from . import flat_step, hull1996, power_law
+from .effect import PLACES, Effect, State
+from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, SignalPath, laid_out
+from .hull1996 import Hull1996
 from .parameter import Parameter, ParameterError
-from .tracking import UNTRACKED, Track
 
 DEFLECTION_LOWEST = -1e3
 """Lowest deflection accepted [m]: a wheel this high above the ground is a mistake."""
@@ -28,9 +27,6 @@ READING_NOISE = Parameter(
     0.01,
     "standard deviation of the noise in the measured deflection",
 )
-
-TANGENT_STEP = 1e-7
-"""Half the distance [m] over which the tangent of a tire with effects is taken."""
 
 
 class InputError(ValueError):
@@ -65,41 +61,6 @@ class TestedRange:
             self.curvature_min <= 1.0 / surface_radius <= self.curvature_max
             and deflection <= self.deflection_max
             and force <= self.force_max
-        )
-
-
-class ModelState(NamedTuple):
-    """The state of a tire after a sample: plain numbers and tuples of them, so that JSON can carry it.
-
-    time: [s] of the last sample; deflection: [m] measured there; rate [m/s] and acceleration [m/s^2] of the measurement
-    started: whether there was a sample; effects: their states in the order of the tire's effects
-    start: [s] time of the first sample; reading, compression: tracks of the measured deflection and of the tire's own
-    """
-
-    time: float
-    deflection: float
-    rate: float
-    acceleration: float
-    started: bool
-    effects: tuple[State, ...]
-    start: float = 0.0
-    reading: Track = UNTRACKED
-    compression: Track = UNTRACKED
-
-    @classmethod
-    def restored(cls, values: Sequence[Any]) -> ModelState:
-        """Return the state whose values went through JSON, which has lists in place of tuples."""
-        time, deflection, rate, acceleration, started, effects, start, reading, compression = values
-        return cls(
-            time,
-            deflection,
-            rate,
-            acceleration,
-            started,
-            tuple(tuple(state) for state in effects),
-            start,
-            tracking.restored(reading),
-            tracking.restored(compression),
         )
 
 
@@ -146,85 +107,58 @@ class TireModel:
         object.__setattr__(self, "effects", checked)
 
     @cached_property
-    def _stages(self) -> dict[str, tuple[tuple[int, Effect, State], ...]]:
-        return {
-            place: tuple((i, e, values) for i, (e, values) in enumerate(self.effects) if e.place == place)
-            for place in PLACES
-        }
-
-    @cached_property
     def differentiates(self) -> bool:
         """Whether an effect uses rate or acceleration."""
         return any(effect.differentiates for effect, _ in self.effects)
 
+    @cached_property
+    def _flat(self) -> tuple[SignalPath, State, State]:
+        """Where the numbers of the effects stand, their parameters, and the state before the first sample."""
+        effects = tuple(effect for effect, _ in self.effects)
+        follows = self.differentiates and any(e.place in ("deflection", "series") for e in effects)
+        path, parameters, initial_state = laid_out(effects, TRACK * (self.differentiates + follows))
+        parameters[TRACKED], parameters[FOLLOWED] = float(self.differentiates), float(follows)
+        parameters[NOISE] = self.reading_noise
+        at = PARAMETERS
+        for effect, values in self.effects:
+            parameters[at : at + 1 + len(values)] = (1.0, *values)
+            at += 1 + len(effect.parameters)
+        return path, tuple(parameters), tuple(initial_state)
+
     @property
-    def initial_state(self) -> ModelState:
-        """The state of a tire before the first sample."""
-        return ModelState(
-            0.0, 0.0, 0.0, 0.0, False, tuple(effect.initial_state for effect, _ in self.effects)
-        )
+    def initial_state(self) -> State:
+        """The state of a tire before the first sample: a row of numbers (see `flat_step`)."""
+        return self._flat[2]
 
     def step(
-        self, deflection: float, surface_radius: float, time: float, state: ModelState
-    ) -> tuple[float, ModelState]:
+        self, deflection: float, surface_radius: float, time: float, state: State
+    ) -> tuple[float, State]:
         """Return the radial force [N] at `time` [s] and the state after it.
 
         Pure: called again with the same state it gives the same answer, so a step may be tried and discarded.
         At the time of the state itself, rate and acceleration are those of the state.
         """
-        A, B = self.law.coefficients(surface_radius)
+        law = self.law.coefficients(surface_radius)
         if not self.effects:
-            return power_law.force(deflection, A, B), state
-
-        bend = 0.0 if abs(surface_radius) >= FLAT_RADIUS else 1.0 / surface_radius
-        first = not state.started
-        start = time if first else state.start
-        interval = 0.0 if first else time - state.time
-        states = list(state.effects)
-
-        def through(place: str, signal: float, x: float, v: float, elastic: float) -> float:
-            for i, effect, values in self._stages[place]:
-                instant = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic, bend)
-                signal, states[i] = effect.respond(signal, instant, states[i], values)
-            return signal
-
-        reading = self._tracked(state.reading, deflection, interval, first)
-        rate, acceleration = tracking.rate(reading), tracking.acceleration(reading)
-        x = through("deflection", deflection, deflection, rate, 0.0)
-        x = through("series", x, x, rate, 0.0)
-        compression = reading
-        if self._stages["deflection"] or self._stages["series"]:
-            compression = self._tracked(state.compression, x, interval, first)
-        v = tracking.rate(compression)
-
-        bare = power_law.force(x, A, B)
-        elastic = through("scale", 1.0, x, v, bare) * bare
-        force = through("parallel", elastic, x, v, elastic)
-        if force < 0.0:
-            force = 0.0
-        force = through("inertia", force, x, v, elastic)
-        force = through("reading", force, x, v, elastic)
-        after = ModelState(
-            time, deflection, rate, acceleration, True, tuple(states), start, reading, compression
+            return power_law.force(deflection, *law), state
+        path, parameters, _ = self._flat
+        after = list(state)
+        force, _ = flat_step.step(
+            path, law, (deflection, surface_radius, time, 0.0, 0.0), parameters, state, after
         )
-        return force, after
+        return force, tuple(after)
 
-    def _tracked(self, track: Track, deflection: float, interval: float, first: bool) -> Track:
-        if not self.differentiates:
-            return track
-        if first:
-            return tracking.begin(deflection)
-        if interval > 0.0:
-            return tracking.follow(track, interval, deflection, self.reading_noise)
-        return track
+    def stiffness(self, deflection: float, surface_radius: float, state: State) -> float:
+        """Return the tangent dF/dx [N/m] at the time of `state`, everything but the deflection held constant.
 
-    def stiffness(self, deflection: float, surface_radius: float, state: ModelState) -> float:
-        """Return the tangent dF/dx [N/m] at the time of `state`, everything but the deflection held constant."""
+        Where the contact begins it is that of the side on which the tire is: in the air up to a deflection of 0.
+        """
+        law = self.law.coefficients(surface_radius)
         if not self.effects:
-            return power_law.stiffness(deflection, *self.law.coefficients(surface_radius))
-        above, _ = self.step(deflection + TANGENT_STEP, surface_radius, state.time, state)
-        below, _ = self.step(deflection - TANGENT_STEP, surface_radius, state.time, state)
-        return (above - below) / (2.0 * TANGENT_STEP)
+            return power_law.stiffness(deflection, *law)
+        path, parameters, _ = self._flat
+        motion = (deflection, surface_radius, state[TIME], 0.0, 0.0)
+        return flat_step.stiffness(path, law, motion, parameters, state, list(state))
 
     def in_tested_range(self, deflection: float, surface_radius: float, force: float) -> bool:
         """Return whether surface, deflection and force lie in the tested range; False where that is not known."""

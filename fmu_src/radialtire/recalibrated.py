@@ -10,7 +10,9 @@ on the next one: Hull, Wang & Moore (1996) state errors of up to 13.5 % on conve
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Protocol
 
 from .hull1996 import FLAT_RADIUS, Hull1996
@@ -58,21 +60,40 @@ class Recalibrated:
     def coefficients(self, surface_radius: float) -> tuple[float, float]:
         """Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]."""
         A, B = self.base.coefficients(surface_radius)
-        change, exponent = self.changes(surface_radius)
-        return A * math.exp(change), max(B + exponent, 0.05)
+        return changed(A, B, self.changes(surface_radius))
 
     def changes(self, surface_radius: float) -> tuple[float, float]:
         """Return a and b on a surface of radius `surface_radius` [m]."""
-        here = _curvature(surface_radius)
-        below = self.surfaces[0]
-        for above in self.surfaces:
-            if here <= _curvature(above[0]):
-                width = _curvature(above[0]) - _curvature(below[0])
-                part = (here - _curvature(below[0])) / width if width > 0.0 else 1.0
-                part = max(part, 0.0)
-                return below[1] + part * (above[1] - below[1]), below[2] + part * (above[2] - below[2])
-            below = above
-        return below[1], below[2]
+        return changes(self._table, 0, len(self.surfaces), surface_radius)
+
+    @cached_property
+    def _table(self) -> tuple[float, ...]:
+        """Radius, a and b of every surface, by rising curvature."""
+        return tuple(number for surface in self.surfaces for number in surface)
+
+
+def changed(A: float, B: float, by: tuple[float, float]) -> tuple[float, float]:
+    """Return A exp(a) and B + b, but no exponent below 0.05."""
+    a, b = by
+    return A * math.exp(a), max(B + b, 0.05)
+
+
+def changes(q: Sequence[float], at: int, count: int, surface_radius: float) -> tuple[float, float]:
+    """Return a and b on a surface of radius `surface_radius` [m].
+
+    q: from its index `at` on radius, a and b of `count` surfaces, by rising curvature
+    """
+    here = _curvature(surface_radius)
+    below, a0, b0 = _curvature(q[at]), q[at + 1], q[at + 2]
+    for i in range(count):
+        above, a1, b1 = _curvature(q[at + 3 * i]), q[at + 3 * i + 1], q[at + 3 * i + 2]
+        if here <= above:
+            width = above - below
+            part = (here - below) / width if width > 0.0 else 1.0
+            part = max(part, 0.0)
+            return a0 + part * (a1 - a0), b0 + part * (b1 - b0)
+        below, a0, b0 = above, a1, b1
+    return a0, b0
 
 
 def _curvature(radius: float) -> float:

@@ -28,8 +28,6 @@ coefficients", IEEE Trans. Automatic Control 33 (1988) 780-783; P. R. Belanger, 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any
 
 Moving = tuple[
     float, float, float, float, float, float, float, float, float, float, float, float, float, float
@@ -69,22 +67,11 @@ PAUSE = 10.0
 JERK_MAX, SNAP_MAX = 32.0, 128.0
 """Largest scaled intensities: a memory (s^2/q)^(1/5 or 1/7) below d/2 counts as d/2. Shorter, it would overshoot."""
 
-_NOWHERE: Moving = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-UNTRACKED: Track = ((_NOWHERE, _NOWHERE, _NOWHERE, _NOWHERE), (0.25, 0.25, 0.25, 0.25), 0.0)
-"""The track before the first sample."""
-
 
 def begin(deflection: float) -> Track:
     """Return the track after the first measurement [m]."""
     at = (deflection, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     return (at, at, at, at), (0.25, 0.25, 0.25, 0.25), 0.0
-
-
-def restored(values: Sequence[Any]) -> Track:
-    """Return the track whose values went through JSON, which has lists in place of tuples."""
-    modes, probability, last = values
-    return tuple(tuple(mode) for mode in modes), tuple(probability), last  # type: ignore[return-value]
 
 
 def follow(track: Track, interval: float, deflection: float, noise: float) -> Track:

@@ -24,7 +24,7 @@ def follow(time: np.ndarray, deflection: np.ndarray, noise: float) -> tuple[np.n
 def test_before_the_second_reading_nothing_moves() -> None:
     assert tracking.rate(tracking.begin(0.02)) == 0.0
     assert tracking.acceleration(tracking.begin(0.02)) == 0.0
-    assert tracking.rate(tracking.UNTRACKED) == 0.0
+    assert tracking.rate(tracking.begin(0.01)) == 0.0
 
 
 def test_the_second_reading_gives_the_difference() -> None:

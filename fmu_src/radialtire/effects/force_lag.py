@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Flow, Instant, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -71,10 +71,8 @@ def low_passed(
     return late - tau * rate + off, rate + off_slope
 
 
-def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Return the measured force [N]; the state: output, its slope, its last input, and the stored samples."""
-    tau, delta, quality = values
-    reading, slope, last = state[0], state[1], state[2]
+def delayed(signal: float, instant: Instant, state: State, delta: float) -> tuple[float, State]:
+    """Return the force [N] a delay `delta` [s] ago and the stored samples after this one: times, then forces."""
     times, forces = state[TIMES:FORCES], state[FORCES:]
     now = instant.time
     newest, force = (now,), (signal,)
@@ -94,6 +92,14 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
                 part = (now - delta - times[i - 1]) / (times[i] - times[i - 1])
                 late = forces[i - 1] + part * (forces[i] - forces[i - 1])
                 break
+    return late, times + forces
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Return the measured force [N]; the state: output, its slope, its last input, and the stored samples."""
+    tau, delta, quality = values
+    reading, slope, last = state[0], state[1], state[2]
+    late, samples = delayed(signal, instant, state, delta)
     if instant.first:
         reading = last = late
     if tau == 0.0:
@@ -101,7 +107,25 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     elif instant.interval > 0.0:
         reading, slope = low_passed((reading, slope, last), late, instant.interval, tau, quality)
     held = (reading, slope, late)
-    return reading, held + times + forces
+    return reading, held + samples
+
+
+def flow(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Return the measured force [N] for a solver: the states are the output and its slope; the delay is memory."""
+    tau, delta, quality = values
+    reading, slope = state[0], state[1]
+    late, samples = delayed(signal, instant, state, delta)
+    if instant.first:
+        held = (late, 0.0, late)
+        return late, held + samples
+    if tau == 0.0:
+        held = (0.0, 0.0, late)
+        return late, held + samples
+    if quality * tau < NO_TIME:
+        held = ((late - reading) / tau, 0.0, late)
+        return reading, held + samples
+    held = (slope, (late - reading - tau * slope) / ((quality * tau) ** 2), late)
+    return reading, held + samples
 
 
 FORCE_LAG = Effect(
@@ -148,6 +172,7 @@ FORCE_LAG = Effect(
     ),
     initial_state=(0.0,) * (3 + 2 * KEPT),
     respond=respond,
+    flow=Flow(flow, (0, 1), ("reading", "slope"), ("N", "N/s")),
     statement="the force signal lags behind the force",
     tell_tale="the loop is reversed: unloading reads higher than loading",
     imitators=("inertia", "viscous_damping", "viscoelastic_relaxation"),

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Flow, Instant, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -53,6 +53,19 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     if sudden != 0.0:
         added -= sudden * (g1 + g2 + g3 + g4 + g5) * elastic
     return signal + added, (elastic, h1, h2, h3, h4, h5)
+
+
+def flow(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt = (F_elastic - q_i) / tau_i."""
+    g1, tau1, g2, tau2, g3, tau3, sudden, g4, tau4, g5, tau5 = values
+    elastic = instant.elastic_force
+    _, q1, q2, q3, q4, q5 = state
+    if instant.first:
+        added = -sudden * (g1 + g2 + g3 + g4 + g5) * elastic
+        return signal + added, (0.0, elastic, elastic, elastic, elastic, elastic)
+    h1, h2, h3, h4, h5 = elastic - q1, elastic - q2, elastic - q3, elastic - q4, elastic - q5
+    added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic
+    return signal + added, (0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5)
 
 
 VISCOELASTIC_RELAXATION = Effect(
@@ -188,6 +201,12 @@ VISCOELASTIC_RELAXATION = Effect(
     ),
     initial_state=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     respond=respond,
+    flow=Flow(
+        flow,
+        (1, 2, 3, 4, 5),
+        ("relaxed_1", "relaxed_2", "relaxed_3", "relaxed_4", "relaxed_5"),
+        ("N", "N", "N", "N", "N"),
+    ),
     statement="the force relaxes: it is higher after a fast deflection and decays while it is held",
     tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",
     imitators=("viscous_damping", "rate_independent_hysteresis", "pressure_leak", "recalibration"),

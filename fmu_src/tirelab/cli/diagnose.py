@@ -39,6 +39,7 @@ COLUMNS = 100
 )
 @out_option("diagnosis")
 @reading_options
+@click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")
 @click.option("--json", "as_json", is_flag=True, help="Print only diagnosis.json.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
@@ -83,6 +84,10 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
         raise TirelabError(
             "--each cannot be combined with --held-out or --json; read its summary.csv instead"
         )
+    if options["native"]:
+        raise TirelabError(
+            "--each writes Python FMUs only; build one with tirelab build --native --tire FILE"
+        )
     from rich.console import Console
 
     from ..batch.batch import Batch, diagnose_batch
@@ -114,6 +119,10 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
             reading=how,
             progress=progress,
         )
+    if options["native"]:
+        from ..fmu.native.pack import build_native_fmu
+
+        build_native_fmu(run.verdict.tire, folder / "native")
     if options["as_json"]:
         click.echo(json.dumps(run.content, indent=2, allow_nan=False))
         for warning in run.warnings:

@@ -10,10 +10,8 @@ import hashlib
 import importlib.metadata
 import importlib.util
 import re
-import shutil
 import sys
 import tempfile
-import uuid
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,14 +25,15 @@ from radialtire import TireModel, write_tire
 
 from ..errors import TirelabError
 from . import documentation
+from .archive import MODEL, content_guid, write_archive, xml_text
 from .loader import Compiler, compile_loader
 
 SHELL = "bicycle_tire_fmu"
 PHYSICS = "radialtire"
-MODEL = "BicycleTire"
 LINUX_BINARY = f"binaries/linux64/{MODEL}.so"
-EPOCH = (1980, 1, 1, 0, 0, 0)
-"""The date of every archive member: the earliest a ZIP can hold."""
+WRAPPER = "resources/pythonfmu"
+BUILD_TIME = ("__main__", "builder", "csvbuilder", "deploy", "osutil")
+"""Modules of pythonfmu that make FMUs and that no FMU needs."""
 
 
 @dataclass(frozen=True)
@@ -62,12 +61,11 @@ def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> Bui
 
         description = ElementTree.fromstring(members.pop("modelDescription.xml"))
         members |= documentation.pages(tire, description, _wrapper_license())
-        guid = _guid(members, description)
+        guid = content_guid(members, description)
         description.set("guid", guid)
-        ElementTree.indent(description)
-        text = ElementTree.tostring(description, encoding="UTF-8", xml_declaration=True)
-        members["modelDescription.xml"] = text + b"\n"
-        path = _write(members, folder)
+        members["resources/guid.txt"] = f"{guid}\n".encode()
+        members["modelDescription.xml"] = xml_text(description)
+        path = write_archive(members, folder / f"{MODEL}.fmu")
     problems = fmpy.validation.validate_fmu(str(path))
     if problems:
         raise TirelabError(f"{path} is not a valid FMU: {problems[0]}; report this with the tire file")
@@ -113,9 +111,16 @@ def _packed(tire: TireModel, work: Path) -> dict[str, bytes]:
         for module in [m for m in sys.modules if m not in modules_before and mark in m]:
             del sys.modules[module]
     with zipfile.ZipFile(archive) as packed:
-        return {
+        members = {
             n: packed.read(n) for n in packed.namelist() if "__pycache__" not in n and not n.endswith("/")
         }
+    for name in BUILD_TIME:
+        del members[f"{WRAPPER}/{name}.py"]
+    face = members[f"{WRAPPER}/__init__.py"].decode()
+    members[f"{WRAPPER}/__init__.py"] = re.sub(
+        rf"^from \.({'|'.join(BUILD_TIME)}) import .*\n", "", face, flags=re.MULTILINE
+    ).encode()
+    return members
 
 
 def _wrapper_license() -> str:
@@ -126,32 +131,3 @@ def _wrapper_license() -> str:
     raise TirelabError(
         "pythonfmu is installed without its licence, which the FMU must carry; install it again"
     )
-
-
-def _guid(members: dict[str, bytes], description: ElementTree.Element) -> str:
-    """A GUID that is the same for the same content, and another for any other."""
-    description.set("guid", "")
-    digest = hashlib.sha256(ElementTree.tostring(description))
-    for name in sorted(members):
-        digest.update(name.encode() + b"\0" + hashlib.sha256(members[name]).digest())
-    return "{" + str(uuid.UUID(bytes=digest.digest()[:16], version=5)) + "}"
-
-
-def _write(members: dict[str, bytes], folder: Path) -> Path:
-    """Write the archive under a temporary name and move it into place, so that nobody sees half an FMU."""
-    path = folder / f"{MODEL}.fmu"
-    partial = path.with_suffix(".partial")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-            for name in sorted(members):
-                info = zipfile.ZipInfo(name, EPOCH)
-                info.compress_type = zipfile.ZIP_DEFLATED
-                info.external_attr = 0o644 << 16
-                archive.writestr(info, members[name])
-        shutil.move(partial, path)
-    except OSError as error:
-        raise TirelabError(
-            f"{path} cannot be written ({error.strerror}); name another folder with --out"
-        ) from None
-    return path

@@ -26,11 +26,19 @@ Windows (x86-64)
 """
 
 
-def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: str) -> dict[str, bytes]:
+NATIVE_NEEDS = """\
+This FMU needs nothing but the C library of the system: glibc 2.17 or newer on Linux (x86-64, aarch64), Windows 10 or
+newer (x86-64), macOS 11 or newer (x86-64, arm64). For other platforms its sources compile with any C99 compiler:
+
+    cc -std=c99 -O2 -ffp-contract=off -shared -fPIC -o BicycleTire.so *.c -lm
+"""
+
+
+def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: str | None) -> dict[str, bytes]:
     """Return the documentation's files by their names in the FMU.
 
     description: the model description, whose variables the page lists
-    wrapper_license: the licence of pythonfmu, whose code the FMU carries
+    wrapper_license: the licence of pythonfmu, where the FMU carries its code; a native FMU has None
     """
     here = resources.files(__package__)
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
@@ -40,10 +48,13 @@ def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: st
         for variable in description.iterfind("ModelVariables/ScalarVariable")
     ]
     tirelab_license = (here / "license.txt").read_text(encoding="utf-8")
-    return {
-        "documentation/index.html": page.render(tire=tire, variables=variables).encode(),
-        "documentation/externalDependencies.txt": NEEDS.encode(),
+    native = wrapper_license is None
+    found = {
+        "documentation/index.html": page.render(tire=tire, variables=variables, native=native).encode(),
+        "documentation/externalDependencies.txt": (NATIVE_NEEDS if native else NEEDS).encode(),
         "documentation/licenses/license.txt": tirelab_license.encode(),
-        "documentation/licenses/pythonfmu.txt": wrapper_license.encode(),
         "model.png": (here / "model.png").read_bytes(),
     }
+    if wrapper_license is not None:
+        found["documentation/licenses/pythonfmu.txt"] = wrapper_license.encode()
+    return found

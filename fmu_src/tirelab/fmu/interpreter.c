@@ -21,7 +21,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define OLDEST 9 /* Python 3.9: the first with all of PYTHON_API; said in words in open_python, too */
+#define OLDEST 10 /* Python 3.10: the first that the tire runs on; said in words in open_python, too */
 #define NEWEST 15
 
 struct python python;
@@ -83,9 +83,42 @@ static int open_python(const char *path)
     int fit = library && version(library);
     if (fit && dlopen(path, RTLD_NOW | RTLD_GLOBAL))
         return 1;
-    note(" (%s)", library && !fit ? "not Python 3.9 or newer" : dlerror());
+    note(" (%s)", library && !fit ? "not Python 3.10 or newer" : dlerror());
     if (library)
         dlclose(library);
+    return 0;
+}
+
+/* Opens the shared library of a Python program by its place, PREFIX/lib beside PREFIX/bin/python3.x, if it is there. */
+static int open_beside(const char *program)
+{
+    char real[PATH_MAX], path[PATH_MAX + 300], name[256];
+    char *slash;
+    if (access(program, X_OK) || !realpath(program, real) || !(slash = strrchr(real, '/')))
+        return 0;
+    snprintf(name, sizeof name, "lib%s.so.1.0", slash + 1);
+    *slash = 0;
+    if (strncmp(name, "libpython3.", 11) || !(slash = strrchr(real, '/')) || strcmp(slash, "/bin"))
+        return 0;
+    *slash = 0;
+    snprintf(path, sizeof path, "%s/lib/%s", real, name);
+    if (!access(path, R_OK))
+        return open_python(path);
+    /* Debian keeps it in a folder of the architecture, which the linker knows. */
+    return !strcmp(real, "/usr") && open_python(name);
+}
+
+/* The same for every python3 on PATH, in turn: a second interpreter that could be asked takes a while to start. */
+static int open_on_path(char program[PATH_MAX])
+{
+    const char *folders = getenv("PATH");
+    for (size_t length; folders && *folders; folders += length + (folders[length] == ':')) {
+        length = strcspn(folders, ":");
+        if (length && snprintf(program, PATH_MAX, "%.*s/python3", (int)length, folders) < PATH_MAX
+            && open_beside(program))
+            return 1;
+    }
+    *program = 0;
     return 0;
 }
 
@@ -138,9 +171,13 @@ static int find_python(char program[PATH_MAX])
     note("TIRELAB_LIBPYTHON%s%s", chosen && *chosen ? "=" : " (not set)", chosen ? chosen : "");
     if (chosen && *chosen)
         return open_python(chosen);
-    if (getenv("VIRTUAL_ENV") && ask_python("\"$VIRTUAL_ENV/bin/python\"", program))
+    const char *environment = getenv("VIRTUAL_ENV");
+    if (environment && snprintf(program, PATH_MAX, "%s/bin/python", environment) < PATH_MAX && open_beside(program))
         return 1;
-    if (ask_python("python3", program) || ask_python("python", program))
+    *program = 0;
+    if (environment && ask_python("\"$VIRTUAL_ENV/bin/python\"", program))
+        return 1;
+    if (open_on_path(program) || ask_python("python3", program) || ask_python("python", program))
         return 1;
     note(", the system's libpython3.%d to 3.%d", OLDEST, NEWEST);
     for (int minor = NEWEST; minor >= OLDEST; minor--) {

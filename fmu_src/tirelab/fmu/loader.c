@@ -9,6 +9,7 @@
  */
 #define _GNU_SOURCE
 #include "fmi2.h"
+#include "fmi2_states.h"
 #include "interpreter.h"
 #include "make_slave.h"
 
@@ -36,7 +37,8 @@ typedef struct {
     Object *messages; /* its list of messages */
     Object *values;   /* what it returned last: strings handed out live in there */
     References set, got;
-    double reached;   /* the end of the last step that was made */
+    double reached;   /* the end of the last step that was made, the start where there was none */
+    State state;
 } Instance;
 
 static Object *names; /* what make_slave.h defines */
@@ -89,7 +91,10 @@ static Status fail(const Instance *self, String where)
     return ERROR;
 }
 
-/* Makes a status of a result (False: Discard, an exception: Error) and hands on the messages of the slave. */
+/*
+ * Makes a status of a result and hands on the messages of the slave. An exception is an Error; False is a Discard, or an
+ * Error where a message says so.
+ */
 static Status conclude(const Instance *self, String where, Object *result)
 {
     Status status = OK;
@@ -102,9 +107,10 @@ static Status conclude(const Instance *self, String where, Object *result)
         Object *message = python.PyObject_CallFunction(part("take"), "(O)", self->messages);
         int grade;
         String category, text;
-        if (message && python.PyArg_ParseTuple(message, "izy", &grade, &category, &text))
+        if (message && python.PyArg_ParseTuple(message, "izy", &grade, &category, &text)) {
+            status = status == DISCARD && grade == ERROR ? ERROR : status;
             tell_outside(self, (Status)grade, category, text);
-        else
+        } else
             status = fail(self, "message");
         python.Py_DecRef(message);
     }
@@ -124,7 +130,8 @@ static int adopt(Instance *self, Object *slave)
     python.Py_DecRef(self->messages);
     self->slave = slave;
     self->messages = messages;
-    self->reached = NAN;
+    self->reached = 0;
+    self->state = INSTANTIATED;
     return 1;
 }
 
@@ -158,27 +165,41 @@ static Object *call(const Instance *self, Object **method, String name, Object *
 
 static Object *from_text(String text) { return python.PyUnicode_FromString(text ? text : ""); }
 
+/* Whether the standard allows a function now; told where it does not. */
+static int allowed(const Instance *self, int states, String function)
+{
+    char line[200];
+    if (!self || self->state & states)
+        return self != NULL;
+    snprintf(line, sizeof line, "fmi2%s is not allowed in the state \"%s\"", function, state_name(self->state));
+    tell(self, ERROR, NULL, line);
+    return 0;
+}
+
 /* The frame of every function of an instance. */
-#define ENTER \
+#define ENTER(states, function) \
     Instance *self = c; \
     int held; \
-    if (!self || !take_python(&held)) \
+    if (!allowed(self, states, function) || !take_python(&held)) \
         return ERROR;
 #define LEAVE(where, result) \
     Status status = conclude(self, where, result); \
     leave_python(held); \
     return status;
-#define METHOD(Name, name) \
+#define METHOD(Name, name, next) \
     EXPORT Status fmi2##Name(void *c) \
     { \
-        ENTER \
-        LEAVE(name, python.PyObject_CallMethod(self->slave, name, NULL)) \
+        ENTER(MAY_##Name, #Name) \
+        Status status = conclude(self, name, python.PyObject_CallMethod(self->slave, name, NULL)); \
+        leave_python(held); \
+        self->state = status == OK ? next : self->state; \
+        return status; \
     }
-#define GET_SET(Name, name, type, to_python, from_python) \
+#define GET_SET(Name, name, type, to_python, from_python, may_set) \
     EXPORT Status fmi2Set##Name(void *c, const Reference v[], size_t n, const type x[]) \
     { \
         static Object *method; \
-        ENTER \
+        ENTER(may_set, "Set" #Name) \
         Object *values = python.PyTuple_New((ptrdiff_t)n); \
         for (size_t i = 0; i < n; i++) \
             python.PyTuple_SetItem(values, (ptrdiff_t)i, to_python(x[i])); \
@@ -187,7 +208,7 @@ static Object *from_text(String text) { return python.PyUnicode_FromString(text 
     EXPORT Status fmi2Get##Name(void *c, const Reference v[], size_t n, type x[]) \
     { \
         static Object *method; \
-        ENTER \
+        ENTER(MAY_Get, "Get" #Name) \
         Object *values = call(self, &method, "get_" name, tuple_of(&self->got, v, n), NULL), *value; \
         for (size_t i = 0; values && i < n && (value = python.PySequence_GetItem(values, (ptrdiff_t)i)); i++) { \
             x[i] = (type)from_python(value); \
@@ -197,41 +218,38 @@ static Object *from_text(String text) { return python.PyUnicode_FromString(text 
         python.Py_IncRef(self->values = values); \
         LEAVE("get_" name, values) \
     }
-#define UNSUPPORTED(Name) /* whatever its other arguments */ \
+#define UNSUPPORTED(Name, states) /* whatever its other arguments */ \
     EXPORT Status fmi2##Name(void *c) \
     { \
-        if (c) \
+        if (allowed(c, states, #Name)) \
             tell(c, ERROR, NULL, "fmi2" #Name " is not supported"); \
         return ERROR; \
     }
 
 EXPORT String fmi2GetTypesPlatform(void) { return "default"; }
 EXPORT String fmi2GetVersion(void) { return "2.0"; }
-METHOD(EnterInitializationMode, "enter_initialization_mode")
-METHOD(ExitInitializationMode, "exit_initialization_mode")
-METHOD(Terminate, "terminate")
-GET_SET(Real, "real", double, python.PyFloat_FromDouble, python.PyFloat_AsDouble)
-GET_SET(Integer, "integer", int, python.PyLong_FromLong, python.PyLong_AsLong)
-GET_SET(Boolean, "boolean", int, python.PyBool_FromLong, python.PyObject_IsTrue)
-GET_SET(String, "string", String, from_text, python.PyUnicode_AsUTF8)
-UNSUPPORTED(GetDirectionalDerivative)
-UNSUPPORTED(SetRealInputDerivatives)
-UNSUPPORTED(GetRealOutputDerivatives)
-UNSUPPORTED(CancelStep)
-UNSUPPORTED(GetStatus)
-UNSUPPORTED(GetIntegerStatus)
-UNSUPPORTED(GetStringStatus)
+METHOD(EnterInitializationMode, "enter_initialization_mode", INITIALIZATION)
+METHOD(ExitInitializationMode, "exit_initialization_mode", STEP_COMPLETE)
+METHOD(Terminate, "terminate", TERMINATED)
+GET_SET(Real, "real", double, python.PyFloat_FromDouble, python.PyFloat_AsDouble, MAY_SetReal)
+GET_SET(Integer, "integer", int, python.PyLong_FromLong, python.PyLong_AsLong, MAY_Set)
+GET_SET(Boolean, "boolean", int, python.PyBool_FromLong, python.PyObject_IsTrue, MAY_Set)
+GET_SET(String, "string", String, from_text, python.PyUnicode_AsUTF8, MAY_Set)
+UNSUPPORTED(GetDirectionalDerivative, MAY_GetDirectionalDerivative)
+UNSUPPORTED(SetRealInputDerivatives, MAY_SetRealInputDerivatives)
+UNSUPPORTED(GetRealOutputDerivatives, MAY_GetRealOutputDerivatives)
+UNSUPPORTED(CancelStep, MAY_CancelStep)
 
 /* Makes the slave. */
-static Status instantiate(Instance *self, String location, int visible)
+static Status instantiate(Instance *self, String guid, String location, int visible)
 {
     Dl_info library;
     Object *defined = names ? NULL : python.PyDict_New();
     if (defined && python.PyRun_String(PYTHON_PART, 257 /* Py_file_input */, defined, defined))
         names = defined;
     dladdr(&names, &library);
-    Object *slave = names ? python.PyObject_CallFunction(part("make"), "(yyyi)", self->name, location,
-                                                         library.dli_fname, visible) : NULL;
+    Object *slave = names ? python.PyObject_CallFunction(part("make"), "(yyyyi)", self->name, guid,
+                                                         location, library.dli_fname, visible) : NULL;
     if (!adopt(self, slave))
         return fail(self, "fmi2Instantiate");
     return conclude(self, "fmi2Instantiate", python.PyBool_FromLong(1));
@@ -244,7 +262,6 @@ EXPORT void *fmi2Instantiate(String name, int type, String guid, String location
     int held;
     struct sigaction interrupt;
     Instance *self = host ? calloc(1, sizeof *self) : NULL;
-    (void)guid;
     if (!self || !(self->name = strdup(name ? name : ""))) {
         free(self);
         return NULL;
@@ -259,7 +276,7 @@ EXPORT void *fmi2Instantiate(String name, int type, String guid, String location
     else if (!take_python(&held))
         tell(self, ERROR, NULL, "the Python interpreter of this process has ended");
     else {
-        instantiate(self, location, visible);
+        instantiate(self, guid, location, visible);
         leave_python(held);
     }
     sigaction(SIGINT, &interrupt, NULL); /* up to Python 3.10 the module signal takes Ctrl-C when it is imported */
@@ -304,14 +321,15 @@ static Object *optional(int given, double value)
 
 EXPORT Status fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, double start, int has_stop, double stop)
 {
-    ENTER
+    ENTER(MAY_SetupExperiment, "SetupExperiment")
+    self->reached = start;
     LEAVE("setup_experiment", python.PyObject_CallMethod(self->slave, "setup_experiment", "(dNN)", start,
                                                          optional(has_stop, stop), optional(has_tolerance, tolerance)))
 }
 
 EXPORT Status fmi2Reset(void *c)
 {
-    ENTER
+    ENTER(MAY_Reset, "Reset")
     Object *slave = python.PyObject_CallFunction(part("make_again"), "(O)", self->slave);
     LEAVE("fmi2Reset", adopt(self, slave) ? python.PyBool_FromLong(1) : NULL)
 }
@@ -320,7 +338,7 @@ EXPORT Status fmi2DoStep(void *c, double time, double step, int no_rewind)
 {
     static Object *method;
     (void)no_rewind;
-    ENTER
+    ENTER(MAY_DoStep, "DoStep")
     Object *start = python.PyFloat_FromDouble(time);
     Object *result = call(self, &method, "do_step", start, python.PyFloat_FromDouble(step));
     python.Py_DecRef(start);
@@ -336,18 +354,23 @@ EXPORT Status fmi2DoStep(void *c, double time, double step, int no_rewind)
     EXPORT Status fmi2Get##Name##Status(void *c, int kind, type *x) \
     { \
         Instance *self = c; \
-        if (!self || kind != (known)) \
-            return self ? DISCARD : ERROR; \
+        if (!allowed(self, MAY_GetStatus, "Get" #Name "Status")) \
+            return ERROR; \
+        if (kind != (known)) \
+            return DISCARD; \
         *x = value; \
         return OK; \
     }
+GET_STATUS(, Status, -1, OK) /* none of these can be retrieved: fmi2Discard */
+GET_STATUS(Integer, int, -1, 0)
+GET_STATUS(String, String, -1, "")
 GET_STATUS(Real, double, LAST_SUCCESSFUL_TIME, self->reached)
-GET_STATUS(Boolean, int, TERMINATED, 0)
+GET_STATUS(Boolean, int, HAS_TERMINATED, 0)
 
 EXPORT Status fmi2GetFMUstate(void *c, void **state)
 {
-    ENTER
-    Object *copy = python.PyObject_CallMethod(self->slave, "_get_fmu_state", NULL);
+    ENTER(MAY_FMUstate, "GetFMUstate")
+    Object *copy = python.PyObject_CallFunction(part("save"), "(Oid)", self->slave, (int)self->state, self->reached);
     if (copy) {
         python.Py_DecRef(*state); /* by the standard NULL or a state handed out before */
         python.Py_IncRef(*state = copy);
@@ -357,13 +380,17 @@ EXPORT Status fmi2GetFMUstate(void *c, void **state)
 
 EXPORT Status fmi2SetFMUstate(void *c, void *state)
 {
-    ENTER
-    LEAVE("_set_fmu_state", python.PyObject_CallMethod(self->slave, "_set_fmu_state", "(O)", state))
+    ENTER(MAY_FMUstate, "SetFMUstate")
+    int stage;
+    Object *found = state ? python.PyObject_CallFunction(part("restore"), "(OO)", self->slave, state) : NULL;
+    if (found && python.PyArg_ParseTuple(found, "id", &stage, &self->reached))
+        self->state = (State)stage;
+    LEAVE("_set_fmu_state", found)
 }
 
 EXPORT Status fmi2FreeFMUstate(void *c, void **state)
 {
-    ENTER
+    ENTER(MAY_FMUstate, "FreeFMUstate")
     if (state) {
         python.Py_DecRef(*state);
         *state = NULL;
@@ -377,7 +404,7 @@ static Status serialize(Instance *c, void *state, char bytes[], size_t *size)
 {
     char *data = NULL;
     ptrdiff_t length = 0;
-    ENTER
+    ENTER(MAY_FMUstate, "SerializeFMUstate")
     Object *text = python.PyObject_CallMethod(self->slave, "_fmu_state_to_bytes", "(O)", state);
     if (text && !python.PyBytes_AsStringAndSize(text, &data, &length) && bytes)
         memcpy(bytes, data, (size_t)length < *size ? (size_t)length : *size);
@@ -396,7 +423,7 @@ EXPORT Status fmi2SerializeFMUstate(void *c, void *state, char bytes[], size_t s
 
 EXPORT Status fmi2DeSerializeFMUstate(void *c, const char bytes[], size_t size, void **state)
 {
-    ENTER
+    ENTER(MAY_FMUstate, "DeSerializeFMUstate")
     Object *copy = python.PyObject_CallMethod(self->slave, "_fmu_state_from_bytes", "(N)",
                                               python.PyBytes_FromStringAndSize(bytes, (ptrdiff_t)size));
     python.Py_IncRef(*state = copy);

@@ -6,6 +6,8 @@
  * RESOURCES "-" hands over NULL, GUID is handed over as it is, the three value references are of Real variables.
  * Modes: run VALUE...          one full life, twice, closing and opening the library in between; prints the outputs
  *        bad                   a step with NaN, then one with a good value, with logging off
+ *        retry                 a step with NaN, again and again as long as it is discarded; prints the last status
+ *        first                 seconds of the first instantiation
  *        silent                one step without a logger
  *        threads N             N threads, each with instances of its own, all at once, two generations of threads
  *        relay N               one instance handed through N threads, one after another, which then end
@@ -14,6 +16,9 @@
  *        steps N               N steps, with get and set of states
  *        bench N LIBRARY       against another FMU, in short turns, as the pace of a machine varies: the least seconds
  *                              for one chain of set (2 values), step and get (1 value) of both, the median ratio
+ *        pace N                nanoseconds of a chain of set, step and get, the least of many turns of N
+ *        lives N               nanoseconds of an instance made and freed, the least of turns of N, and kB lost over all
+ *        crowd N M             M instances in two threads, N steps in all; nanoseconds of a step
  *        two LIBRARY RESOURCES GUID   a second FMU beside the first: made at the same time, stepped in turn, closed
  *                              by threads that end after that; prints the outputs
  *        elsewhere             instantiate in a thread that ends, exit in another one, and free the instance after that
@@ -182,11 +187,12 @@ static void *many_lives(void *unit)
 }
 
 static const Unit *relay_unit;
+static long relayed;
 static void *carry(void *instance)
 {
     if (!instance)
         return make(relay_unit, &callbacks);
-    if (!(step(relay_unit, instance, 0, 0.01) > 0))
+    if (!(step(relay_unit, instance, relayed++, 0.01) > 0))
         fail("no force after the hand-over");
     return instance;
 }
@@ -240,10 +246,10 @@ static double now(void)
 }
 
 /* Seconds for one chain of set, step and get. */
-static double chain(const Unit *unit, void *instance, long count)
+static double chain(const Unit *unit, void *instance, long first, long count)
 {
     double start = now();
-    for (long i = 0; i < count; i++)
+    for (long i = first; i < first + count; i++)
         step(unit, instance, i, 1e-3 * (double)(1 + i % 20));
     return (now() - start) / (double)count;
 }
@@ -251,6 +257,26 @@ static double chain(const Unit *unit, void *instance, long count)
 static int compare(const void *one, const void *other)
 {
     return (*(const double *)one > *(const double *)other) - (*(const double *)one < *(const double *)other);
+}
+
+static const Unit *crowd_unit;
+static long crowd_size, crowd_steps;
+
+/* Half of the instances and half of the steps, each instance in turn. */
+static void *half_a_crowd(void *unused)
+{
+    const long size = crowd_size / 2, rounds = crowd_steps / crowd_size;
+    void **instances = malloc(sizeof(void *) * (size_t)size);
+    (void)unused;
+    for (long i = 0; i < size; i++)
+        instances[i] = make(crowd_unit, &callbacks);
+    for (long round = 0; round < rounds; round++)
+        for (long i = 0; i < size; i++)
+            step(crowd_unit, instances[i], round, 0.012 + 1e-6 * (double)i);
+    for (long i = 0; i < size; i++)
+        crowd_unit->free_instance(instances[i]);
+    free(instances);
+    return NULL;
 }
 
 int main(int argc, char **argv)
@@ -273,6 +299,23 @@ int main(int argc, char **argv)
         check(unit.set(instance, reference, 2, values), "fmi2SetReal");
         printf("%d\n", unit.step(instance, 0, WIDTH, 1));
         printf("%.17g\n", step(&unit, instance, 0, 0.01));
+        unit.free_instance(instance);
+    } else if (!strcmp(mode, "retry")) {
+        void *instance = make(&unit, &callbacks);
+        double values[2] = {NAN, INFINITY};
+        int status = 2;
+        check(unit.set(instance, reference, 2, values), "fmi2SetReal");
+        while (status == 2) /* fmi2Discard */
+            status = unit.step(instance, 0, WIDTH, 1);
+        printf("%d\n", status);
+        check(unit.reset(instance), "fmi2Reset");
+        unit.free_instance(instance);
+    } else if (!strcmp(mode, "first")) {
+        double start = now();
+        void *instance = unit.instantiate("tire", 1, unit.guid, unit.resources, &callbacks, 0, 0);
+        printf("%.4f\n", now() - start);
+        if (!instance)
+            fail("fmi2Instantiate returned NULL");
         unit.free_instance(instance);
     } else if (!strcmp(mode, "silent")) {
         void *instance = make(&unit, &silent);
@@ -330,7 +373,8 @@ int main(int argc, char **argv)
         void *one = make(&unit, &callbacks), *two = make(&other, &callbacks);
         double best = INFINITY, best_other = INFINITY, ratios[ROUNDS];
         for (int i = 0; i < ROUNDS; i++) {
-            double time = chain(&unit, one, count / SHARE), other_time = chain(&other, two, count);
+            double time = chain(&unit, one, i * (count / SHARE), count / SHARE);
+            double other_time = chain(&other, two, i * count, count);
             best = fmin(best, time);
             best_other = fmin(best_other, other_time);
             ratios[i] = time / other_time;
@@ -339,6 +383,40 @@ int main(int argc, char **argv)
         printf("%.3e\n%.3e\n%.1f\n", best, best_other, ratios[ROUNDS / 2]);
         unit.free_instance(one);
         other.free_instance(two);
+    } else if (!strcmp(mode, "pace")) {
+        void *instance = make(&unit, &callbacks);
+        double best = INFINITY;
+        long number = 0;
+        for (int turn = 0; turn < 31; turn++) {
+            double start = now();
+            for (long i = 0; i < count; i++, number++)
+                step(&unit, instance, number, 0.012 + 0.011 * sin(0.03 * (double)number));
+            best = fmin(best, (now() - start) / (double)count);
+        }
+        printf("%.1f\n", 1e9 * best);
+        unit.free_instance(instance);
+    } else if (!strcmp(mode, "lives")) {
+        double best = INFINITY;
+        long before = 0;
+        for (int turn = 0; turn < 10; turn++) {
+            double start = now();
+            for (long i = 0; i < count; i++)
+                unit.free_instance(unit.instantiate("tire", 1, unit.guid, unit.resources, &callbacks, 0, 0));
+            best = fmin(best, (now() - start) / (double)count);
+            before = turn ? before : resident();
+        }
+        printf("%.0f\n%ld\n", 1e9 * best, resident() - before);
+    } else if (!strcmp(mode, "crowd")) {
+        pthread_t threads[2];
+        crowd_unit = &unit;
+        crowd_size = argc > 7 ? atol(argv[7]) : 1000;
+        crowd_steps = count;
+        double start = now();
+        for (int i = 0; i < 2; i++)
+            pthread_create(threads + i, NULL, half_a_crowd, NULL);
+        for (int i = 0; i < 2; i++)
+            pthread_join(threads[i], NULL);
+        printf("%.1f\n", 1e9 * (now() - start) / (double)count);
     } else if (!strcmp(mode, "two") && argc == 9) {
         Unit other = {.path = argv[6], .resources = argv[7], .guid = argv[8]};
         pthread_t threads[2];

@@ -3,10 +3,12 @@
 import os
 import shutil
 import subprocess
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
+from xml.etree import ElementTree
 
 import pytest
 import pythonfmu
@@ -32,6 +34,19 @@ def unpacked(folder: Path, library: Path) -> Path:
     return folder
 
 
+def unpacked_archive(fmu: Path, folder: Path) -> Path:
+    """Unpack an FMU into a folder."""
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(folder)
+    return folder
+
+
+def guid_of(fmu: Path) -> str:
+    """The GUID of an unpacked FMU; that of the slave plain_tire has no description."""
+    description = fmu / "modelDescription.xml"
+    return ElementTree.parse(description).getroot().get("guid", "") if description.is_file() else GUID
+
+
 def numbers(text: str) -> list[float]:
     """The numbers that the host printed, one a line."""
     return [float(line) for line in text.splitlines()]
@@ -50,7 +65,7 @@ class Bench:
         """The words that run the C host on an FMU."""
         fmu = fmu or self.fmu
         uri = uri or f"file://{quote(str(fmu / 'resources'))}"
-        return [str(self.host), str(fmu / LIBRARY), uri, GUID, "0,1,2", *map(str, mode)]
+        return [str(self.host), str(fmu / LIBRARY), uri, guid_of(fmu), "0,1,2", *map(str, mode)]
 
     def attempt(
         self,

@@ -12,9 +12,15 @@ from xml.etree import ElementTree
 
 import fmpy.validation
 import pytest
-from radialtire import CATALOGUE, PowerLaw, TireModel, read_tire
+from radialtire import CATALOGUE, Effect, PowerLaw, TireModel, read_tire
+from radialtire.effect import PLACES
 from tirelab.errors import TirelabError
 from tirelab.fmu.build import build_fmu
+
+
+def in_order() -> list[Effect]:
+    """Every effect, in the order of the signal's path."""
+    return sorted(CATALOGUE.values(), key=lambda effect: PLACES.index(effect.place))
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +41,7 @@ def test_it_is_valid_fmi_2(article_fmu: Path) -> None:
 
 def test_capabilities(description: ElementTree.Element) -> None:
     assert description.get("fmiVersion") == "2.0"
-    assert description.get("modelName") == "BicycleTire"
+    assert description.get("modelName") == "Hull, Wang & Moore 1996"
     simulation = description.find("CoSimulation")
     assert simulation is not None
     for capability, value in {
@@ -69,6 +75,78 @@ def test_variables_have_units_and_meaning(description: ElementTree.Element) -> N
     assert {
         v[0].get("unit") for v in description.iterfind("ModelVariables/*") if v[0].get("unit")
     } <= declared
+
+
+def test_start_values_are_the_numbers_themselves(tmp_path: Path) -> None:
+    """0.1 + 0.2 needs 17 digits."""
+    built = build_fmu(TireModel(law=PowerLaw(718.5, 0.1 + 0.2)), tmp_path, with_loader=False)
+    with zipfile.ZipFile(built.path) as archive:
+        description = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    assert float(variable(description, "law.exponent")["start"]) == 0.1 + 0.2
+
+
+def test_units_are_products_of_si_units(tmp_path: Path) -> None:
+    """Every declared unit says its base units; N/cm^B has none, so it stands in the description only."""
+    effects = tuple((effect, effect.nominal) for effect in in_order())
+    with zipfile.ZipFile(build_fmu(TireModel(effects=effects), tmp_path, with_loader=False).path) as archive:
+        description = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    units = {unit.get("name"): unit.find("BaseUnit") for unit in description.iterfind("UnitDefinitions/Unit")}
+    assert None not in units.values()
+    assert units["s/m"].attrib == {"s": "1", "m": "-1"}  # type: ignore[union-attr]
+    coefficient = variable(description, "law.flat_coefficient")
+    assert "unit" not in coefficient
+    assert coefficient["description"].endswith("[N/cm^B]")
+
+
+def test_each_tire_says_who_it_is(tmp_path: Path, article_fmu: Path) -> None:
+    """Name, description and version are the tire's: those of two tires differ, those of one do not."""
+    said = []
+    for number, tire in enumerate(
+        (
+            TireModel(),
+            TireModel(law=PowerLaw(), name="Wang & Hull, off road", source="quoted"),
+            TireModel(law=PowerLaw(720.0), name="Wang & Hull, off road", source="quoted"),
+        )
+    ):
+        path = build_fmu(tire, tmp_path / str(number), with_loader=False).path
+        with zipfile.ZipFile(path) as archive:
+            root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+        said.append((root.get("modelName"), root.get("description"), root.get("version")))
+        assert said[-1][0] == tire.name
+        assert tire.name in str(said[-1][1])
+        assert tire.source in str(said[-1][1])
+    assert len({version for _, _, version in said}) == 3
+    with zipfile.ZipFile(article_fmu) as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    assert root.get("version") == said[0][2]
+
+
+def test_the_default_step_is_the_one_that_the_text_recommends(
+    description: ElementTree.Element, article_fmu: Path
+) -> None:
+    experiment = description.find("DefaultExperiment")
+    assert experiment is not None
+    with zipfile.ZipFile(article_fmu) as archive:
+        page = archive.read("documentation/index.html").decode()
+    assert "Take h &le; 0.2 ms for a wheel" in page
+    assert float(str(experiment.get("stepSize"))) == 0.2e-3
+
+
+def test_what_makes_fmus_is_not_packed_into_them(article_fmu: Path) -> None:
+    with zipfile.ZipFile(article_fmu) as archive:
+        packed = {name.rpartition("/")[2] for name in archive.namelist() if "/pythonfmu/" in name}
+        face = archive.read("resources/pythonfmu/__init__.py").decode()
+    assert packed == {
+        "__init__.py",
+        "_version.py",
+        "default_experiment.py",
+        "enums.py",
+        "fmi2slave.py",
+        "logmsg.py",
+        "variables.py",
+    }
+    assert "builder" not in face
+    assert "from .fmi2slave import Fmi2Slave" in face
 
 
 def test_every_constant_of_the_law_is_a_parameter(description: ElementTree.Element) -> None:
@@ -151,7 +229,12 @@ def test_another_tire_has_another_guid_and_differs_by_data_only(article_fmu: Pat
     with zipfile.ZipFile(article_fmu) as a, zipfile.ZipFile(other) as b:
         assert a.namelist() == b.namelist()
         changed = {name for name in a.namelist() if a.read(name) != b.read(name)}
-    assert changed == {"modelDescription.xml", "documentation/index.html", "resources/tire.json"}
+    assert changed == {
+        "modelDescription.xml",
+        "documentation/index.html",
+        "resources/guid.txt",
+        "resources/tire.json",
+    }
 
 
 def test_the_fmu_holds_the_tire_it_was_built_from(article_fmu: Path, tmp_path: Path) -> None:

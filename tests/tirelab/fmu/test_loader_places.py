@@ -91,7 +91,7 @@ def test_a_library_that_is_named_explicitly(bench: Bench, tmp_path: Path) -> Non
 
 
 REFUSED = r"\[tire, 3, logStatusError\] no usable Python library among "
-ADVICE = r"; install Python 3\.9 or newer .*, or set TIRELAB_LIBPYTHON to .*\n"
+ADVICE = r"; install Python 3\.10 or newer .*, or set TIRELAB_LIBPYTHON to .*\n"
 
 
 def test_a_named_library_that_is_none_is_refused(bench: Bench) -> None:
@@ -105,7 +105,7 @@ def test_without_any_python_one_sentence_tells_what_was_tried(bench: Bench, tmp_
     program = tmp_path / "python3"
     program.write_text("#!/bin/sh\necho; echo /opt/static/python3\n")
     program.chmod(0o755)
-    for minor in range(9, 16):
+    for minor in range(10, 16):
         (tmp_path / f"libpython3.{minor}.so.1.0").write_text("no library")
     folder = str(tmp_path)
     environment = {
@@ -119,6 +119,6 @@ def test_without_any_python_one_sentence_tells_what_was_tried(bench: Bench, tmp_
     tried = (
         r'TIRELAB_LIBPYTHON \(not set\), "\$VIRTUAL_ENV/bin/python" \(none, or too old\), '
         r"python3 \(without shared library: /opt/static/python3\), "
-        r"python \(none, or too old\), the system's libpython3\.9 to 3\.15"
+        r"python \(none, or too old\), the system's libpython3\.10 to 3\.15"
     )
     assert re.fullmatch(REFUSED + tried + ADVICE, result.stdout)

@@ -1,0 +1,56 @@
+"""An FMU as an archive: the same bytes for the same content, and a GUID made from it."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import uuid
+import zipfile
+from pathlib import Path
+from xml.etree import ElementTree
+
+from ..errors import TirelabError
+
+MODEL = "BicycleTire"
+"""The model identifier: the name of the binaries."""
+
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The date of every archive member: the earliest a ZIP can hold."""
+
+
+def content_guid(members: dict[str, bytes], description: ElementTree.Element, key: str = "guid") -> str:
+    """Return a GUID that is the same for the same content, and another for any other.
+
+    key: the attribute of the description that will hold it
+    """
+    description.set(key, "")
+    digest = hashlib.sha256(ElementTree.tostring(description))
+    for name in sorted(members):
+        digest.update(name.encode() + b"\0" + hashlib.sha256(members[name]).digest())
+    return "{" + str(uuid.UUID(bytes=digest.digest()[:16], version=5)) + "}"
+
+
+def xml_text(root: ElementTree.Element) -> bytes:
+    """Return a document as it stands in the archive."""
+    ElementTree.indent(root)
+    text: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return text + b"\n"
+
+
+def write_archive(members: dict[str, bytes], path: Path) -> Path:
+    """Write the archive under a temporary name and move it into place, so that nobody sees half an FMU."""
+    partial = path.with_suffix(".partial")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+            for name in sorted(members):
+                info = zipfile.ZipInfo(name, EPOCH)
+                info.compress_type = zipfile.ZIP_DEFLATED
+                info.external_attr = 0o644 << 16
+                archive.writestr(info, members[name])
+        shutil.move(partial, path)
+    except OSError as error:
+        raise TirelabError(
+            f"{path} cannot be written ({error.strerror}); name another folder with --out"
+        ) from None
+    return path

@@ -1,0 +1,1 @@
+"""The native FMU: the tire's step translated to C, the FMI functions around it, and binaries for five platforms."""

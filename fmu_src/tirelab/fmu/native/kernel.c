@@ -1,0 +1,1493 @@
+/* The step of a bicycle tire. Made from the Python of radialtire; change that, not this. */
+#include "kernel.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+static const double AHEAD = 1e-06;
+static const double APART = 1000000.0;
+static const double CM_PER_M = 100.0;
+static const double DEAD_ZONE = 0.0001;
+static const double DEPTH = 0.01;
+static const double EXACT = 1e-12;
+static const double FAR = 40.0;
+static const double FINEST = 1e-06;
+static const double FLAT_COEFFICIENT = 550.9;
+static const double FLAT_EXPONENT = 1.422;
+static const double FLAT_RADIUS = 100000.0;
+static const double HULL1996 = 0.0;
+static const double JERK_MAX = 32.0;
+static const double LEAST_CURVATURE = 0.05;
+static const double LOST_MAX = 0.9;
+static const double NEAR = 1e-09;
+static const double NEARLY_CRITICAL = 1e-05;
+static const double NO_LIMIT = 1000000000.0;
+static const double NO_TIME = 1e-09;
+static const double PAUSE = 10.0;
+static const double POWER_LAW = 1.0;
+static const double PRESS = 0.0001;
+static const double REFERENCE = 0.025;
+static const double RIDE = 10.0;
+static const double SHARP = 10000000.0;
+static const double SMOOTH = 100.0;
+static const double SNAP_MAX = 128.0;
+static const double SPEED = 0.1;
+static const double SWITCH = 0.02;
+static const double TAIL = 4.0;
+static const double TANGENT_STEP = 1e-07;
+static const double UNIT = 0.001;
+static const double UNKNOWN = 10000.0;
+static const double WHEEL_RADIUS = 0.33;
+
+typedef struct { double v[14]; } Vector14;
+typedef struct { Vector14 v[4]; } Vector14x4;
+typedef struct { double v[4]; } Vector4;
+typedef struct { Vector14x4 a; Vector4 b; double c; } Tuple3;
+typedef struct { double a; double b; bool c; } Tuple4;
+typedef struct { double v[3]; } Vector3;
+typedef struct { double time; double interval; bool first; double deflection; double rate; double acceleration; double coefficient; double exponent; double elastic_force; double curvature; } Instant;
+typedef struct { char unused; } Nothing;
+typedef struct { double a; Nothing b; } Tuple8;
+typedef struct { double v[1]; } Vector1;
+typedef struct { double a; Vector3 b; } Tuple12;
+typedef struct { double v[7]; } Vector7;
+typedef struct { double v[8]; } Vector8;
+typedef struct { double a; Vector8 b; } Tuple15;
+typedef struct { double v[6]; } Vector6;
+typedef struct { double a; Vector6 b; } Tuple17;
+typedef struct { double v[11]; } Vector11;
+typedef struct { double v[16]; } Vector16;
+typedef struct { double v[32]; } Vector32;
+typedef struct { double a; Vector32 b; } Tuple21;
+typedef struct { double v[35]; } Vector35;
+typedef struct { double a; Vector35 b; } Tuple23;
+typedef struct { double v[10]; } Vector10;
+typedef struct { double v[18]; } Vector18;
+
+const double REST[STATES] = {0};
+
+/* min and max as Python has them, also with NaN. */
+static inline double lesser(double a, double b) { return b < a ? b : a; }
+static inline double greater(double a, double b) { return b > a ? b : a; }
+
+/* power_law.py: Return the radial force [N] of a tire compressed by `deflection` [m]. */
+double tire_elastic(double deflection, double coefficient, double exponent)
+{
+    if (deflection <= 0.0) {
+        return 0.0;
+    }
+    double result = coefficient * pow(CM_PER_M * deflection, exponent);
+    return result;
+}
+
+/* power_law.py: Return the tangent dF/dx [N/m] of `force` at `deflection` [m]: A B x^(B-1), 0 where the tire is not
+   loaded. */
+double tire_elastic_tangent(double deflection, double coefficient, double exponent)
+{
+    if (deflection <= 0.0) {
+        return 0.0;
+    }
+    double result = coefficient * exponent * pow(CM_PER_M * deflection, exponent - 1.0) * CM_PER_M;
+    return result;
+}
+
+/* tracking.py: Return the track after the first measurement [m]. */
+static Tuple3 tracking_begin(double deflection)
+{
+    Vector14 at = (Vector14){{deflection, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}};
+    return (Tuple3){(Vector14x4){{at, at, at, at}}, (Vector4){{0.25, 0.25, 0.25, 0.25}}, 0.0};
+}
+
+/* tracking.py: Return the motion in each mode at the second sample, from the difference v of the two. */
+static Vector14x4 tracking_second(double x, double v)
+{
+    double u = UNKNOWN;
+    Vector14 jerked = (Vector14){{x, v, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 2.0 + u, u, 0.0, u, 0.0, 0.0}};
+    Vector14 snapped = (Vector14){{x, v, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 2.0 + 2.0 * u, u, -u, u, 0.0, u}};
+    return (Vector14x4){{jerked, jerked, snapped, snapped}};
+}
+
+/* tracking.py: Return the motion predicted one interval ahead, which is r times the last one. */
+static Vector14 tracking_predicted(Vector14 moving, double r)
+{
+    double rr;
+    double rrr;
+    double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
+        p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
+        moving.v[11], p23 = moving.v[12], p33 = moving.v[13];
+    if (r != 1.0) {
+        rr = r * r;
+        rrr = rr * r;
+        v = v * r;
+        a = a * rr;
+        j = j * rrr;
+        p01 = p01 * r;
+        p02 = p02 * rr;
+        p03 = p03 * rrr;
+        p11 = p11 * rr;
+        p12 = p12 * rrr;
+        p13 = p13 * rr * rr;
+        p22 = p22 * rr * rr;
+        p23 = p23 * rr * rrr;
+        p33 = p33 * rrr * rrr;
+    }
+    double q00 = p00 + p01 + p02 + p03;
+    double q01 = p01 + p11 + p12 + p13;
+    double q02 = p02 + p12 + p22 + p23;
+    double q03 = p03 + p13 + p23 + p33;
+    double q11 = p11 + 2.0 * p12 + 3.0 * p13;
+    double q12 = p12 + 2.0 * p22 + 3.0 * p23;
+    double q13 = p13 + 2.0 * p23 + 3.0 * p33;
+    double q22 = p22 + 3.0 * p23;
+    double q23 = p23 + 3.0 * p33;
+    return (Vector14){{x + v + a + j, v + 2.0 * a + 3.0 * j, a + 3.0 * j, j, q00 + q01 + q02 + q03, q01 + 2.0 * q02
+        + 3.0 * q03, q02 + 3.0 * q03, q03, q11 + 2.0 * q12 + 3.0 * q13, q12 + 3.0 * q13, q13, q22 + 3.0 * q23, q23,
+        p33}};
+}
+
+/* tracking.py: Return the motion after an interval of white jerk of a scaled intensity; the jerk itself is not
+   estimated. */
+static Vector14 tracking_jerked(Vector14 moving, double intensity)
+{
+    double x = moving.v[0], v = moving.v[1], a = moving.v[2], p00 = moving.v[4], p01 = moving.v[5], p02 =
+        moving.v[6], p11 = moving.v[8], p12 = moving.v[9], p22 = moving.v[11];
+    double q = lesser(intensity, JERK_MAX);
+    return (Vector14){{x, v, a, 0.0, p00 + q / 20.0, p01 + q / 8.0, p02 + q / 12.0, 0.0, p11 + q / 3.0, p12 + q /
+        4.0, 0.0, p22 + q / 4.0, 0.0, 0.0}};
+}
+
+/* tracking.py: Return the motion after an interval in which the jerk's rate was white, of a scaled intensity. */
+static Vector14 tracking_snapped(Vector14 moving, double intensity)
+{
+    double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
+        p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
+        moving.v[11], p23 = moving.v[12], p33 = moving.v[13];
+    double q = lesser(intensity, SNAP_MAX);
+    return (Vector14){{x, v, a, j, p00 + q / 252.0, p01 + q / 72.0, p02 + q / 60.0, p03 + q / 144.0, p11 + q / 20.0,
+        p12 + q / 16.0, p13 + q / 36.0, p22 + q / 12.0, p23 + q / 24.0, p33 + q / 36.0}};
+}
+
+/* tracking.py: Return the likelihood of an exact measurement [m], up to a factor that all modes share. */
+static double tracking_exact_likelihood(Vector14 moving, double deflection)
+{
+    double spread = moving.v[4] + 1.0;
+    double innovation = deflection - moving.v[0];
+    return pow(innovation * innovation / spread + EXACT * EXACT, -0.5 * (TAIL + 1.0)) / sqrt(spread);
+}
+
+/* tracking.py: Return the motion updated with a measurement [m]. */
+static Vector14 tracking_updated(Vector14 moving, double deflection)
+{
+    double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
+        p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
+        moving.v[11], p23 = moving.v[12], p33 = moving.v[13];
+    double spread = p00 + 1.0;
+    double k0 = p00 / spread;
+    double k1 = p01 / spread;
+    double k2 = p02 / spread;
+    double k3 = p03 / spread;
+    double innovation = deflection - x;
+    return (Vector14){{x + k0 * innovation, v + k1 * innovation, a + k2 * innovation, j + k3 * innovation, k0, k1,
+        k2, k3, p11 - k1 * p01, p12 - k1 * p02, p13 - k1 * p03, p22 - k2 * p02, p23 - k2 * p03, p33 - k3 * p03}};
+}
+
+/* tracking.py: Return the track after an exact measurement: two filters of the shortest memory, each for itself. */
+static Tuple3 tracking_exactly(Vector14x4 modes, Vector4 probability, double ratio, double deflection, double
+    interval)
+{
+    Vector14 ride = tracking_jerked(tracking_predicted(modes.v[1], ratio), JERK_MAX);
+    Vector14 sharp = tracking_snapped(tracking_predicted(modes.v[3], ratio), SNAP_MAX);
+    double before = SWITCH + (1.0 - 2.0 * SWITCH) * probability.v[3] / (probability.v[1] + probability.v[3]);
+    double w1 = (1.0 - before) * tracking_exact_likelihood(ride, deflection);
+    double w3 = before * tracking_exact_likelihood(sharp, deflection);
+    ride = tracking_updated(ride, deflection);
+    sharp = tracking_updated(sharp, deflection);
+    return (Tuple3){(Vector14x4){{ride, ride, sharp, sharp}}, (Vector4){{0.0, w1 / (w1 + w3), 0.0, w3 / (w1 + w3)}},
+        interval};
+}
+
+/* tracking.py: Return mean and covariance of a motion that is b with the probability `share`, and a otherwise. */
+static Vector14 tracking_mixed(Vector14 a, Vector14 b, double share, double certainty)
+{
+    double remainder = 1.0 - share;
+    double d0 = b.v[0] - a.v[0];
+    double d1 = b.v[1] - a.v[1];
+    double d2 = b.v[2] - a.v[2];
+    double d3 = b.v[3] - a.v[3];
+    double farthest = certainty * greater(greater(greater(d0 * d0, d1 * d1), d2 * d2), d3 * d3);
+    double apart = remainder * share * (farthest < APART ? certainty : certainty * APART / farthest);
+    return (Vector14){{a.v[0] + share * d0, a.v[1] + share * d1, a.v[2] + share * d2, a.v[3] + share * d3, remainder
+        * a.v[4] + share * b.v[4] + apart * d0 * d0, remainder * a.v[5] + share * b.v[5] + apart * d0 * d1,
+        remainder * a.v[6] + share * b.v[6] + apart * d0 * d2, remainder * a.v[7] + share * b.v[7] + apart * d0 *
+        d3, remainder * a.v[8] + share * b.v[8] + apart * d1 * d1, remainder * a.v[9] + share * b.v[9] + apart * d1
+        * d2, remainder * a.v[10] + share * b.v[10] + apart * d1 * d3, remainder * a.v[11] + share * b.v[11] + apart
+        * d2 * d2, remainder * a.v[12] + share * b.v[12] + apart * d2 * d3, remainder * a.v[13] + share * b.v[13] +
+        apart * d3 * d3}};
+}
+
+/* tracking.py: Return mean and covariance of the motion over all modes. */
+static Vector14 tracking_mean(Vector14x4 modes, Vector4 probability, double certainty)
+{
+    Vector14 whole = modes.v[0];
+    double weight = probability.v[0];
+    for (int i = 1; i < 4; i++) {
+        weight += probability.v[i];
+        whole = tracking_mixed(whole, modes.v[i], weight > 0.0 ? probability.v[i] / weight : 0.0, certainty);
+    }
+    return whole;
+}
+
+/* tracking.py: Return the log likelihood of a measurement [m], without the terms that all modes share. */
+static double tracking_log_likelihood(Vector14 moving, double deflection, double certainty)
+{
+    double spread = moving.v[4] + 1.0;
+    double innovation = deflection - moving.v[0];
+    return -0.5 * (log(spread) + (TAIL + 1.0) * log1p(innovation * innovation * certainty / (TAIL * spread)));
+}
+
+/* tracking.py: Return the track after a measurement `deflection` [m], `interval` > 0 [s] after the last one. */
+static Tuple3 tracking_follow(Tuple3 track, double interval, double deflection, double noise)
+{
+    Vector14x4 modes = track.a;
+    Vector4 probability = track.b;
+    double last = track.c;
+    if (last <= 0.0 || interval > PAUSE * last) {
+        return (Tuple3){tracking_second(deflection, deflection - modes.v[0].v[0]), probability, interval};
+    }
+    double ratio = interval / last;
+    if (noise < FINEST) {
+        return tracking_exactly(modes, probability, ratio, deflection, interval);
+    }
+    double certainty = 1.0 / (noise * noise);
+    double fifth = interval * interval * interval * interval * interval * certainty;
+    double seventh = fifth * interval * interval;
+    Vector14 whole = tracking_mean(modes, probability, certainty);
+    double other = SWITCH / 3.0;
+    double same = 1.0 - SWITCH - other;
+    double c0 = other + same * probability.v[0];
+    double c1 = other + same * probability.v[1];
+    double c2 = other + same * probability.v[2];
+    double c3 = other + same * probability.v[3];
+    Vector14 press = tracking_jerked(tracking_predicted(tracking_mixed(modes.v[0], whole, other / c0, certainty),
+        ratio), PRESS * fifth);
+    Vector14 ride = tracking_jerked(tracking_predicted(tracking_mixed(modes.v[1], whole, other / c1, certainty),
+        ratio), RIDE * fifth);
+    Vector14 smooth = tracking_snapped(tracking_predicted(tracking_mixed(modes.v[2], whole, other / c2, certainty),
+        ratio), SMOOTH * seventh);
+    Vector14 sharp = tracking_snapped(tracking_predicted(tracking_mixed(modes.v[3], whole, other / c3, certainty),
+        ratio), SHARP * seventh);
+    double l0 = log(c0) + tracking_log_likelihood(press, deflection, certainty);
+    double l1 = log(c1) + tracking_log_likelihood(ride, deflection, certainty);
+    double l2 = log(c2) + tracking_log_likelihood(smooth, deflection, certainty);
+    double l3 = log(c3) + tracking_log_likelihood(sharp, deflection, certainty);
+    double best = greater(greater(greater(l0, l1), l2), l3);
+    double w0 = exp(l0 - best);
+    double w1 = exp(l1 - best);
+    double w2 = exp(l2 - best);
+    double w3 = exp(l3 - best);
+    double total = w0 + w1 + w2 + w3;
+    return (Tuple3){(Vector14x4){{tracking_updated(press, deflection), tracking_updated(ride, deflection),
+        tracking_updated(smooth, deflection), tracking_updated(sharp, deflection)}}, (Vector4){{w0 / total, w1 /
+        total, w2 / total, w3 / total}}, interval};
+}
+
+/* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
+   */
+static Tuple3 tracked_track(const double *s, double deflection, double interval, double noise)
+{
+    if (s[4] == 0.0) {
+        return tracking_begin(deflection);
+    }
+    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[58], s[59], s[60], s[61], s[62], s[63], s[64], s[65],
+        s[66], s[67], s[68], s[69], s[70], s[71]}}, (Vector14){{s[72], s[73], s[74], s[75], s[76], s[77], s[78],
+        s[79], s[80], s[81], s[82], s[83], s[84], s[85]}}, (Vector14){{s[86], s[87], s[88], s[89], s[90], s[91],
+        s[92], s[93], s[94], s[95], s[96], s[97], s[98], s[99]}}, (Vector14){{s[100], s[101], s[102], s[103],
+        s[104], s[105], s[106], s[107], s[108], s[109], s[110], s[111], s[112], s[113]}}}}, (Vector4){{s[114],
+        s[115], s[116], s[117]}}, s[118]};
+    if (interval > 0.0) {
+        return tracking_follow(before, interval, deflection, noise);
+    }
+    return before;
+}
+
+/* flat_step.py: Write a track into a state. */
+static void store_track(double *n, Tuple3 track)
+{
+    Vector14x4 modes = track.a;
+    Vector4 probability = track.b;
+    double last = track.c;
+    n[58] = modes.v[0].v[0];
+    n[59] = modes.v[0].v[1];
+    n[60] = modes.v[0].v[2];
+    n[61] = modes.v[0].v[3];
+    n[62] = modes.v[0].v[4];
+    n[63] = modes.v[0].v[5];
+    n[64] = modes.v[0].v[6];
+    n[65] = modes.v[0].v[7];
+    n[66] = modes.v[0].v[8];
+    n[67] = modes.v[0].v[9];
+    n[68] = modes.v[0].v[10];
+    n[69] = modes.v[0].v[11];
+    n[70] = modes.v[0].v[12];
+    n[71] = modes.v[0].v[13];
+    n[72] = modes.v[1].v[0];
+    n[73] = modes.v[1].v[1];
+    n[74] = modes.v[1].v[2];
+    n[75] = modes.v[1].v[3];
+    n[76] = modes.v[1].v[4];
+    n[77] = modes.v[1].v[5];
+    n[78] = modes.v[1].v[6];
+    n[79] = modes.v[1].v[7];
+    n[80] = modes.v[1].v[8];
+    n[81] = modes.v[1].v[9];
+    n[82] = modes.v[1].v[10];
+    n[83] = modes.v[1].v[11];
+    n[84] = modes.v[1].v[12];
+    n[85] = modes.v[1].v[13];
+    n[86] = modes.v[2].v[0];
+    n[87] = modes.v[2].v[1];
+    n[88] = modes.v[2].v[2];
+    n[89] = modes.v[2].v[3];
+    n[90] = modes.v[2].v[4];
+    n[91] = modes.v[2].v[5];
+    n[92] = modes.v[2].v[6];
+    n[93] = modes.v[2].v[7];
+    n[94] = modes.v[2].v[8];
+    n[95] = modes.v[2].v[9];
+    n[96] = modes.v[2].v[10];
+    n[97] = modes.v[2].v[11];
+    n[98] = modes.v[2].v[12];
+    n[99] = modes.v[2].v[13];
+    n[100] = modes.v[3].v[0];
+    n[101] = modes.v[3].v[1];
+    n[102] = modes.v[3].v[2];
+    n[103] = modes.v[3].v[3];
+    n[104] = modes.v[3].v[4];
+    n[105] = modes.v[3].v[5];
+    n[106] = modes.v[3].v[6];
+    n[107] = modes.v[3].v[7];
+    n[108] = modes.v[3].v[8];
+    n[109] = modes.v[3].v[9];
+    n[110] = modes.v[3].v[10];
+    n[111] = modes.v[3].v[11];
+    n[112] = modes.v[3].v[12];
+    n[113] = modes.v[3].v[13];
+    n[114] = probability.v[0];
+    n[115] = probability.v[1];
+    n[116] = probability.v[2];
+    n[117] = probability.v[3];
+    n[118] = last;
+}
+
+/* tracking.py: Return the rate [m/s] of the deflection at the last sample, 0 before the second one. */
+static double tracking_rate(Tuple3 track)
+{
+    Vector14x4 modes = track.a;
+    Vector4 probability = track.b;
+    double last = track.c;
+    if (last <= 0.0) {
+        return 0.0;
+    }
+    double scaled = 0.0;
+    for (int i = 0; i < 4; i++) {
+        scaled += probability.v[i] * modes.v[i].v[1];
+    }
+    return scaled / last;
+}
+
+/* tracking.py: Return the acceleration [m/s^2] of the deflection at the last sample, 0 before the second one. */
+static double tracking_acceleration(Tuple3 track)
+{
+    Vector14x4 modes = track.a;
+    Vector4 probability = track.b;
+    double last = track.c;
+    if (last <= 0.0) {
+        return 0.0;
+    }
+    double scaled = 0.0;
+    for (int i = 0; i < 4; i++) {
+        scaled += probability.v[i] * modes.v[i].v[2];
+    }
+    return 2.0 * scaled / (last * last);
+}
+
+/* effects.deflection_offset.py: Shift the deflection [m] by x0. */
+static Tuple8 deflection_offset_respond(double signal, Instant instant, Nothing state, Vector1 values)
+{
+    return (Tuple8){signal + values.v[0], state};
+}
+
+/* effects.deflection_lag.py: Advance the deflection [m] by the lag of its channel. */
+static Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing state, Vector2 values)
+{
+    double tau = values.v[0], delta = values.v[1];
+    double first_order = (tau + delta) * instant.rate;
+    double second_order = delta * (tau + 0.5 * delta) * instant.acceleration;
+    return (Tuple8){signal + first_order + second_order, state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, which have no state. */
+static double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
+{
+    if (p[4] != 0.0) {
+        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[5]}});
+        signal = t1.a;
+    }
+    if (p[6] != 0.0) {
+        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[7], p[8]}});
+        signal = t2.a;
+    }
+    return signal;
+}
+
+/* effects.series_compliance.py: Return the tire's part of the deflection x [m] over a spring that stiffens; plain:
+   over one that does not. */
+static double series_compliance_stiffening(double x, double k, double h, double A, double B, double plain)
+{
+    double force;
+    double miss;
+    double slope;
+    double following;
+    double low = 0.0;
+    double high = x - plain;
+    double d = high < x ? high : 0.5 * x;
+    for (int t1 = 0; t1 < 60; t1++) {
+        force = A * pow(100.0 * (x - d), B);
+        miss = d * (1.0 + h * d) - k * force;
+        if (miss > 0.0) {
+            high = d;
+        } else {
+            low = d;
+        }
+        slope = 1.0 + 2.0 * h * d + k * B * force / (x - d);
+        following = d - miss / slope;
+        if (following <= low || following >= high) {
+            following = 0.5 * (low + high);
+        }
+        if (fabs(following - d) <= 1e-15 * x) {
+            break;
+        }
+        d = following;
+    }
+    return x - d;
+}
+
+/* effects.series_compliance.py: Return the tire's part [m] of the deflection. */
+static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing state, Vector2 values)
+{
+    double step;
+    double k = values.v[0], h = values.v[1];
+    double A = instant.coefficient;
+    double B = instant.exponent;
+    if (k == 0.0 || signal <= 0.0) {
+        return (Tuple8){signal, state};
+    }
+    double root = signal;
+    double force = A * pow(100.0 * root, B);
+    if (k * force > signal) {
+        force = signal / k;
+        root = 0.01 * pow(force / A, 1.0 / B);
+    }
+    if (B >= 1.0) {
+        step = (root + k * force - signal) / (1.0 + k * B * force / root);
+        while (step > NEAR * root) {
+            root -= step;
+            force = A * pow(100.0 * root, B);
+            step = (root + k * force - signal) / (1.0 + k * B * force / root);
+        }
+        root -= step;
+        return (Tuple8){h > 0.0 ? series_compliance_stiffening(signal, k, h, A, B, root) : root, state};
+    }
+    step = (root + k * force - signal) / (k + root / (B * force));
+    while (step > NEAR * force) {
+        force -= step;
+        root = 0.01 * pow(force / A, 1.0 / B);
+        step = (root + k * force - signal) / (k + root / (B * force));
+    }
+    root = 0.01 * pow((force - step) / A, 1.0 / B);
+    return (Tuple8){h > 0.0 ? series_compliance_stiffening(signal, k, h, A, B, root) : root, state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, which have no state. */
+static double unremembered_series(double signal, Instant at, const double *p, const double *s)
+{
+    if (p[9] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[10], p[11]}});
+        signal = t1.a;
+    }
+    return signal;
+}
+
+/* flat_step.py: Return the tire's deflection [m] for one that is read; effects before the elastic law have no
+   memory. */
+static double compressed(Vector3 read, Tuple4 moment, Vector3 surface, const double *p, const double *s)
+{
+    double deflection = read.v[0], rate = read.v[1], acceleration = read.v[2];
+    double time = moment.a;
+    double interval = moment.b;
+    bool first = moment.c;
+    double A = surface.v[0], B = surface.v[1], bend = surface.v[2];
+    Instant at = (Instant){time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend};
+    double x = unremembered_deflection(deflection, at, p, s);
+    at = (Instant){time, interval, first, x, rate, acceleration, A, B, 0.0, bend};
+    return unremembered_series(x, at, p, s);
+}
+
+/* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
+   */
+static Tuple3 tracked_compression(const double *s, double deflection, double interval, double noise)
+{
+    if (s[4] == 0.0) {
+        return tracking_begin(deflection);
+    }
+    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[119], s[120], s[121], s[122], s[123], s[124], s[125],
+        s[126], s[127], s[128], s[129], s[130], s[131], s[132]}}, (Vector14){{s[133], s[134], s[135], s[136],
+        s[137], s[138], s[139], s[140], s[141], s[142], s[143], s[144], s[145], s[146]}}, (Vector14){{s[147],
+        s[148], s[149], s[150], s[151], s[152], s[153], s[154], s[155], s[156], s[157], s[158], s[159], s[160]}},
+        (Vector14){{s[161], s[162], s[163], s[164], s[165], s[166], s[167], s[168], s[169], s[170], s[171], s[172],
+        s[173], s[174]}}}}, (Vector4){{s[175], s[176], s[177], s[178]}}, s[179]};
+    if (interval > 0.0) {
+        return tracking_follow(before, interval, deflection, noise);
+    }
+    return before;
+}
+
+/* flat_step.py: Write a track into a state. */
+static void store_compression(double *n, Tuple3 track)
+{
+    Vector14x4 modes = track.a;
+    Vector4 probability = track.b;
+    double last = track.c;
+    n[119] = modes.v[0].v[0];
+    n[120] = modes.v[0].v[1];
+    n[121] = modes.v[0].v[2];
+    n[122] = modes.v[0].v[3];
+    n[123] = modes.v[0].v[4];
+    n[124] = modes.v[0].v[5];
+    n[125] = modes.v[0].v[6];
+    n[126] = modes.v[0].v[7];
+    n[127] = modes.v[0].v[8];
+    n[128] = modes.v[0].v[9];
+    n[129] = modes.v[0].v[10];
+    n[130] = modes.v[0].v[11];
+    n[131] = modes.v[0].v[12];
+    n[132] = modes.v[0].v[13];
+    n[133] = modes.v[1].v[0];
+    n[134] = modes.v[1].v[1];
+    n[135] = modes.v[1].v[2];
+    n[136] = modes.v[1].v[3];
+    n[137] = modes.v[1].v[4];
+    n[138] = modes.v[1].v[5];
+    n[139] = modes.v[1].v[6];
+    n[140] = modes.v[1].v[7];
+    n[141] = modes.v[1].v[8];
+    n[142] = modes.v[1].v[9];
+    n[143] = modes.v[1].v[10];
+    n[144] = modes.v[1].v[11];
+    n[145] = modes.v[1].v[12];
+    n[146] = modes.v[1].v[13];
+    n[147] = modes.v[2].v[0];
+    n[148] = modes.v[2].v[1];
+    n[149] = modes.v[2].v[2];
+    n[150] = modes.v[2].v[3];
+    n[151] = modes.v[2].v[4];
+    n[152] = modes.v[2].v[5];
+    n[153] = modes.v[2].v[6];
+    n[154] = modes.v[2].v[7];
+    n[155] = modes.v[2].v[8];
+    n[156] = modes.v[2].v[9];
+    n[157] = modes.v[2].v[10];
+    n[158] = modes.v[2].v[11];
+    n[159] = modes.v[2].v[12];
+    n[160] = modes.v[2].v[13];
+    n[161] = modes.v[3].v[0];
+    n[162] = modes.v[3].v[1];
+    n[163] = modes.v[3].v[2];
+    n[164] = modes.v[3].v[3];
+    n[165] = modes.v[3].v[4];
+    n[166] = modes.v[3].v[5];
+    n[167] = modes.v[3].v[6];
+    n[168] = modes.v[3].v[7];
+    n[169] = modes.v[3].v[8];
+    n[170] = modes.v[3].v[9];
+    n[171] = modes.v[3].v[10];
+    n[172] = modes.v[3].v[11];
+    n[173] = modes.v[3].v[12];
+    n[174] = modes.v[3].v[13];
+    n[175] = probability.v[0];
+    n[176] = probability.v[1];
+    n[177] = probability.v[2];
+    n[178] = probability.v[3];
+    n[179] = last;
+}
+
+/* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3). */
+static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector3 values)
+{
+    double bend = values.v[0], twist = values.v[1], reference = values.v[2];
+    double x = instant.deflection;
+    if (x <= 0.0 || (bend == 0.0 && twist == 0.0)) {
+        return (Tuple8){signal, state};
+    }
+    double log_ratio = log(greater(x / reference, 0.01));
+    return (Tuple8){signal * exp(log_ratio * log_ratio * (bend + twist * log_ratio)), state};
+}
+
+/* effects.gas_compression.py: Multiply the factor by p / p0. */
+static Tuple8 gas_compression_respond(double signal, Instant instant, Nothing state, Vector5 values)
+{
+    double share = values.v[0], power = values.v[1], polytropic = values.v[2], surface = values.v[3], atmosphere =
+        values.v[4];
+    if (share == 0.0 || instant.deflection <= 0.0) {
+        return (Tuple8){signal, state};
+    }
+    if (surface != 0.0) {
+        share *= pow(greater(1.0 + WHEEL_RADIUS * instant.curvature, LEAST_CURVATURE), -surface);
+    }
+    double lost = lesser(share * pow(instant.deflection / REFERENCE, power), LOST_MAX);
+    return (Tuple8){signal * ((1.0 + atmosphere) * pow(1.0 - lost, -polytropic) - atmosphere), state};
+}
+
+/* effects.mullins_softening.py: Multiply the factor by the softening; the state: largest measure, last counted
+   position [m], path length [m]. */
+static Tuple12 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
+{
+    double share = values.v[0], ratio = values.v[1], width = values.v[2], sharpness = values.v[3], history =
+        values.v[4], gathering = values.v[5], load = values.v[6];
+    double x = instant.deflection;
+    double largest = state.v[0], counted = state.v[1], path = state.v[2];
+    double power = 1.0 + load * instant.exponent;
+    double by_surface = pow(instant.coefficient, load);
+    if (instant.first) {
+        largest = by_surface * pow(100.0 * history, power);
+        counted = greater(x, 0.0);
+    }
+    double measure = by_surface * pow(100.0 * greater(x, 0.0), power);
+    double uncounted = fabs(greater(x, 0.0) - counted);
+    if (measure >= largest) {
+        largest = measure;
+        counted = greater(x, 0.0);
+        uncounted = 0.0;
+    } else if (uncounted > DEAD_ZONE) {
+        path = path + uncounted;
+        counted = greater(x, 0.0);
+        uncounted = 0.0;
+    }
+    if (share == 0.0 || x <= 0.0 || measure >= largest) {
+        return (Tuple12){signal, (Vector3){{largest, counted, path}}};
+    }
+    double fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
+    double below = (largest - measure) / (ratio * largest + fixed);
+    if (sharpness != 1.0) {
+        below = pow(below, sharpness);
+    }
+    if (gathering > 0.0) {
+        share *= -expm1(-(path + uncounted) / gathering);
+    }
+    return (Tuple12){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
+}
+
+/* effects.pressure_leak.py: Multiply the factor by the remaining pressure. */
+static Tuple8 pressure_leak_respond(double signal, Instant instant, Nothing state, Vector3 values)
+{
+    double rate = values.v[0], structural = values.v[1], flow = values.v[2];
+    double lost = rate * instant.time;
+    double slowing = (flow - 1.0) * lost;
+    if (slowing <= -1.0) {
+        return (Tuple8){signal * structural, state};
+    }
+    if (fabs(slowing) > 1e-09) {
+        lost *= log1p(slowing) / slowing;
+    }
+    return (Tuple8){signal * (1.0 + (1.0 - structural) * expm1(-lost)), state};
+}
+
+/* effects.warm_up.py: Multiply the factor by the rise of the pressure. */
+static Tuple8 warm_up_respond(double signal, Instant instant, Nothing state, Vector3 values)
+{
+    double gain = values.v[0], tau = values.v[1], stretch = values.v[2];
+    return (Tuple8){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
+{
+    if (p[12] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector3){{p[13], p[14], p[15]}});
+        signal = t1.a;
+    }
+    if (p[16] != 0.0) {
+        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[17], p[18], p[19], p[20],
+            p[21]}});
+        signal = t2.a;
+    }
+    if (p[22] != 0.0) {
+        const Tuple12 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[23],
+            p[24], p[25], p[26], p[27], p[28], p[29]}});
+        signal = t3.a;
+        Vector3 after = t3.b;
+        n[6] = after.v[0];
+        n[7] = after.v[1];
+        n[8] = after.v[2];
+    }
+    if (p[30] != 0.0) {
+        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[31], p[32], p[33]}});
+        signal = t4.a;
+    }
+    if (p[34] != 0.0) {
+        const Tuple8 t5 = warm_up_respond(signal, at, (Nothing){0}, (Vector3){{p[35], p[36], p[37]}});
+        signal = t5.a;
+    }
+    return signal;
+}
+
+/* effects.rate_independent_hysteresis.py: Return z after `travel` [m] in one direction. */
+static double rate_independent_hysteresis_dahl(double z, double travel, double reach)
+{
+    if (travel > 0.0) {
+        return z - (1.0 - z) * expm1(-travel / reach);
+    }
+    if (travel < 0.0) {
+        return z + (1.0 + z) * expm1(travel / reach);
+    }
+    return z;
+}
+
+/* effects.rate_independent_hysteresis.py: Return y after `travel` [m] of an element that slips at `reach` [m]. */
+static double rate_independent_hysteresis_slip(double y, double travel, double reach)
+{
+    return lesser(greater(y + travel / reach, -1.0), 1.0);
+}
+
+/* effects.rate_independent_hysteresis.py: Add the friction force [N]. */
+static Tuple15 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector7 values)
+{
+    double friction;
+    double mean;
+    double slip_force = values.v[0], load_share = values.v[1], reach = values.v[2], memory = values.v[3], spread =
+        values.v[4], play = values.v[5], seat = values.v[6];
+    double z = state.v[0], updated_at = state.v[1], direction = state.v[2], last = state.v[3], y1 = state.v[4], y2 =
+        state.v[5], y3 = state.v[6], y4 = state.v[7];
+    double x = greater(instant.deflection, 0.0);
+    if (instant.first) {
+        last = 0.0;
+        updated_at = 0.0;
+    }
+    double travel = x - updated_at;
+    if (instant.first || travel * direction > 0.0 || fabs(travel) >= 2.0 * play) {
+        const double t1 = rate_independent_hysteresis_dahl(z, travel, reach) * (instant.first ? seat : 1.0);
+        friction = t1;
+        z = t1;
+        updated_at = x;
+        direction = travel >= 0.0 ? 1.0 : -1.0;
+    } else {
+        friction = rate_independent_hysteresis_dahl(z, travel * fabs(travel) / (2.0 * play), reach);
+    }
+    if (memory != 0.0) {
+        travel = x - last;
+        mean = reach * 4.0 / 3.0;
+        y1 = rate_independent_hysteresis_slip(y1, travel, mean * (1.0 - 0.75 * spread));
+        y2 = rate_independent_hysteresis_slip(y2, travel, mean * (1.0 - 0.25 * spread));
+        y3 = rate_independent_hysteresis_slip(y3, travel, mean * (1.0 + 0.25 * spread));
+        y4 = rate_independent_hysteresis_slip(y4, travel, mean * (1.0 + 0.75 * spread));
+        if (instant.first) {
+            y1 = seat * y1;
+            y2 = seat * y2;
+            y3 = seat * y3;
+            y4 = seat * y4;
+        }
+        friction += memory * (0.25 * (y1 + y2 + y3 + y4) - friction);
+    }
+    Vector8 after = (Vector8){{z, updated_at, direction, x, y1, y2, y3, y4}};
+    if (instant.deflection <= 0.0) {
+        return (Tuple15){signal, after};
+    }
+    return (Tuple15){signal + (slip_force + load_share * instant.elastic_force) * friction, after};
+}
+
+/* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded. */
+static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector4 values)
+{
+    double size;
+    double damping = values.v[0], rate_exponent = values.v[1], deflection_exponent = values.v[2], thinning =
+        values.v[3];
+    double x = instant.deflection;
+    double v = instant.rate;
+    if (x <= 0.0) {
+        return (Tuple8){signal, state};
+    }
+    if (thinning > 0.0) {
+        v = asinh(thinning * v) / thinning;
+    }
+    if (rate_exponent != 1.0) {
+        size = SPEED * pow(fabs(v) / SPEED, rate_exponent);
+        v = v > 0.0 ? size : -size;
+    }
+    if (deflection_exponent != 0.0) {
+        v *= pow(x / DEPTH, deflection_exponent);
+    }
+    return (Tuple8){signal + damping * v, state};
+}
+
+/* effects.viscoelastic_relaxation.py: Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt =
+   (F_elastic - q_i) / tau_i. */
+static Tuple17 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector11 values)
+{
+    double added;
+    double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
+        values.v[5], sudden = values.v[6], g4 = values.v[7], tau4 = values.v[8], g5 = values.v[9], tau5 =
+        values.v[10];
+    double elastic = instant.elastic_force;
+    double q1 = state.v[1], q2 = state.v[2], q3 = state.v[3], q4 = state.v[4], q5 = state.v[5];
+    if (instant.first) {
+        added = -sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
+        return (Tuple17){signal + added, (Vector6){{0.0, elastic, elastic, elastic, elastic, elastic}}};
+    }
+    double h1 = elastic - q1;
+    double h2 = elastic - q2;
+    double h3 = elastic - q3;
+    double h4 = elastic - q4;
+    double h5 = elastic - q5;
+    added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
+    return (Tuple17){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
+}
+
+/* effects.viscoelastic_relaxation.py: Return h after `interval` [s] in which the elastic force changed linearly by
+   `change` [N]. */
+static double viscoelastic_relaxation_overstress(double h, double change, double interval, double tau)
+{
+    double passed = interval / tau;
+    if (passed == 0.0) {
+        return h + change;
+    }
+    double decay = -expm1(-passed);
+    return h * (1.0 - decay) + change * decay / passed;
+}
+
+/* effects.viscoelastic_relaxation.py: Add the overstress [N]; the state holds the last elastic force and the five
+   overstresses. */
+static Tuple17 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector11 values)
+{
+    double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
+        values.v[5], sudden = values.v[6], g4 = values.v[7], tau4 = values.v[8], g5 = values.v[9], tau5 =
+        values.v[10];
+    double elastic = instant.elastic_force;
+    double last = state.v[0], h1 = state.v[1], h2 = state.v[2], h3 = state.v[3], h4 = state.v[4], h5 = state.v[5];
+    if (instant.first) {
+        last = elastic;
+    }
+    double change = elastic - last;
+    h1 = viscoelastic_relaxation_overstress(h1, change, instant.interval, tau1);
+    if (g2 != 0.0) {
+        h2 = viscoelastic_relaxation_overstress(h2, change, instant.interval, tau2);
+    }
+    if (g3 != 0.0) {
+        h3 = viscoelastic_relaxation_overstress(h3, change, instant.interval, tau3);
+    }
+    if (g4 != 0.0) {
+        h4 = viscoelastic_relaxation_overstress(h4, change, instant.interval, tau4);
+    }
+    if (g5 != 0.0) {
+        h5 = viscoelastic_relaxation_overstress(h5, change, instant.interval, tau5);
+    }
+    double added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5;
+    if (sudden != 0.0) {
+        added -= sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
+    }
+    return (Tuple17){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
+}
+
+/* effects.bottoming.py: Add the second spring's force [N]. */
+static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, Vector4 values)
+{
+    double stiffness = values.v[0], onset = values.v[1], softness = values.v[2], power = values.v[3];
+    double beyond = instant.deflection - onset;
+    if (stiffness == 0.0 || instant.deflection <= 0.0 || beyond <= -FAR * softness) {
+        return (Tuple8){signal, state};
+    }
+    if (beyond < FAR * softness) {
+        beyond = softness * log1p(exp(beyond / softness));
+    }
+    if (power != 1.0) {
+        beyond = UNIT * pow(beyond / UNIT, power);
+    }
+    return (Tuple8){signal + stiffness * beyond, state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
+{
+    if (p[38] != 0.0) {
+        const Tuple15 t1 = rate_independent_hysteresis_respond(signal, at, (Vector8){{s[9], s[10], s[11], s[12],
+            s[13], s[14], s[15], s[16]}}, (Vector7){{p[39], p[40], p[41], p[42], p[43], p[44], p[45]}});
+        signal = t1.a;
+        Vector8 after = t1.b;
+        n[9] = after.v[0];
+        n[10] = after.v[1];
+        n[11] = after.v[2];
+        n[12] = after.v[3];
+        n[13] = after.v[4];
+        n[14] = after.v[5];
+        n[15] = after.v[6];
+        n[16] = after.v[7];
+    }
+    if (p[46] != 0.0) {
+        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[47], p[48], p[49],
+            p[50]}});
+        signal = t2.a;
+    }
+    if (p[51] != 0.0 && p[3] != 0.0) {
+        const Tuple17 t3 = viscoelastic_relaxation_flow(signal, at, (Vector6){{s[17], s[18], s[19], s[20], s[21],
+            s[22]}}, (Vector11){{p[52], p[53], p[54], p[55], p[56], p[57], p[58], p[59], p[60], p[61], p[62]}});
+        signal = t3.a;
+        Vector6 flowed = t3.b;
+        n[17] = flowed.v[0];
+        n[18] = flowed.v[1];
+        n[19] = flowed.v[2];
+        n[20] = flowed.v[3];
+        n[21] = flowed.v[4];
+        n[22] = flowed.v[5];
+    } else if (p[51] != 0.0) {
+        const Tuple17 t4 = viscoelastic_relaxation_respond(signal, at, (Vector6){{s[17], s[18], s[19], s[20], s[21],
+            s[22]}}, (Vector11){{p[52], p[53], p[54], p[55], p[56], p[57], p[58], p[59], p[60], p[61], p[62]}});
+        signal = t4.a;
+        Vector6 after = t4.b;
+        n[17] = after.v[0];
+        n[18] = after.v[1];
+        n[19] = after.v[2];
+        n[20] = after.v[3];
+        n[21] = after.v[4];
+        n[22] = after.v[5];
+    }
+    if (p[63] != 0.0) {
+        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[64], p[65], p[66], p[67]}});
+        signal = t5.a;
+    }
+    return signal;
+}
+
+/* effects.inertia.py: Add m d2x/dt2 [N]. */
+static Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vector1 values)
+{
+    return (Tuple8){signal + values.v[0] * instant.acceleration, state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
+{
+    if (p[68] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[69]}});
+        signal = t1.a;
+    }
+    return signal;
+}
+
+/* effects.force_lag.py: Return the force [N] a delay `delta` [s] ago and the stored samples after this one: times,
+   then forces. */
+static Tuple21 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
+{
+    Vector2 two;
+    Vector4 four;
+    double part;
+    Vector16 times = (Vector16){{state.v[3], state.v[4], state.v[5], state.v[6], state.v[7], state.v[8], state.v[9],
+        state.v[10], state.v[11], state.v[12], state.v[13], state.v[14], state.v[15], state.v[16], state.v[17],
+        state.v[18]}};
+    Vector16 forces = (Vector16){{state.v[19], state.v[20], state.v[21], state.v[22], state.v[23], state.v[24],
+        state.v[25], state.v[26], state.v[27], state.v[28], state.v[29], state.v[30], state.v[31], state.v[32],
+        state.v[33], state.v[34]}};
+    double now = instant.time;
+    Vector1 newest = (Vector1){{now}};
+    Vector1 force = (Vector1){{signal}};
+    if (instant.first) {
+        two = (Vector2){{force.v[0], force.v[0]}};
+        four = (Vector4){{two.v[0], two.v[1], two.v[0], two.v[1]}};
+        forces = (Vector16){{four.v[0], four.v[1], four.v[2], four.v[3], four.v[0], four.v[1], four.v[2], four.v[3],
+            four.v[0], four.v[1], four.v[2], four.v[3], four.v[0], four.v[1], four.v[2], four.v[3]}};
+    } else if (instant.interval <= 0.0 || times.v[15] - times.v[14] < delta / 14.0) {
+        times = (Vector16){{times.v[0], times.v[1], times.v[2], times.v[3], times.v[4], times.v[5], times.v[6],
+            times.v[7], times.v[8], times.v[9], times.v[10], times.v[11], times.v[12], times.v[13], times.v[14],
+            newest.v[0]}};
+        forces = (Vector16){{forces.v[0], forces.v[1], forces.v[2], forces.v[3], forces.v[4], forces.v[5],
+            forces.v[6], forces.v[7], forces.v[8], forces.v[9], forces.v[10], forces.v[11], forces.v[12],
+            forces.v[13], forces.v[14], force.v[0]}};
+    } else {
+        times = (Vector16){{times.v[1], times.v[2], times.v[3], times.v[4], times.v[5], times.v[6], times.v[7],
+            times.v[8], times.v[9], times.v[10], times.v[11], times.v[12], times.v[13], times.v[14], times.v[15],
+            newest.v[0]}};
+        forces = (Vector16){{forces.v[1], forces.v[2], forces.v[3], forces.v[4], forces.v[5], forces.v[6],
+            forces.v[7], forces.v[8], forces.v[9], forces.v[10], forces.v[11], forces.v[12], forces.v[13],
+            forces.v[14], forces.v[15], force.v[0]}};
+    }
+    double late = signal;
+    if (delta > 0.0) {
+        late = forces.v[0];
+        for (int i = 15; i > 0; i--) {
+            if (times.v[i - 1] < now - delta) {
+                part = (now - delta - times.v[i - 1]) / (times.v[i] - times.v[i - 1]);
+                late = forces.v[i - 1] + part * (forces.v[i] - forces.v[i - 1]);
+                break;
+            }
+        }
+    }
+    return (Tuple21){late, (Vector32){{times.v[0], times.v[1], times.v[2], times.v[3], times.v[4], times.v[5],
+        times.v[6], times.v[7], times.v[8], times.v[9], times.v[10], times.v[11], times.v[12], times.v[13],
+        times.v[14], times.v[15], forces.v[0], forces.v[1], forces.v[2], forces.v[3], forces.v[4], forces.v[5],
+        forces.v[6], forces.v[7], forces.v[8], forces.v[9], forces.v[10], forces.v[11], forces.v[12], forces.v[13],
+        forces.v[14], forces.v[15]}}};
+}
+
+/* effects.force_lag.py: Return the measured force [N] for a solver: the states are the output and its slope; the
+   delay is memory. */
+static Tuple23 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
+{
+    Vector3 held;
+    double tau = values.v[0], delta = values.v[1], quality = values.v[2];
+    double reading = state.v[0];
+    double slope = state.v[1];
+    const Tuple21 t1 = force_lag_delayed(signal, instant, state, delta);
+    double late = t1.a;
+    Vector32 samples = t1.b;
+    if (instant.first) {
+        held = (Vector3){{late, 0.0, late}};
+        return (Tuple23){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+            samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
+            samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
+            samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
+            samples.v[23], samples.v[24], samples.v[25], samples.v[26], samples.v[27], samples.v[28], samples.v[29],
+            samples.v[30], samples.v[31]}}};
+    }
+    if (tau == 0.0) {
+        held = (Vector3){{0.0, 0.0, late}};
+        return (Tuple23){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+            samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
+            samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
+            samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
+            samples.v[23], samples.v[24], samples.v[25], samples.v[26], samples.v[27], samples.v[28], samples.v[29],
+            samples.v[30], samples.v[31]}}};
+    }
+    if (quality * tau < NO_TIME) {
+        held = (Vector3){{(late - reading) / tau, 0.0, late}};
+        return (Tuple23){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+            samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
+            samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
+            samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
+            samples.v[23], samples.v[24], samples.v[25], samples.v[26], samples.v[27], samples.v[28], samples.v[29],
+            samples.v[30], samples.v[31]}}};
+    }
+    held = (Vector3){{slope, (late - reading - tau * slope) / pow(quality * tau, 2.0), late}};
+    return (Tuple23){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
+        samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8], samples.v[9],
+        samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15], samples.v[16],
+        samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22], samples.v[23],
+        samples.v[24], samples.v[25], samples.v[26], samples.v[27], samples.v[28], samples.v[29], samples.v[30],
+        samples.v[31]}}};
+}
+
+/* effects.force_lag.py: Return output [N] and slope [N/s] after an interval [s] over which the input changes
+   linearly to `late` [N]. */
+static Vector2 force_lag_low_passed(Vector3 before, double late, double interval, double tau, double quality)
+{
+    double width;
+    double quick;
+    double slow;
+    double long_;
+    double short_;
+    double phase_squared;
+    double cosine;
+    double sine;
+    double fall;
+    double spring;
+    double reading = before.v[0], slope = before.v[1], last = before.v[2];
+    double rate = (late - last) / interval;
+    double off = reading - last + tau * rate;
+    double off_slope = slope - rate;
+    if (quality * tau < NO_TIME) {
+        return (Vector2){{late - tau * rate + off * exp(-interval / tau), 0.0}};
+    }
+    double square = pow(quality * tau, 2.0);
+    double damping = 0.5 * tau / square;
+    double beyond = damping * damping - 1.0 / square;
+    double drive = off_slope + damping * off;
+    if (beyond * interval * interval > NEARLY_CRITICAL) {
+        width = sqrt(beyond);
+        quick = damping + width;
+        slow = 1.0 / (square * quick);
+        long_ = 0.5 * (off + drive / width) * exp(-slow * interval);
+        short_ = 0.5 * (off - drive / width) * exp(-quick * interval);
+        off = long_ + short_;
+        off_slope = -slow * long_ - quick * short_;
+    } else {
+        phase_squared = beyond * interval * interval;
+        cosine = 1.0 + phase_squared / 2.0;
+        sine = interval * (1.0 + phase_squared / 6.0);
+        if (phase_squared < -NEARLY_CRITICAL) {
+            width = sqrt(-beyond);
+            cosine = cos(width * interval);
+            sine = sin(width * interval) / width;
+        }
+        fall = exp(-damping * interval);
+        spring = damping * off_slope + off / square;
+        off = fall * (off * cosine + drive * sine);
+        off_slope = fall * (off_slope * cosine - spring * sine);
+    }
+    return (Vector2){{late - tau * rate + off, rate + off_slope}};
+}
+
+/* effects.force_lag.py: Return the measured force [N]; the state: output, its slope, its last input, and the stored
+   samples. */
+static Tuple23 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
+{
+    double tau = values.v[0], delta = values.v[1], quality = values.v[2];
+    double reading = state.v[0];
+    double slope = state.v[1];
+    double last = state.v[2];
+    const Tuple21 t1 = force_lag_delayed(signal, instant, state, delta);
+    double late = t1.a;
+    Vector32 samples = t1.b;
+    if (instant.first) {
+        const double t2 = late;
+        last = t2;
+        reading = t2;
+    }
+    if (tau == 0.0) {
+        reading = late;
+    } else if (instant.interval > 0.0) {
+        const Vector2 t3 = force_lag_low_passed((Vector3){{reading, slope, last}}, late, instant.interval, tau,
+            quality);
+        reading = t3.v[0];
+        slope = t3.v[1];
+    }
+    Vector3 held = (Vector3){{reading, slope, late}};
+    return (Tuple23){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
+        samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8], samples.v[9],
+        samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15], samples.v[16],
+        samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22], samples.v[23],
+        samples.v[24], samples.v[25], samples.v[26], samples.v[27], samples.v[28], samples.v[29], samples.v[30],
+        samples.v[31]}}};
+}
+
+/* effects.force_offset.py: Shift the force [N] by F0. */
+static Tuple8 force_offset_respond(double signal, Instant instant, Nothing state, Vector1 values)
+{
+    return (Tuple8){signal + values.v[0], state};
+}
+
+/* effects.force_drift.py: Add d t [N]. */
+static Tuple8 force_drift_respond(double signal, Instant instant, Nothing state, Vector1 values)
+{
+    return (Tuple8){signal + values.v[0] * instant.time, state};
+}
+
+/* effects.saturation.py: Return the force as read [N]. */
+static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, Vector2 values)
+{
+    double limit = values.v[0], knee = values.v[1];
+    double beyond = signal - limit;
+    if (limit >= NO_LIMIT || beyond <= -FAR * knee) {
+        return (Tuple8){signal, state};
+    }
+    if (beyond >= FAR * knee) {
+        return (Tuple8){limit, state};
+    }
+    return (Tuple8){signal - knee * log1p(exp(beyond / knee)), state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
+{
+    if (p[70] != 0.0 && p[3] != 0.0) {
+        const Tuple23 t1 = force_lag_flow(signal, at, (Vector35){{s[23], s[24], s[25], s[26], s[27], s[28], s[29],
+            s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44],
+            s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57]}},
+            (Vector3){{p[71], p[72], p[73]}});
+        signal = t1.a;
+        Vector35 flowed = t1.b;
+        n[23] = flowed.v[0];
+        n[24] = flowed.v[1];
+        n[25] = flowed.v[2];
+        n[26] = flowed.v[3];
+        n[27] = flowed.v[4];
+        n[28] = flowed.v[5];
+        n[29] = flowed.v[6];
+        n[30] = flowed.v[7];
+        n[31] = flowed.v[8];
+        n[32] = flowed.v[9];
+        n[33] = flowed.v[10];
+        n[34] = flowed.v[11];
+        n[35] = flowed.v[12];
+        n[36] = flowed.v[13];
+        n[37] = flowed.v[14];
+        n[38] = flowed.v[15];
+        n[39] = flowed.v[16];
+        n[40] = flowed.v[17];
+        n[41] = flowed.v[18];
+        n[42] = flowed.v[19];
+        n[43] = flowed.v[20];
+        n[44] = flowed.v[21];
+        n[45] = flowed.v[22];
+        n[46] = flowed.v[23];
+        n[47] = flowed.v[24];
+        n[48] = flowed.v[25];
+        n[49] = flowed.v[26];
+        n[50] = flowed.v[27];
+        n[51] = flowed.v[28];
+        n[52] = flowed.v[29];
+        n[53] = flowed.v[30];
+        n[54] = flowed.v[31];
+        n[55] = flowed.v[32];
+        n[56] = flowed.v[33];
+        n[57] = flowed.v[34];
+    } else if (p[70] != 0.0) {
+        const Tuple23 t2 = force_lag_respond(signal, at, (Vector35){{s[23], s[24], s[25], s[26], s[27], s[28],
+            s[29], s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43],
+            s[44], s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57]}},
+            (Vector3){{p[71], p[72], p[73]}});
+        signal = t2.a;
+        Vector35 after = t2.b;
+        n[23] = after.v[0];
+        n[24] = after.v[1];
+        n[25] = after.v[2];
+        n[26] = after.v[3];
+        n[27] = after.v[4];
+        n[28] = after.v[5];
+        n[29] = after.v[6];
+        n[30] = after.v[7];
+        n[31] = after.v[8];
+        n[32] = after.v[9];
+        n[33] = after.v[10];
+        n[34] = after.v[11];
+        n[35] = after.v[12];
+        n[36] = after.v[13];
+        n[37] = after.v[14];
+        n[38] = after.v[15];
+        n[39] = after.v[16];
+        n[40] = after.v[17];
+        n[41] = after.v[18];
+        n[42] = after.v[19];
+        n[43] = after.v[20];
+        n[44] = after.v[21];
+        n[45] = after.v[22];
+        n[46] = after.v[23];
+        n[47] = after.v[24];
+        n[48] = after.v[25];
+        n[49] = after.v[26];
+        n[50] = after.v[27];
+        n[51] = after.v[28];
+        n[52] = after.v[29];
+        n[53] = after.v[30];
+        n[54] = after.v[31];
+        n[55] = after.v[32];
+        n[56] = after.v[33];
+        n[57] = after.v[34];
+    }
+    if (p[74] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[75]}});
+        signal = t3.a;
+    }
+    if (p[76] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[77]}});
+        signal = t4.a;
+    }
+    if (p[78] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[79], p[80]}});
+        signal = t5.a;
+    }
+    return signal;
+}
+
+/* flat_step.py: Return the radial force [N] and the tire's deflection [m], and write the state after the step into
+   `n`. */
+Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s, double *n)
+{
+    Tuple3 reading;
+    Tuple3 compression;
+    double h;
+    Vector3 later;
+    Vector3 sooner;
+    double above;
+    double A = law.v[0], B = law.v[1];
+    double deflection = motion.v[0], surface_radius = motion.v[1], time = motion.v[2], rate = motion.v[3],
+        acceleration = motion.v[4];
+    double bend = fabs(surface_radius) >= FLAT_RADIUS ? 0.0 : 1.0 / surface_radius;
+    bool first = s[4] == 0.0;
+    double start = first ? time : s[5];
+    double interval = first ? 0.0 : time - s[0];
+    if (p[0] != 0.0) {
+        reading = tracked_track(s, deflection, interval, p[2]);
+        store_track(n, reading);
+        rate = tracking_rate(reading);
+        acceleration = tracking_acceleration(reading);
+    }
+    Tuple4 moment = (Tuple4){time - start, interval, first};
+    Vector3 surface = (Vector3){{A, B, bend}};
+    double x = compressed((Vector3){{deflection, rate, acceleration}}, moment, surface, p, s);
+    double v = rate;
+    if (p[1] != 0.0) {
+        if (p[0] != 0.0) {
+            compression = tracked_compression(s, x, interval, p[2]);
+            store_compression(n, compression);
+            v = tracking_rate(compression);
+        } else {
+            h = AHEAD;
+            later = (Vector3){{deflection + h * rate, rate + h * acceleration, acceleration}};
+            sooner = (Vector3){{deflection - h * rate, rate - h * acceleration, acceleration}};
+            above = compressed(later, moment, surface, p, s);
+            v = (above - compressed(sooner, moment, surface, p, s)) / (2.0 * h);
+        }
+    }
+    double bare = tire_elastic(x, A, B);
+    Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend};
+    double elastic = through_scale(1.0, at, p, s, n) * bare;
+    at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend};
+    double force = through_parallel(elastic, at, p, s, n);
+    if (force < 0.0) {
+        force = 0.0;
+    }
+    force = through_inertia(force, at, p, s, n);
+    force = through_reading(force, at, p, s, n);
+    n[0] = time;
+    n[1] = deflection;
+    n[2] = rate;
+    n[3] = acceleration;
+    n[4] = 1.0;
+    n[5] = start;
+    return (Vector2){{force, x}};
+}
+
+/* flat_step.py: Return the tangent dF/dx [N/m], everything but the deflection held constant; arguments as of
+   `step`. */
+double tire_stiffness(Vector2 law, Vector5 motion, const double *p, const double *s, double *n)
+{
+    double x = motion.v[0], R = motion.v[1], t = motion.v[2], v = motion.v[3], a = motion.v[4];
+    const Vector2 t1 = tire_step(law, (Vector5){{x, R, t, v, a}}, p, s, n);
+    double force = t1.v[0], here = t1.v[1];
+    const Vector2 t2 = tire_step(law, (Vector5){{x + TANGENT_STEP, R, t, v, a}}, p, s, n);
+    double above = t2.v[0], higher = t2.v[1];
+    const Vector2 t3 = tire_step(law, (Vector5){{x - TANGENT_STEP, R, t, v, a}}, p, s, n);
+    double below = t3.v[0], lower = t3.v[1];
+    if (here <= 0.0 && higher > 0.0) {
+        return (force - below) / TANGENT_STEP;
+    }
+    if (here > 0.0 && lower <= 0.0) {
+        return (above - force) / TANGENT_STEP;
+    }
+    return (above - below) / (2.0 * TANGENT_STEP);
+}
+
+/* hull1996.py: Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]; see
+   `Hull1996.coefficients`. */
+static Vector2 hull1996_coefficients(Vector10 constants, double surface_radius)
+{
+    double A;
+    double B;
+    double C0 = constants.v[0], D0 = constants.v[1], E0 = constants.v[2], D1 = constants.v[3], E1 = constants.v[4],
+        C2 = constants.v[5], D2 = constants.v[6], E2 = constants.v[7], D3 = constants.v[8], E3 = constants.v[9];
+    if (fabs(surface_radius) >= FLAT_RADIUS) {
+        return (Vector2){{C0, C2}};
+    }
+    double Rb = 100.0 * surface_radius;
+    if (Rb > 0.0) {
+        A = C0 - D0 * exp(-E0 * Rb);
+        B = C2 - D2 * exp(-E2 * Rb);
+    } else {
+        A = C0 + D1 * exp(E1 * Rb);
+        B = C2 + D3 * exp(E3 * Rb);
+    }
+    return (Vector2){{A, B}};
+}
+
+/* curvature_law.py: Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]. */
+static Vector2 curvature_law_coefficients(Vector18 slots, double surface_radius)
+{
+    double k1;
+    double A1;
+    double B1;
+    double part;
+    double curvature = fabs(surface_radius) >= FLAT_RADIUS ? 0.0 : 1.0 / surface_radius;
+    double k0 = slots.v[0];
+    double A0 = slots.v[1];
+    double B0 = slots.v[2];
+    if (curvature <= k0) {
+        return (Vector2){{A0, B0}};
+    }
+    for (int i = 1; i < 6; i++) {
+        k1 = slots.v[3 * i];
+        A1 = slots.v[3 * i + 1];
+        B1 = slots.v[3 * i + 2];
+        if (A1 > 0.0) {
+            if (curvature <= k1) {
+                part = (curvature - k0) / (k1 - k0);
+                return (Vector2){{A0 + part * (A1 - A0), B0 + part * (B1 - B0)}};
+            }
+            k0 = k1;
+            A0 = A1;
+            B0 = B1;
+        }
+    }
+    return (Vector2){{A0, B0}};
+}
+
+/* recalibrated.py: _curvature */
+static double recalibrated_curvature(double radius)
+{
+    return fabs(radius) >= FLAT_RADIUS ? 0.0 : 1.0 / radius;
+}
+
+/* recalibrated.py: Return a and b on a surface of radius `surface_radius` [m]. */
+static Vector2 recalibrated_changes(const double *q, int at, int count, double surface_radius)
+{
+    double above;
+    double a1;
+    double b1;
+    double width;
+    double part;
+    double here = recalibrated_curvature(surface_radius);
+    double below = recalibrated_curvature(q[at]);
+    double a0 = q[at + 1];
+    double b0 = q[at + 2];
+    for (int i = 0; i < count; i++) {
+        above = recalibrated_curvature(q[at + 3 * i]);
+        a1 = q[at + 3 * i + 1];
+        b1 = q[at + 3 * i + 2];
+        if (here <= above) {
+            width = above - below;
+            part = width > 0.0 ? (here - below) / width : 1.0;
+            part = greater(part, 0.0);
+            return (Vector2){{a0 + part * (a1 - a0), b0 + part * (b1 - b0)}};
+        }
+        below = above;
+        a0 = a1;
+        b0 = b1;
+    }
+    return (Vector2){{a0, b0}};
+}
+
+/* recalibrated.py: Return A exp(a) and B + b, but no exponent below 0.05. */
+static Vector2 recalibrated_changed(double A, double B, Vector2 by)
+{
+    double a = by.v[0], b = by.v[1];
+    return (Vector2){{A * exp(a), greater(B + b, 0.05)}};
+}
+
+/* flat_law.py: Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]. */
+Vector2 tire_law(const double *q, double surface_radius)
+{
+    Vector2 law;
+    int count;
+    if (q[0] == HULL1996) {
+        law = hull1996_coefficients((Vector10){{q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10]}},
+            surface_radius);
+    } else if (q[0] == POWER_LAW) {
+        law = (Vector2){{q[1], q[2]}};
+    } else {
+        law = curvature_law_coefficients((Vector18){{q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10],
+            q[11], q[12], q[13], q[14], q[15], q[16], q[17], q[18]}}, surface_radius);
+    }
+    int at = 20;
+    for (int t1 = 0; t1 < (int)q[19]; t1++) {
+        count = (int)q[at];
+        law = recalibrated_changed(law.v[0], law.v[1], recalibrated_changes(q, at + 1, count, surface_radius));
+        at += 1 + 3 * count;
+    }
+    return law;
+}

@@ -1,0 +1,108 @@
+"""Makes what is shipped: the kernel's C, and the binaries of the native FMU for five platforms.
+
+    python -m tirelab.fmu.native.make
+
+It takes ziglang (the extra `loader`), half a minute for a platform the first time, and writes beside this file. The
+same sources and the same ziglang give the same bytes in any folder; a test compares them with what is shipped.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import TirelabError
+from .kernel import sources
+
+HERE = Path(__file__).parent
+BINARIES = HERE / "binaries"
+MODEL = "BicycleTire"
+C_FILES = ("kernel.c", "tire.c", "fmi2.c")
+SHARED = (HERE.parent / "fmi2.h", HERE.parent / "fmi2_states.h")
+"""Headers that the Python FMU's loader has too."""
+
+FLAGS = ("-std=c99", "-shared", "-ffp-contract=off", "-fvisibility=hidden", "-s", "-Wall", "-Werror")
+"""No contraction of a product and a sum into one rounding: the numbers are those of Python."""
+
+
+@dataclass(frozen=True)
+class Platform:
+    """One platform: its names in FMI 2 and FMI 3, the target of ziglang, the library's ending, what else it needs."""
+
+    fmi2: str
+    fmi3: str
+    target: str
+    ending: str
+    flags: tuple[str, ...]
+
+    @property
+    def library(self) -> Path:
+        """Where its binary is kept."""
+        return BINARIES / self.fmi3 / f"{MODEL}.{self.ending}"
+
+
+_NO_TABLES = ("-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
+_ELF = ("-fPIC", *_NO_TABLES, "-Wl,--build-id=none", "-lm")
+_MACH_O = ("-fPIC", "-Os", *_NO_TABLES, f"-Wl,-install_name,@rpath/{MODEL}.dylib")
+PLATFORMS = (
+    Platform("linux64", "x86_64-linux", "x86_64-linux-gnu.2.17", "so", ("-O2", *_ELF)),
+    Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", "so", ("-Os", *_ELF)),
+    Platform("win64", "x86_64-windows", "x86_64-windows-gnu", "dll", ("-Os",)),
+    Platform("darwin64", "x86_64-darwin", "x86_64-macos.11.0", "dylib", _MACH_O),
+    Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", "dylib", _MACH_O),
+)
+
+
+def source_files() -> dict[str, bytes]:
+    """Return every C source and header by its name."""
+    paths = [*HERE.glob("*.c"), *HERE.glob("*.h"), *SHARED]
+    return {path.name: path.read_bytes() for path in sorted(paths, key=lambda path: path.name)}
+
+
+def write_kernel(folder: Path = HERE) -> None:
+    """Translate the kernel."""
+    for name, text in sources().items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def compile_for(platform: Platform, destination: Path, cache: Path | None = None) -> None:
+    """Compile the binary of one platform with ziglang; raises TirelabError where that cannot be done."""
+    if importlib.util.find_spec("ziglang") is None:
+        raise TirelabError("ziglang is not installed; python -m pip install 'tirelab[loader]'")
+    with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
+        work = Path(name)
+        for file, content in source_files().items():
+            (work / file).write_bytes(content)
+        kept = str(cache or work / "cache")
+        environment = {"ZIG_GLOBAL_CACHE_DIR": kept, "ZIG_LOCAL_CACHE_DIR": kept, **os.environ}
+        library = f"{MODEL}.{platform.ending}"
+        command = [sys.executable, "-m", "ziglang", "cc", "-target", platform.target, *FLAGS, "-o", library]
+        done = subprocess.run(
+            [*command, *C_FILES, *platform.flags], cwd=work, env=environment, capture_output=True, text=True
+        )
+        if done.returncode:
+            raise TirelabError(
+                f"ziglang cannot compile the binary for {platform.fmi3}: {done.stderr.strip()}"
+            )
+        destination.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(work / library, destination)
+
+
+def main(words: Sequence[str]) -> None:
+    """Write the kernel and the binaries; `words` are platforms in FMI 3's names, all where there is none."""
+    write_kernel()
+    for platform in PLATFORMS:
+        if not words or platform.fmi3 in words:
+            compile_for(platform, platform.library)
+            print(f"{platform.library}: {platform.library.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,112 @@
+/* One tire in an FMU: its data, its inputs, its state, and what it answers. Nothing here is shared between tires. */
+#ifndef TIRE_H
+#define TIRE_H
+
+#include "kernel.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "fmi2_states.h"
+
+/* The rows of numbers that a parameter can stand in. */
+enum { OF_LAW, OF_EFFECTS };
+
+typedef struct {
+    char name[72];
+    int row, index;
+    double minimum, maximum;
+} Parameter;
+
+/* The value references: the variables of every tire, then its parameters, then those of a tire that knows its motion. */
+enum { DEFLECTION, SURFACE_RADIUS, RADIAL_FORCE, RADIAL_STIFFNESS, IN_TESTED_RANGE, FIRST_PARAMETER };
+/* after the parameters: */
+enum { DEFLECTION_RATE, DEFLECTION_ACCELERATION, MOTION_GIVEN, MOTION_VARIABLES };
+enum { MOST_CONTINUOUS = 8 };
+
+typedef struct {
+    double deflection, radius, rate, acceleration;
+} Inputs;
+
+/* What an FMU state holds beside the rows of law and effects. */
+typedef struct {
+    Inputs inputs;
+    double time;      /* of the values that are asked for */
+    double reached;   /* the end of the last step */
+    double given;     /* whether rate and acceleration are inputs */
+    double stage;     /* the state of the standard */
+    double s[STATES];
+} Memory;
+
+typedef struct {
+    char *text;          /* the data file */
+    char guid[64];
+    Parameter *parameters;
+    int count;
+    double *q, *p;       /* numbers of the law and of the effects */
+    double *start;       /* the same as they were read, one after the other */
+    size_t law;          /* how many of the law */
+    bool bare;           /* no effect */
+    bool moves;          /* an effect uses rate or acceleration */
+    double range[4];     /* curvature from and to [1/m], deflection [m], force [N] */
+    bool tested;
+    int continuous[MOST_CONTINUOUS], continuous_count; /* indices in s that are a solver's */
+
+    bool exchange;       /* Model Exchange */
+    Memory m;
+    double n[STATES];    /* the state after the inputs were tried */
+    bool current;        /* force is that of the inputs */
+    bool unchecked;      /* a parameter was set since the last check */
+    Vector2 coefficients; /* A and B on the surface of radius `surface` */
+    double surface;
+    double force, compression;
+} Tire;
+
+enum { TROUBLE = 600 };
+
+/* Read the data of the tire from the FMU's resources; a sentence in `trouble` where that cannot be done. */
+bool tire_read(Tire *tire, const char *resources, const char *guid, char trouble[TROUBLE]);
+void tire_free(Tire *tire);
+
+/* As it was after it was read. */
+void tire_reset(Tire *tire);
+
+/* Evaluate the inputs at the time, without changing the state; a sentence where no tire can have them. */
+bool tire_try(Tire *tire, double time, char trouble[TROUBLE]);
+
+/* The same, and take the state after it. */
+bool tire_accept(Tire *tire, double time, char trouble[TROUBLE]);
+
+/* Begin the history with the inputs of the start. */
+bool tire_begin(Tire *tire, double start, char trouble[TROUBLE]);
+
+double tire_tangent(Tire *tire);
+bool tire_in_range(const Tire *tire);
+
+/* Real variables by reference; false where there is none that can be read or set. */
+bool tire_get(Tire *tire, unsigned reference, double *value);
+bool tire_set(Tire *tire, unsigned reference, double value);
+bool tire_can_set(Tire *tire, unsigned reference);
+
+/* The change of a value per unit of a change of inputs and states along a direction, by central differences. */
+bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const double seed[], size_t count,
+                     double *value);
+
+/* Where a step may begin and how long it may be; a sentence where that is not so. */
+bool tire_step_fits(const Tire *tire, double time, double step, char trouble[TROUBLE]);
+
+/* Whether a reference is that of the Boolean parameter motion_given. */
+bool tire_is_motion_given(const Tire *tire, unsigned reference);
+void tire_give_motion(Tire *tire, bool given);
+
+/* The number of the variable among those of the motion, or among states and their derivatives, or -1. */
+int tire_motion_variable(const Tire *tire, unsigned reference);
+int tire_state_variable(const Tire *tire, unsigned reference);
+
+/* States as bytes. */
+size_t tire_state_size(const Tire *tire);
+void tire_save(const Tire *tire, char *bytes);
+bool tire_is_state(const Tire *tire, const char *bytes, size_t size, char trouble[TROUBLE]);
+bool tire_restore(Tire *tire, const char *bytes, size_t size, char trouble[TROUBLE]);
+
+#endif

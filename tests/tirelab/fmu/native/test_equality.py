@@ -1,0 +1,116 @@
+"""The native FMU in hosts without Python beside the Python of the same tire: the same bits."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+from loader_bench import guid_of, unpacked_archive
+from native_tires import drive, read, sensitivity, stepped, tires, written
+from radialtire import TireModel
+from tirelab.fmu.loader import Compiler
+from tirelab.fmu.native.pack import build_native_fmu
+
+HOST = Path(__file__).parents[1] / "drive.c"
+MOMENTS = 10_000
+RANDOM_SETS = 20
+
+Run = Callable[[TireModel, list[tuple[float, float, float]], Path], list[float]]
+
+
+def runner(command: Sequence[str], library: str, where: Callable[[Path], str] = str) -> Run:
+    """A function that drives the native FMU of a tire in a host; where: how the host names a path."""
+
+    def run(tire: TireModel, moments: list[tuple[float, float, float]], folder: Path) -> list[float]:
+        fmu = unpacked_archive(build_native_fmu(tire, folder).path, folder / "fmu")
+        out = folder / "out.bin"
+        words = [where(fmu / library), guid_of(fmu), (fmu / "resources").as_uri()]
+        files = [where(written(moments, folder / "in.bin")), where(out)]
+        environment = {"HOME": os.environ.get("HOME", str(folder)), "PATH": "", "WINEDEBUG": "-all"}
+        done = subprocess.run(
+            [*command, *words, *files], capture_output=True, text=True, env=environment, timeout=300
+        )
+        assert done.returncode == 0, done.stderr
+        return read(out)
+
+    return run
+
+
+def differing(run: Run, folder: Path, count: int, sets: int) -> dict[str, float]:
+    """Run every tire and return the largest relative difference of those that are not equal bit by bit."""
+    found = {}
+    for number, (name, tire) in enumerate(tires(sets)):
+        moments = drive(count, number)
+        expected = stepped(tire, moments)
+        forces = run(tire, moments, folder / str(number))
+        scale = max(map(abs, expected))
+        if forces != expected:
+            found[name] = max(abs(a - b) for a, b in zip(forces, expected, strict=True)) / scale
+        shutil.rmtree(folder / str(number))
+    return found
+
+
+def test_the_same_bits_in_a_host_in_c(compiler: Compiler, tmp_path: Path) -> None:
+    """Every law and effect, plain and with options, and random sets; state saved and restored in mid-run."""
+    host = tmp_path / "drive"
+    subprocess.run([*compiler.command, "-std=c11", "-O2", "-o", host, HOST, "-ldl"], check=True)
+    run = runner([str(host)], "binaries/linux64/BicycleTire.so")
+    assert differing(run, tmp_path, MOMENTS, RANDOM_SETS) == {}
+
+
+def zig(target: str, destination: Path, *flags: str) -> None:
+    """Compile the host for another platform."""
+    pytest.importorskip("ziglang")
+    command = [
+        sys.executable,
+        "-m",
+        "ziglang",
+        "cc",
+        "-target",
+        target,
+        "-O2",
+        "-o",
+        str(destination),
+        str(HOST),
+    ]
+    subprocess.run([*command, *flags], check=True, capture_output=True)
+
+
+@pytest.mark.slow
+def test_the_same_bits_on_aarch64(tmp_path: Path) -> None:
+    """Under qemu, with the C library of that platform."""
+    emulator, library = shutil.which("qemu-aarch64"), Path("/usr/aarch64-linux-gnu")
+    if emulator is None or not library.is_dir():
+        pytest.skip("qemu-user and libc6-arm64-cross are not installed")
+    host = tmp_path / "drive"
+    zig("aarch64-linux-gnu.2.36", host, "-ldl")
+    run = runner([emulator, "-L", str(library), str(host)], "binaries/aarch64-linux/BicycleTire.so")
+    assert differing(run, tmp_path, 2000, 10) == {}
+
+
+@pytest.mark.slow
+def test_close_on_windows(tmp_path: Path) -> None:
+    """Under Wine: another C library rounds powers otherwise, which the noise tracker enlarges."""
+    emulator = shutil.which("wine")
+    if emulator is None:
+        pytest.skip("wine is not installed")
+    host = tmp_path / "drive.exe"
+    zig("x86_64-windows-gnu", host)
+
+    def where(path: Path) -> str:
+        return "Z:" + str(path).replace("/", "\\")
+
+    run = runner([emulator, str(host)], "binaries/win64/BicycleTire.dll", where)
+    found = differing(run, tmp_path, 2000, 10)
+    print({name: f"{value:.1e}" for name, value in found.items()})
+    for number, (name, tire) in enumerate(tires(10)):
+        noisy = tire.differentiates and tire.reading_noise > 0.0
+        bound = 1e-9 if noisy else 1e-12
+        if noisy and found.get(name, 0.0) > bound:  # all effects at once are chaotic: in Python itself, too
+            bound = 10.0 * sensitivity(tire, drive(2000, number))
+        assert found.get(name, 0.0) < bound, name

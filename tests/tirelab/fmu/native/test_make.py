@@ -1,0 +1,41 @@
+"""What is shipped with the package: the translated kernel and the binaries are those that the sources make."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from tirelab.fmu.loader import Compiler
+from tirelab.fmu.native.kernel import sources
+from tirelab.fmu.native.make import C_FILES, HERE, PLATFORMS, Platform, compile_for, source_files
+
+
+def test_the_kernel_is_that_of_the_python() -> None:
+    """Where this fails: python -m tirelab.fmu.native.make."""
+    for name, text in sources().items():
+        assert (HERE / name).read_text(encoding="utf-8") == text, f"{name} is not that of radialtire"
+
+
+@pytest.mark.parametrize("platform", PLATFORMS[:2], ids=lambda platform: str(platform.fmi3))
+def test_the_binaries_for_linux_are_those_of_the_sources(platform: Platform, tmp_path: Path) -> None:
+    pytest.importorskip("ziglang")
+    compile_for(platform, tmp_path / "made")
+    assert (tmp_path / "made").read_bytes() == platform.library.read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("platform", PLATFORMS[2:], ids=lambda platform: str(platform.fmi3))
+def test_the_other_binaries_are_those_of_the_sources(platform: Platform, tmp_path: Path) -> None:
+    """Minutes, where ziglang has to make the C library of Windows first."""
+    pytest.importorskip("ziglang")
+    compile_for(platform, tmp_path / "made")
+    assert (tmp_path / "made").read_bytes() == platform.library.read_bytes()
+
+
+def test_the_sources_compile_without_warnings(compiler: Compiler, tmp_path: Path) -> None:
+    for name, content in source_files().items():
+        (tmp_path / name).write_bytes(content)
+    strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-fPIC", "-shared"]
+    command = [*compiler.command, *strict, "-o", str(tmp_path / "made.so"), *C_FILES, "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
