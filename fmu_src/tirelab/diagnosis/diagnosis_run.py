@@ -27,7 +27,7 @@ from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
 from .diagnose import diagnose
-from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
+from .outcome import DATA, DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
 
 AGREEMENT = 1e-9
@@ -85,6 +85,7 @@ def run_diagnosis(
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
     _write(out, content, verdict)
+    _write_samples(out, (("fitted", on_fitted), ("held-out", on_kept)))
     page = {
         **content,
         **verdict.page_content(),
@@ -193,5 +194,29 @@ def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:
                     "radius [cm]": np.round(100.0 * motion.surface_radius, 9),
                 }
             ).write_csv(out / TEST)
+    except OSError as error:
+        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
+
+
+def _write_samples(out: Path, groups: Sequence[tuple[str, Replayed]]) -> None:
+    """Write every sample of every recording with the forces before and after: the data behind the plots."""
+    tables = [
+        pl.DataFrame(
+            {
+                "recording": [recording.name] * len(recording),
+                "used": [used] * len(recording),
+                "time [s]": recording.time,
+                "deflection [mm]": 1e3 * recording.deflection,
+                "radius [cm]": 100.0 * recording.surface_radius,
+                "force [N]": recording.force,
+                "force before [N]": before,
+                "force after [N]": after,
+            }
+        )
+        for used, replayed in groups
+        for recording, before, after in zip(replayed.recordings, replayed.before, replayed.after, strict=True)
+    ]
+    try:
+        pl.concat(tables).write_csv(out / DATA, float_precision=6)
     except OSError as error:
         raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None

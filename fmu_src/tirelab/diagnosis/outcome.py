@@ -19,12 +19,13 @@ from .residual_model import ResidualModel
 
 FloatArray = NDArray[np.float64]
 
-TIRE, FMU, DIAGNOSIS, REPORT, TEST = (
+TIRE, FMU, DIAGNOSIS, REPORT, TEST, DATA = (
     "tire.json",
     "BicycleTire.fmu",
     "diagnosis.json",
     "report.html",
     "separating_test.csv",
+    "plots.csv",
 )
 """The files of a diagnosis, in its folder."""
 
@@ -46,7 +47,7 @@ class Replayed:
 
 
 def content_of(verdict: Mapping[str, Any], fitted: Replayed, held_out: Replayed) -> dict[str, Any]:
-    """Return the content of diagnosis.json, schema 1, with the errors of the corrected FMU and the names of the files.
+    """Return the content of diagnosis.json with the errors of the corrected FMU and the names of the files.
 
     verdict: from `Verdict.to_dict`. The held-out errors are those of the held-out recordings; without any, those of the
     part of the recordings that the diagnosis held out (`held_out_by` says which). A number that is not known is null.
@@ -65,7 +66,7 @@ def content_of(verdict: Mapping[str, Any], fitted: Replayed, held_out: Replayed)
     if content["verdict"]["separating_test"] is not None:
         test = {**content["verdict"]["separating_test"], "file": TEST}
         content["verdict"] = {**content["verdict"], "separating_test": test}
-    return finite({**content, "tire": TIRE, "corrected_fmu": FMU, "report": REPORT})
+    return finite({**content, "tire": TIRE, "corrected_fmu": FMU, "report": REPORT, "data": DATA})
 
 
 def page_content(

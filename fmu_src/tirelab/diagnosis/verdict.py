@@ -20,7 +20,8 @@ from ..report.titles import headline
 from ..simulation.simulate import simulate
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
-from .localization import Span
+from .effect_sizes import effect_size, load_of
+from .localization import Span, law_corrected
 from .outcome import finite, page_content
 from .residual_model import ResidualModel
 
@@ -128,6 +129,7 @@ class Verdict:
                             },
                             "share": e.share,
                             "probability": e.probability,
+                            "size": effect_size(e.name, self.tire, self.baseline, self.recordings),
                         }
                         for e in self.effects
                     ],
@@ -146,11 +148,13 @@ class Verdict:
                     "after": self.fit.after,
                     "held_out_before": self.fit.held_out_before,
                     "held_out_after": self.fit.held_out_after,
+                    "load": load_of(self.recordings),
                 },
                 "held_out_by": self.fit.held_out_by,
                 "tire": None,
                 "corrected_fmu": None,
                 "report": None,
+                "data": None,
             }
         )
 
@@ -160,7 +164,13 @@ class Verdict:
             **page_content(self.evidence, self.alternatives, self.residual_models, self.test),
             "tire_before": self.baseline.name,
             "tire_after": self.tire.name,
+            "located": self._located(),
         }
+
+    def _located(self) -> list[FloatArray]:
+        """Return the residuals [N] in which the places of `where` lie, one array for each recording."""
+        before = [r.force - simulate(self.baseline, r) for r in self.recordings]
+        return law_corrected(self.recordings, before, self.baseline, self.tire)
 
     def report(self, path: Path | str) -> None:
         """Write the page that `tirelab diagnose` writes, with the forces of the simulated corrected tire, to `path`.

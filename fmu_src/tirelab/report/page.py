@@ -19,8 +19,9 @@ from radialtire import CATALOGUE
 from ..errors import TirelabError
 from ..names import REFITTED_LAW
 from ..recordings.recording import Recording
-from . import titles, words
+from . import first_screen, titles, words
 from .loops import Case, draw_difference, draw_loops
+from .places import Located, draw_where, shaded
 from .residuals import (
     draw_maps,
     draw_over_deflection,
@@ -42,10 +43,23 @@ MOST_LOOPS = 4
 MOST_PLACES = 8
 """Rows of the table of places."""
 
+MOST_TOLD = 2
+"""Places that the first screen tells in words."""
+
 MOST_SETS = 15
 """Rows of the table of sets that were compared."""
 
-BESIDE = ("tire_before", "tire_after", "evidence", "reasons", "correction", "waveform", "warnings", "command")
+BESIDE = (
+    "tire_before",
+    "tire_after",
+    "evidence",
+    "reasons",
+    "correction",
+    "waveform",
+    "warnings",
+    "command",
+    "located",
+)
 """What a diagnosis may have besides the content of diagnosis.json."""
 
 VERSIONS_OF = ("tirelab", "numpy", "scipy", "matplotlib")
@@ -73,6 +87,7 @@ def write_report(
         waveform      {"time" [s], "deflection" [m]} of the recommended next test
         warnings      sentences for the top of the page
         command       the command line
+        located       residuals [N] in which the places lie, one array for each recording; without, those before
     before, after: simulated forces [N], one array for each recording; held_out: the same for the held-out
     recordings
 
@@ -99,6 +114,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     reasons = list(diagnosis["reasons"] or [])
     alternatives = verdict["alternatives"]
     return page.render(
+        first=_first_screen(diagnosis, fitted, reasons),
         style=Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
         verdict=verdict,
@@ -140,6 +156,49 @@ def _cases(
                     f"{len(recording)} samples; simulate it again"
                 )
     return [Case(r, b, a) for r, b, a in zip(recordings, before, after, strict=True)]
+
+
+def _first_screen(
+    diagnosis: Mapping[str, Any], fitted: Sequence[Case], reasons: Sequence[str]
+) -> dict[str, Any]:
+    """What the first screen shows: see `first_screen`."""
+    verdict, noise = diagnosis["verdict"], float(diagnosis["fit"]["noise"])
+    residuals = diagnosis["located"]
+    if not residuals or [len(r) for r in residuals] != [len(c.recording) for c in fitted]:
+        residuals = [c.recording.force - c.before for c in fitted]
+    located = [
+        Located(c.recording, np.asarray(r, float), c.before) for c, r in zip(fitted, residuals, strict=True)
+    ]
+    where = words.foremost(diagnosis["where"], MOST_PLACES)
+    worst = max(located, key=lambda at: float(np.sum(at.residual**2)))
+    places = shaded(where, worst)
+    test = verdict["separating_test"] or {}
+    return {
+        "headline": first_screen.headline(diagnosis),
+        "lead": first_screen.lead(verdict),
+        "sure": first_screen.sureness(verdict),
+        "undecided": first_screen.undecided(verdict),
+        "figures": first_screen.figures(diagnosis),
+        "picture": draw_where(worst, places, noise, "where"),
+        "recording": worst.recording.name if len(located) > 1 else "",
+        "places": [
+            (words.coordinate(p["by"]), words.span(p), p["share"]) for p in (places or where)[:MOST_TOLD]
+        ],
+        "is_shaded": bool(places),
+        "next": (step := first_screen.next_step(diagnosis, reasons)),
+        "drive": test.get("file") if step.drive else None,
+        "links": [
+            (title, name)
+            for title, name in (
+                ("Tire", diagnosis.get("tire")),
+                ("FMU", diagnosis.get("corrected_fmu")),
+                ("Drive file", test.get("file")),
+                ("Data of the plots", diagnosis.get("data")),
+                ("Numbers", "diagnosis.json" if diagnosis.get("tire") else None),
+            )
+            if name
+        ],
+    }
 
 
 def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:

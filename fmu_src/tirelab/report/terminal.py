@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from . import titles, words
+from . import first_screen, titles, words
 
 MOST_PLACES = 6
 """Rows of the table of places."""
@@ -26,8 +26,8 @@ def print_diagnosis(
     diagnosis: the content of diagnosis.json
     """
     verdict, fit = diagnosis["verdict"], diagnosis["fit"]
-    console.print(Text(words.headline(verdict), style="bold"))
-    console.print(Text(words.besides(verdict)))
+    console.print(Text(first_screen.headline(diagnosis), style="bold"))
+    console.print(Text(verdict["summary"]))
     console.print()
     errors = _table("RMS error [N]", "before", "after", "noise")
     noise = words.number(fit["noise"])
@@ -81,6 +81,7 @@ def print_diagnosis(
     if verdict["separating_test"] is not None:
         console.print(Text(f"Recommended next test: {verdict['separating_test']['sentence']}"))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
+    files += [diagnosis["data"]] if diagnosis.get("data") else []
     if verdict["separating_test"] is not None:
         files.append(verdict["separating_test"]["file"])
     console.print(Text(f"Written to {printable(str(out))}: {', '.join(files)}"))

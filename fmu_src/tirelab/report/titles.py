@@ -29,6 +29,24 @@ def effect_title(name: str) -> str:
     )
 
 
+_SHORT = {
+    "rate_independent_hysteresis": "friction loop",
+    "series_compliance": "series spring",
+    "viscoelastic_relaxation": "relaxation",
+}
+"""Names for headlines and lists of effects whose own name is long."""
+
+
+def short_title(name: str) -> str:
+    """Return the name of an effect where there is little room."""
+    return _SHORT.get(name) or effect_title(name)
+
+
+def short_set(names: Sequence[str]) -> str:
+    """Return the name of a set of effects where there is little room."""
+    return " + ".join(short_title(name) for name in names) or "nothing missing"
+
+
 def set_title(names: Sequence[str]) -> str:
     """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
     known = {*CATALOGUE, REFITTED_LAW, UNKNOWN}

@@ -10,7 +10,6 @@ from typing import Any
 from radialtire import CATALOGUE, FLAT_RADIUS
 
 from ..names import REFITTED_LAW
-from . import titles
 
 LAW_STATEMENT = (
     "the elastic law has other coefficients than in the baseline tire; a refitted law is not missing physics"
@@ -95,6 +94,14 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.0f} %".replace("-", "−")
 
 
+def of_load(size: float | None, load: float | None) -> str:
+    """Return a force's size as a part of the load, both root mean squares [N]; empty where one is not known."""
+    if size is None or not load:
+        return ""
+    share = size / load
+    return f"{100.0 * share:.1f} %" if 0.005 <= share < 0.0095 else percent(share)
+
+
 def confidence_word(confidence: float) -> str:
     """Return how sure that is, in words."""
     for limit, word in ((0.9, "sure"), (0.7, "fairly sure"), (0.5, "more likely than not")):
@@ -162,17 +169,6 @@ def surface(radius: float | str) -> str:
     if abs(size) >= FLAT_RADIUS:
         return "flat ground"
     return f"{'convex' if size > 0.0 else 'concave'}, radius {number(100.0 * abs(size))} cm"
-
-
-def headline(verdict: Mapping[str, Any]) -> str:
-    """Return the verdict in one line."""
-    names = [effect["name"] for effect in verdict["effects"]]
-    return titles.headline(names, bool(verdict["unexplained"]), bool(verdict["alternatives"]))
-
-
-def besides(verdict: Mapping[str, Any], but: str = "") -> str:
-    """Return the summary after its headline, without the sentence `but`."""
-    return " ".join(str(verdict["summary"]).removeprefix(headline(verdict)).replace(but, "").split())
 
 
 def held_out_part(by: str) -> str:

@@ -82,6 +82,7 @@ def test_everything_is_written(damped_run: Any) -> None:
         "BicycleTire.fmu",
         "diagnosis.json",
         "report.html",
+        "plots.csv",
     }
     assert ("separating_test.csv" in files) == (damped_run.verdict.test is not None)
     assert damped_run.verdict.alternatives or damped_run.verdict.test is None

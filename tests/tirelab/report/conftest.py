@@ -97,10 +97,12 @@ def diagnosed(
             "after": _rmse(made[:-1], after[:-1]),
             "held_out_before": _rmse(made[-1:], before[-1:]),
             "held_out_after": _rmse(made[-1:], after[-1:]),
+            "load": 1000.0,
         },
         "tire": "tire.json",
         "corrected_fmu": "BicycleTire.fmu",
         "report": "report.html",
+        "data": "plots.csv",
         "tire_before": "Hull, Wang & Moore 1996",
         "tire_after": corrected.name,
         "command": "tirelab diagnose ride_0.csv ride_1.csv --held-out ride_2.csv --out out",
@@ -126,7 +128,7 @@ def _where() -> list[dict[str, Any]]:
 def effect(name: str, share: float, **parameters: tuple[float, float | None, str]) -> dict[str, Any]:
     """An entry of the verdict's effects."""
     told = {p: {"value": v, "std": s, "unit": u} for p, (v, s, u) in parameters.items()}
-    return {"name": name, "parameters": told, "share": share, "probability": 0.97}
+    return {"name": name, "parameters": told, "share": share, "probability": 0.97, "size": 40.0 * share}
 
 
 def nothing_missing() -> Diagnosed:

@@ -24,6 +24,10 @@ HOSTILE = (
 KINDS = ("nothing", "one", "two", "alternatives", "unknown")
 
 
+FILES = ("tire.json", "BicycleTire.fmu", "separating_test.csv", "plots.csv", "diagnosis.json")
+"""The files beside the report, the only ones that it may lead to."""
+
+
 class Elements(HTMLParser):
     """The page's elements with their attributes and the elements around each, and the text of each kind."""
 
@@ -78,7 +82,12 @@ def test_the_page_is_well_formed_and_needs_nothing_else(pages: dict[str, str], k
         assert not [name for name in attributes if name.startswith("on")]
         for name in ("src", "href", "xlink:href", "srcset", "action", "data"):
             value = attributes.get(name)
-            assert value is None or value.startswith(("#", "data:image/png;base64,")), (tag, name, value)
+            own = name == "href" and tag == "a" and value in FILES
+            assert own or value is None or value.startswith(("#", "data:image/png;base64,")), (
+                tag,
+                name,
+                value,
+            )
     styles = " ".join([*page.texts["style"], *(a.get("style") or "" for _, a, _ in page.found)])
     assert "@import" not in styles
     assert set(re.findall(r"url\((.)", pages[kind])) <= {"#"}
@@ -112,20 +121,36 @@ def test_pictures_have_words_and_tables_have_headers(pages: dict[str, str], kind
 
 def test_each_kind_says_its_verdict_in_plain_words(pages: dict[str, str]) -> None:
     said = {name: Elements(text).texts["h1"][0] for name, text in pages.items()}
-    assert said["nothing"] == "Nothing is missing."
-    assert said["one"] == "Left out: viscous damping."
-    assert said["two"] == (
-        "Left out: rate-independent hysteresis and deflection offset, and the elastic law has other coefficients."
-    )
-    assert said["alternatives"] == (
-        "Left out: rate-independent hysteresis – but these recordings cannot rule out alternatives."
-    )
-    assert said["unknown"] == "Something is missing that no known effect explains."
+    assert said["nothing"] == "Nothing is missing"
+    assert said["one"] == "Viscous damping, 4 % of the load"
+    assert said["two"] == "Friction loop and deflection offset; law refitted"
+    assert said["alternatives"] == "Undecided: friction loop, viscous damping or 1 other"
+    assert said["unknown"] == "Something unknown, < 1 % of the load"
+
+
+def test_the_first_screen_leads_to_the_files(pages: dict[str, str]) -> None:
+    page = Elements(pages["alternatives"])
+    links = [a["href"] for tag, a, around in page.found if tag == "a" and "header" in around]
+    assert set(links) == set(FILES)
+    text = " ".join(page.texts["header"][0].split())
+    for words in (
+        "One of several possibilities: 46 %",
+        "Record triangles at three rates to 22.0 mm",
+        "Noise floor",
+    ):
+        assert words in text
+    assert "Nothing: use this tire." in page_text(pages["one"])
+
+
+def page_text(page: str) -> str:
+    """The text of the first screen."""
+    return " ".join(Elements(page).texts["header"][0].split())
 
 
 def test_alternatives_have_reasons_and_a_test(pages: dict[str, str]) -> None:
     page = Elements(pages["alternatives"])
-    assert [" ".join(item.split()) for item in page.texts["li"]] == [
+    said = [" ".join(item.split()) for item in page.texts["li"]]
+    assert [item for item in said if not item.endswith(FILES)] == [
         "viscous damping (one constant rate only: drive a second rate)",
         "viscoelastic relaxation and refitted law (no hold: hold 10 s at 14 mm)",
     ]

@@ -52,3 +52,30 @@ def test_forces_and_confidence() -> None:
         "-1500 N",
     ]
     assert titles.sure(0.946) == "Confidence 95 %."
+
+
+@pytest.mark.parametrize(
+    ("names", "unexplained", "alternatives", "told"),
+    [
+        ([], False, [], "Nothing is missing."),
+        (["recalibration"], False, [], "No physics is missing: the elastic law has other coefficients."),
+        (
+            ["recalibration"],
+            True,
+            [],
+            "Left out: something that no known effect explains, and the elastic law has other coefficients.",
+        ),
+        (["inertia", "force_lag"], False, [], "Left out: inertia and force lag."),
+        ([], True, [], "Something is missing that no known effect explains."),
+        (
+            [],
+            False,
+            [["force_offset"]],
+            "Nothing is missing – but these recordings cannot rule out alternatives.",
+        ),
+    ],
+)
+def test_first_sentences(
+    names: list[str], unexplained: bool, alternatives: list[list[str]], told: str
+) -> None:
+    assert titles.headline(names, unexplained, bool(alternatives)) == told

@@ -76,34 +76,6 @@ def test_the_foremost_places_do_not_crowd_each_other_out() -> None:
     assert [p["by"] for p in words.foremost(bands, 12)] == ["deflection"]
 
 
-@pytest.mark.parametrize(
-    ("names", "unexplained", "alternatives", "told"),
-    [
-        ([], False, [], "Nothing is missing."),
-        (["recalibration"], False, [], "No physics is missing: the elastic law has other coefficients."),
-        (
-            ["recalibration"],
-            True,
-            [],
-            "Left out: something that no known effect explains, and the elastic law has other coefficients.",
-        ),
-        (["inertia", "force_lag"], False, [], "Left out: inertia and force lag."),
-        ([], True, [], "Something is missing that no known effect explains."),
-        (
-            [],
-            False,
-            [["force_offset"]],
-            "Nothing is missing – but these recordings cannot rule out alternatives.",
-        ),
-    ],
-)
-def test_headlines(names: list[str], unexplained: bool, alternatives: list[list[str]], told: str) -> None:
-    effects = [{"name": name} for name in names]
-    assert (
-        words.headline({"effects": effects, "unexplained": unexplained, "alternatives": alternatives}) == told
-    )
-
-
 def test_sets_are_named_whether_known_or_not() -> None:
     assert titles.set_title([]) == "nothing missing"
     assert titles.set_title(["recalibration"]) == "refitted law"
