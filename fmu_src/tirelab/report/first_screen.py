@@ -176,9 +176,9 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     own = [e["name"] for e in verdict["effects"]] + ([UNKNOWN] if verdict["unexplained"] else [])
     sets = [titles.short_set(own)]
     for names in verdict["alternatives"]:
-        more = [name for name in names if name not in own]
+        added = [name for name in names if name not in own]
         beside = bool(own) and set(own) < set(names)
-        sets.append(f"+ {titles.short_set(more)}" if beside else titles.short_set(names))
+        sets.append(f"+ {titles.short_set(added)}" if beside else titles.short_set(names))
     yield f"Undecided: {titles.listed(sets, 'or')}"
     for shown in range(len(sets) - 1, 0, -1):
         others = len(sets) - shown

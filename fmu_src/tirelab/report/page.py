@@ -19,7 +19,7 @@ from radialtire import CATALOGUE
 from ..errors import TirelabError
 from ..names import REFITTED_LAW
 from ..recordings.recording import Recording
-from . import first_screen, titles, words
+from . import explore, first_screen, titles, words
 from .loops import Case, draw_difference, draw_loops
 from .places import Located, draw_where, shaded
 from .residuals import (
@@ -114,8 +114,14 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     reasons = list(diagnosis["reasons"] or [])
     alternatives = verdict["alternatives"]
     return page.render(
+        script=explore.script(),
+        explored=explore.explored(
+            [("fitted", c) for c in fitted] + [("held-out", c) for c in held_out],
+            float(diagnosis["fit"]["noise"]),
+            all(c.alike for c in fitted),
+        ),
         first=_first_screen(diagnosis, fitted, reasons),
-        style=Markup((here / "report.css").read_text(encoding="utf-8")),
+        style=explore.style() + Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
         verdict=verdict,
         effects=[_effect(effect) for effect in verdict["effects"]],
