@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..estimation.findings import Evidence
 from ..recordings.recording import Recording
-from ..report.titles import newtons
+from ..report.titles import difference, newtons
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -92,6 +92,23 @@ def page_content(
         if test is None
         else {"time": test.test.time.tolist(), "deflection": test.test.deflection.tolist()},
     }
+
+
+def alternative_detail(names: Sequence[str], alternative: Alternative) -> dict[str, Any]:
+    """Return an entry of `alternative_details` in diagnosis.json: how it differs from the verdict's `names`, why."""
+    lacks, action = split_reason(alternative.reason)
+    return {
+        "difference": difference(names, alternative.names),
+        "probability": alternative.probability,
+        "reason": lacks,
+        "action": action,
+    }
+
+
+def split_reason(reason: str) -> tuple[str, str]:
+    """Return what the recordings lack, and what to do about it, of sentences such as "no hold: hold 10 s at 15 mm"."""
+    parts = [part.partition(": ") for part in reason.split("; ")]
+    return "; ".join(lacks for lacks, _, _ in parts), "; ".join(action for _, _, action in parts if action)
 
 
 def _remark(number: int, log_evidence: float) -> str:

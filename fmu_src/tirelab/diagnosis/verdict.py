@@ -12,7 +12,7 @@ from radialtire import TireModel
 from ..errors import TirelabError
 from ..estimation.findings import Evidence, NamedEffect
 from ..estimation.remainder import Remainder
-from ..names import UNKNOWN
+from ..names import REFITTED_LAW, UNKNOWN
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..recordings.recording import Recording
@@ -21,8 +21,10 @@ from ..simulation.simulate import simulate
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .effect_sizes import effect_size, load_of
+from .effect_sketch import sketch_of
+from .law_change import LawChange, law_changes
 from .localization import Span, law_corrected
-from .outcome import finite, page_content
+from .outcome import alternative_detail, finite, page_content
 from .residual_model import ResidualModel
 
 if TYPE_CHECKING:
@@ -130,11 +132,15 @@ class Verdict:
                             "share": e.share,
                             "probability": e.probability,
                             "size": effect_size(e.name, self.tire, self.baseline, self.recordings),
+                            **({"law": [c.to_dict() for c in self._law()]} if e.name == REFITTED_LAW else {}),
                         }
                         for e in self.effects
                     ],
                     "confidence": self.confidence,
                     "alternatives": [list(r.names) for r in self.alternatives],
+                    "alternative_details": [
+                        alternative_detail([e.name for e in self.effects], a) for a in self.alternatives
+                    ],
                     "unexplained": self.unexplained,
                     "remainder": self.remainder.to_dict(),
                     "summary": self.summary,
@@ -165,7 +171,27 @@ class Verdict:
             "tire_before": self.baseline.name,
             "tire_after": self.tire.name,
             "located": self._located(),
+            "law_changes": [
+                {"radius": c.radius, "deflection": c.deflection.tolist(), "difference": c.difference.tolist()}
+                for c in self._law()
+            ],
+            "sketches": {
+                e.name: {
+                    "deflection": s.deflection.tolist(),
+                    "force": s.force.tolist(),
+                    "varied": {parameter: force.tolist() for parameter, force in s.varied.items()},
+                }
+                for e in self.effects
+                if (s := sketch_of(e.name, self.tire, self.recordings)) is not None
+            },
         }
+
+    def _law(self) -> tuple[LawChange, ...]:
+        """Return the change of the law on every surface; nothing where the law was not refitted."""
+        refitted = [e for e in self.effects if e.name == REFITTED_LAW]
+        if not refitted:
+            return ()
+        return law_changes(self.baseline, self.tire, refitted[0].parameters, self.recordings)
 
     def _located(self) -> list[FloatArray]:
         """Return the residuals [N] in which the places of `where` lie, one array for each recording."""

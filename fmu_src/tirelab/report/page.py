@@ -30,7 +30,7 @@ from .residuals import (
     draw_slow_changes,
     misfit_of,
 )
-from .sketches import draw_correction, draw_waveform
+from .sketches import draw_correction, draw_law_changes, draw_sketch, draw_waveform
 
 FloatArray = NDArray[np.float64]
 
@@ -59,6 +59,8 @@ BESIDE = (
     "warnings",
     "command",
     "located",
+    "law_changes",
+    "sketches",
 )
 """What a diagnosis may have besides the content of diagnosis.json."""
 
@@ -87,6 +89,8 @@ def write_report(
         waveform      {"time" [s], "deflection" [m]} of the recommended next test
         warnings      sentences for the top of the page
         command       the command line
+        law_changes   [{"radius" [m], "deflection" [m], "difference" [N]}]: the refitted law less the baseline's
+        sketches      effect -> {"deflection" [m], "force" [N], "varied": parameter -> force [N]}
         located       residuals [N] in which the places lie, one array for each recording; without, those before
     before, after: simulated forces [N], one array for each recording; held_out: the same for the held-out
     recordings
@@ -112,7 +116,6 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     environment.filters |= {"number": words.number, "percent": words.percent}
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
-    alternatives = verdict["alternatives"]
     return page.render(
         script=explore.script(),
         explored=explore.explored(
@@ -124,10 +127,9 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         style=explore.style() + Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
         verdict=verdict,
-        effects=[_effect(effect) for effect in verdict["effects"]],
-        alternatives=list(
-            zip(alternatives, reasons + [""] * (len(alternatives) - len(reasons)), strict=False)
-        ),
+        effects=[_effect(effect, diagnosis["sketches"] or {}) for effect in verdict["effects"]],
+        alternatives=_alternatives(verdict),
+        law_curves=draw_law_changes(diagnosis["law_changes"], "law") if diagnosis["law_changes"] else None,
         fit=_fit(diagnosis["fit"], diagnosis.get("held_out_by", ""), fitted, held_out),
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
@@ -207,25 +209,49 @@ def _first_screen(
     }
 
 
-def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:
+def _effect(effect: Mapping[str, Any], sketches: Mapping[str, Any]) -> dict[str, Any]:
     name = effect["name"]
     known = CATALOGUE.get(name)
+    sketch = sketches.get(name)
     return {
         "title": titles.effect_title(name),
+        "size": words.number(effect.get("size")) if effect.get("size") is not None else "",
         "statement": words.LAW_STATEMENT if name == REFITTED_LAW else "",
         "tell_tale": known.tell_tale if known else "",
         "imitators": titles.listed([titles.effect_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",
         "share": effect["share"],
+        "law": [words.law_row(row) for row in effect.get("law", [])],
+        "sketched": sketch is not None,
         "parameters": [
             (
                 titles.effect_title(parameter),
                 words.estimate(e["value"], e["std"], e["unit"]),
+                words.interval(e["value"], e["std"], e["unit"], words.bounds(name, parameter)),
                 words.meaning(name, parameter),
+                draw_sketch(sketch, parameter) if sketch else "",
             )
             for parameter, e in effect["parameters"].items()
+            if not (effect.get("law") and words.is_of_a_surface(parameter))
         ],
     }
+
+
+def _alternatives(verdict: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The alternatives by their reasons, each of them once: what decides, and the sets as differences."""
+    names = [effect["name"] for effect in verdict["effects"]]
+    details = verdict.get("alternative_details") or [
+        {"difference": titles.difference(names, other), "probability": None, "reason": "", "action": ""}
+        for other in verdict["alternatives"]
+    ]
+    groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    for d in details:
+        chance = "not seen" if d["probability"] is None else words.percent(d["probability"])
+        groups.setdefault((d["reason"], d["action"]), []).append((d["difference"], chance))
+    return [
+        {"reason": words.sentence(reason), "action": words.sentence(action), "sets": sets}
+        for (reason, action), sets in groups.items()
+    ]
 
 
 def _rmse(cases: Sequence[Case], which: str) -> float:

@@ -60,9 +60,16 @@ def print_diagnosis(
     for effect in verdict["effects"]:
         title = f"{titles.effect_title(effect['name'])}, {words.percent(effect['share'])} of the error"
         console.print(Text(title, style="dim"))
+        if effect.get("law"):
+            surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
+            for row in map(words.law_row, effect["law"]):
+                surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
+            console.print(surfaces)
         parameters = _table("", "", "")
         parameters.show_header = False
         for name, e in effect["parameters"].items():
+            if effect.get("law") and words.is_of_a_surface(name):
+                continue
             value = words.estimate(e["value"], e["std"], e["unit"])
             parameters.add_row(titles.effect_title(name), value, words.meaning(effect["name"], name))
         console.print(parameters)
@@ -76,6 +83,14 @@ def print_diagnosis(
             errors_with = (words.number(c["after"]), words.number(c["held_out_after"]))
             regressed.add_row(titles.dependence(c["by"]), *errors_with, words.percent(max(c["repeats"], 0.0)))
         console.print(regressed)
+        console.print()
+
+    if verdict.get("alternative_details"):
+        others = _table("cannot be ruled out", "probability", "what decides")
+        for other in verdict["alternative_details"]:
+            chance = "not seen" if other["probability"] is None else words.percent(other["probability"])
+            others.add_row(other["difference"], chance, other["action"] or other["reason"])
+        console.print(others)
         console.print()
 
     if verdict["separating_test"] is not None:

@@ -15,6 +15,9 @@ LAW_STATEMENT = (
     "the elastic law has other coefficients than in the baseline tire; a refitted law is not missing physics"
 )
 
+NORMAL_95 = 1.96
+"""Standard deviations of a 95 % interval of a normal distribution."""
+
 _SCALES = {
     "m": (1e3, "mm"),
     "m/s": (1e3, "mm/s"),
@@ -85,6 +88,49 @@ def estimate(value: float, std: float | None, unit: str) -> str:
         return with_unit(f"{number(factor * value, 4)} ± {number(factor * std, 2)}", name)
     text = f"{factor * value:.{decimals}f} ± {factor * std:.{decimals}f}"
     return with_unit(text.replace("-", "−"), name)
+
+
+def bounds(effect: str, parameter: str) -> tuple[float, float]:
+    """Return the values that the catalogue allows a parameter; all of them where it does not know it."""
+    owner = CATALOGUE.get(effect)
+    found = [(p.minimum, p.maximum) for p in owner.parameters if p.name == parameter] if owner else []
+    return found[0] if found else (-math.inf, math.inf)
+
+
+def interval(
+    value: float, std: float | None, unit: str, allowed: tuple[float, float] = (-math.inf, math.inf)
+) -> str:
+    """Return the 95 % interval of a value with its unit, inside what is `allowed`; a dash where it is not known."""
+    if std is None or not math.isfinite(std) or std <= 0.0:
+        return "–"
+    factor, name = scaled(unit)
+    wide = NORMAL_95 * std
+    decimals = min(max(1 - math.floor(math.log10(factor * std)), 0), 6)
+    least, most = max(value - wide, allowed[0]), min(value + wide, allowed[1])
+    ends = [f"{factor * end + 0.0:.{decimals}f}".replace("-", "−") for end in (least, most)]
+    return with_unit(" to ".join(ends), name)
+
+
+def is_of_a_surface(parameter: str) -> bool:
+    """Return whether a parameter of a refitted law belongs to one surface."""
+    return parameter.partition(",")[0] in _OF_THE_LAW
+
+
+def law_row(row: Mapping[str, Any]) -> dict[str, str]:
+    """Return an entry of `law` in words: surface, and A and B before and after."""
+
+    def after(entry: Mapping[str, Any]) -> str:
+        return estimate(entry["after"], entry["std"], "1")
+
+    told = {"surface": surface(row["radius"])}
+    for key in ("A", "B"):
+        told |= {f"{key}_before": number(row[key]["before"], 4), f"{key}_after": after(row[key])}
+    return told
+
+
+def sentence(text: str) -> str:
+    """Return a text as a sentence; empty where it is."""
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 def percent(share: float) -> str:

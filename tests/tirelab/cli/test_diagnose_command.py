@@ -67,10 +67,11 @@ def check_contract(content: Any) -> None:
 
     verdict = content["verdict"]
     keys = {"effects", "confidence", "alternatives", "unexplained", "summary", "separating_test"}
-    assert verdict.keys() - {"corrections"} == keys | {"remainder"}
+    assert verdict.keys() - {"corrections"} == keys | {"remainder", "alternative_details"}
+    assert len(verdict["alternative_details"]) == len(verdict["alternatives"])
     assert ("corrections" in verdict) == verdict["unexplained"]
     for effect in verdict["effects"]:
-        assert effect.keys() == {"name", "parameters", "share", "probability", "size"}
+        assert effect.keys() - {"law"} == {"name", "parameters", "share", "probability", "size"}
         assert 0.0 < effect["size"] < content["fit"]["load"]
         assert 0.0 <= effect["probability"] <= 1.0
         assert effect["name"] in {*CATALOGUE, "recalibration"}

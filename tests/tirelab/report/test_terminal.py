@@ -61,3 +61,11 @@ def test_without_places_and_held_out_data_their_tables_are_left_out(kinds: dict[
 
 def test_what_could_control_a_terminal_is_a_question_mark() -> None:
     assert printable("a\x1b[31mb\tc\n轮胎") == "a?[31mb?c?轮胎"
+
+
+def test_alternatives_and_the_refitted_law_are_printed_as_people_know_them(kinds: dict[str, Any]) -> None:
+    text = printed(kinds["alternatives"].diagnosis)
+    assert "viscous damping instead of friction loop 30 % repeat at 30 mm/s" in text
+    text = printed(kinds["two"].diagnosis)
+    assert "flat ground 550.9 600.0 ± 1.2 1.422 1.3800 ± 0.0040" in text
+    assert "log factor on A" not in text

@@ -79,3 +79,19 @@ def test_first_sentences(
     names: list[str], unexplained: bool, alternatives: list[list[str]], told: str
 ) -> None:
     assert titles.headline(names, unexplained, bool(alternatives)) == told
+
+
+@pytest.mark.parametrize(
+    ("names", "other", "told"),
+    [
+        (["inertia"], ["inertia", "series_compliance"], "+ series spring"),
+        (["recalibration", "inertia"], ["inertia"], "− refitted law"),
+        (["rate_independent_hysteresis"], ["viscous_damping"], "viscous damping instead of friction loop"),
+        (["inertia"], ["viscous_damping", "force_lag"], "+ viscous damping + force lag − inertia"),
+        ([], ["force_offset"], "+ force offset"),
+        (["force_offset"], [], "− force offset"),
+        (["inertia", "force_lag"], ["force_lag", "inertia"], "the same"),
+    ],
+)
+def test_alternatives_are_told_as_differences(names: list[str], other: list[str], told: str) -> None:
+    assert titles.difference(names, other) == told

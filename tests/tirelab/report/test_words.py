@@ -103,3 +103,24 @@ def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
 @pytest.mark.parametrize(("share", "told"), [(0.0, "0 %"), (0.001, "< 1 %"), (0.424, "42 %"), (1.0, "100 %")])
 def test_percent(share: float, told: str) -> None:
     assert words.percent(share) == told
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "unit", "allowed", "told"),
+    [
+        (10.0, 1.0, "N", (-100.0, 100.0), "8.0 to 12.0 N"),
+        (1e-3, 1e-4, "m", (0.0, 1.0), "0.80 to 1.20 mm"),
+        (0.6, 0.4, "N", (0.0, 100.0), "0.00 to 1.38 N"),
+        (-0.5, 0.1, "1", (-1.0, 1.0), "−0.70 to −0.30"),
+        (3.0, None, "N", (0.0, 9.0), "–"),
+    ],
+)
+def test_intervals_hold_95_percent_inside_the_bounds(
+    value: float, std: float | None, unit: str, allowed: tuple[float, float], told: str
+) -> None:
+    assert words.interval(value, std, unit, allowed) == told
+
+
+def test_bounds_are_those_of_the_catalogue() -> None:
+    assert words.bounds("inertia", "mass")[0] == 0.0
+    assert words.bounds("phlogiston", "mass") == (-float("inf"), float("inf"))
