@@ -12,28 +12,23 @@ from radialtire.tirefile import LAWS
 from ..errors import TirelabError
 from ..recordings.reading import Reading
 from .options import FILE, SentenceCommand, reading_options
+from .output import Output, example, output_options
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress, TaskID
 
     from ..identification.result import Identification
-    from ..recordings.recording import Recording
 
 WIDTH_LEAST = 100
 """Columns that the tables need; a narrower terminal wraps them, a file has room."""
 
 
-@click.command("identify", cls=SentenceCommand)
-@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=FILE)
-@click.option(
-    "--out",
-    type=FILE,
-    default=Path("tire.json"),
-    show_default=True,
-    metavar="FILE",
-    help="The tire file written.",
+@click.command(
+    "identify", cls=SentenceCommand, epilog=example("tirelab identify recordings/*.csv --out tire.json")
 )
+@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=FILE)
+@output_options("tire.json", "The tire file written.", "FILE")
 @click.option(
     "--law",
     type=click.Choice(["auto", *LAWS]),
@@ -43,63 +38,74 @@ WIDTH_LEAST = 100
 )
 @click.option("--name", default="", help="The tire's name.")
 @reading_options
-def command(recordings: tuple[Path, ...], out: Path, law: str, name: str, reading: Reading) -> None:
+def command(recordings: tuple[Path, ...], output: Output, law: str, name: str, reading: Reading) -> None:
     """Identify the tire that RECORDING..., files or folders of them, show, and say how sure that is.
 
     Writes the tire file, and beside it FILE.identification.json with uncertainties, intervals and Table 1.
     """
     from rich.console import Console
 
+    from ..computing.staging import staged
     from ..identification.identify import identify
     from ..recordings.files import recording_files
 
+    out = output.out
+    if out.is_dir():
+        raise TirelabError(f"{out} cannot be written (it is a folder); name a file with --out")
     console = Console(highlight=False)
     if not console.is_terminal:
         console.width = WIDTH_LEAST
     files, skipped = recording_files(recordings, reading.columns)
     for file in skipped:
-        console.print(f"note: {file}", markup=False, soft_wrap=True)
-    with _bars() as bars:
-        read = [reading(path) for path in bars.track(files, description="reading")]
+        output.note(str(file))
+    with _bars(output.quiet) as bars:
         tasks: dict[str, TaskID] = {}
 
         def show(what: str, done: int, total: int) -> None:
             if what not in tasks:
                 tasks[what] = bars.add_task(what)
+                if bars.disable:
+                    output.stage(what)
             bars.update(tasks[what], completed=done, total=total or None)
 
+        read = []
+        for number, path in enumerate(files):
+            show("reading", number, len(files))
+            read.append(reading(path))
+        show("reading", len(files), len(files))
         found = identify(read, law=law, name=name, progress=show)
-    _print(console, read, found)
+    for recording in read:
+        for note in recording.notes:
+            output.note(f"{recording.name}: {note}")
     beside = out.parent / f"{out.stem}.identification.json"
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        write_tire(found.tire, out)
-        beside.write_text(found.to_json(), encoding="utf-8")
-    except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
+    with staged(out.parent) as folder:
+        write_tire(found.tire, folder / out.name)
+        (folder / beside.name).write_text(found.to_json(), encoding="utf-8")
+    if output.as_json:
+        output.result((), found.to_json())
+        return
+    _print(console, found)
     console.print(f"tire: {out}\nuncertainties: {beside}", soft_wrap=True)
 
 
-def _bars() -> Progress:
+def _bars(quiet: bool) -> Progress:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         TimeElapsedColumn(),
+        TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
-        disable=not Console(stderr=True).is_terminal,
+        disable=quiet or not Console(stderr=True).is_terminal,
     )
 
 
-def _print(console: Console, recordings: list[Recording], found: Identification) -> None:
+def _print(console: Console, found: Identification) -> None:
     from ..identification.table import constant_table, surface_table
 
-    for recording in recordings:
-        for note in recording.notes:
-            console.print(f"note: {recording.name}: {note}", markup=False, soft_wrap=True)
     console.print(surface_table(found))
     console.print(constant_table(found))
     console.print(

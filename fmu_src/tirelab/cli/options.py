@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 from radialtire import InputError, ParameterError, TireFileError
@@ -13,13 +13,11 @@ from radialtire import InputError, ParameterError, TireFileError
 from ..errors import TirelabError
 from ..recordings.reading import Reading
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
 FILE = click.Path(path_type=Path)
 
 
 class Refusal(click.ClickException):
-    """Bad input reported in one sentence: exit status 2, no traceback."""
+    """Bad input reported in one sentence: exit status 2, no traceback. Ctrl-C ends a command with status 1."""
 
     exit_code = 2
 
@@ -64,15 +62,3 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
         return command(*args, reading=how, **options)
 
     return with_reading
-
-
-def out_option(default: str) -> Callable[[Command], Command]:
-    """Add the option --out DIR."""
-    return click.option(
-        "--out",
-        type=FILE,
-        default=Path(default),
-        show_default=True,
-        metavar="DIR",
-        help="Folder for what is written.",
-    )

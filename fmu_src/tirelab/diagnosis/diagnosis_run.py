@@ -5,11 +5,13 @@ The command, the batch and the blind trials all call `run_diagnosis`.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +20,12 @@ import polars as pl
 from numpy.typing import NDArray
 from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
 
+from ..computing.staging import staged
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..fmu.replay import replay
 from ..recordings.files import recording_files
+from ..recordings.metadata import read_sidecar
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
@@ -78,31 +82,65 @@ def run_diagnosis(
     fitted = [_read(file, reading, report) for file in files]
     kept = [_read(file, reading, report) for file in kept_files]
     verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+    origin = {
+        "command": command_line(recordings, out, tire, held_out, reading),
+        "date": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], tire)],
+    }
+    with staged(out) as aside:
+        content, warnings = _delivered(aside, verdict, (fitted, kept), origin, report)
+    if verdict.test is None:  # the test of an earlier diagnosis does not belong to this one
+        (out / TEST).unlink(missing_ok=True)
+    notes = [*map(str, (*skipped, *more_skipped))]
+    notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
+    return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
+
+
+def _delivered(
+    folder: Path,
+    verdict: Verdict,
+    recordings: tuple[Sequence[Recording], Sequence[Recording]],
+    origin: Mapping[str, Any],
+    report: Progress,
+) -> tuple[dict[str, Any], list[str]]:
+    """Write everything into `folder`; return the content of diagnosis.json and the warnings.
+
+    recordings: fitted and held out; origin: command, date and files, by which the page says how to repeat it
+    """
+    fitted, kept = recordings
     report("building the corrected FMU")
-    fmu = build_fmu(verdict.tire, out).path
-    on_fitted, more = _replayed(fmu, fitted, baseline, verdict.tire, report)
-    on_kept, warnings = _replayed(fmu, kept, baseline, verdict.tire, report)
+    fmu = build_fmu(verdict.tire, folder).path
+    on_fitted, more = _replayed(fmu, fitted, verdict, report)
+    on_kept, warnings = _replayed(fmu, kept, verdict, report)
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
-    _write(out, content, verdict)
-    _write_samples(out, (("fitted", on_fitted), ("held-out", on_kept)))
-    page = {
-        **content,
-        **verdict.page_content(),
-        "warnings": [*more, *warnings],
-        "command": command_line(recordings, out, tire, held_out, reading),
-    }
+    _write(folder, content, verdict)
+    _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
     write_report(
-        out / REPORT,
-        page,
+        folder / REPORT,
+        {**content, **verdict.page_content(), **origin, "warnings": [*more, *warnings]},
         fitted,
         on_fitted.before,
         on_fitted.after,
         held_out=(kept, on_kept.before, on_kept.after) if kept else None,
     )
-    notes = [*map(str, (*skipped, *more_skipped))]
-    notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
-    return DiagnosisRun(verdict, content, tuple(notes), (*more, *warnings))
+    return content, [*more, *warnings]
+
+
+def _files_read(recordings: Sequence[Path], tire: Path | None) -> list[Path]:
+    """Return the files that a diagnosis depends on: the recordings, what stands beside them, and the tire file."""
+    found = list(recordings)
+    for file in recordings:
+        found += [file.parent / name for name in read_sidecar(file).sources]
+    return list(dict.fromkeys([*found, *([] if tire is None else [tire])]))
+
+
+def _sha256(file: Path) -> str:
+    with file.open("rb") as stream:
+        digest = hashlib.sha256()
+        while block := stream.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
@@ -152,19 +190,15 @@ def _check_folder(out: Path) -> None:
 
 
 def _replayed(
-    fmu: Path,
-    recordings: Sequence[Recording],
-    baseline: TireModel,
-    corrected: TireModel,
-    progress: Progress,
+    fmu: Path, recordings: Sequence[Recording], verdict: Verdict, progress: Progress
 ) -> tuple[Replayed, list[str]]:
     """Return the forces of the baseline and of the corrected FMU, and warnings where FMU and simulation disagree."""
     forces, warnings = [], []
     for recording in recordings:
         progress(f"replaying the corrected FMU on {recording.name}")
         forces.append(replay(fmu, recording))
-        warnings += _disagreement(recording, forces[-1], simulate(corrected, recording))
-    before = tuple(simulate(baseline, r) for r in recordings)
+        warnings += _disagreement(recording, forces[-1], simulate(verdict.tire, recording))
+    before = tuple(simulate(verdict.baseline, r) for r in recordings)
     return Replayed(tuple(recordings), before, tuple(forces)), warnings
 
 
@@ -180,11 +214,10 @@ def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatAr
 
 
 def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:
-    """Write all but the FMU and the report; a test of an earlier diagnosis is removed."""
+    """Write all but the FMU and the report."""
     try:
         write_tire(verdict.tire, out / TIRE)
         (out / DIAGNOSIS).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        (out / TEST).unlink(missing_ok=True)
         if verdict.test is not None:
             motion = verdict.test.test
             pl.DataFrame(

@@ -58,13 +58,15 @@ BESIDE = (
     "waveform",
     "warnings",
     "command",
+    "date",
+    "files",
     "located",
     "law_changes",
     "sketches",
 )
 """What a diagnosis may have besides the content of diagnosis.json."""
 
-VERSIONS_OF = ("tirelab", "numpy", "scipy", "matplotlib")
+VERSIONS_OF = ("tirelab", "numpy", "scipy", "numba", "fmpy", "matplotlib")
 
 
 def write_report(
@@ -89,6 +91,7 @@ def write_report(
         waveform      {"time" [s], "deflection" [m]} of the recommended next test
         warnings      sentences for the top of the page
         command       the command line
+        date          when, as text; files: (name, SHA-256) of every file that was read
         law_changes   [{"radius" [m], "deflection" [m], "difference" [N]}]: the refitted law less the baseline's
         sketches      effect -> {"deflection" [m], "force" [N], "varied": parameter -> force [N]}
         located       residuals [N] in which the places lie, one array for each recording; without, those before

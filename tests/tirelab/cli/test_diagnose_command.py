@@ -205,7 +205,7 @@ def test_a_terminal_shows_one_live_line_and_a_report_of_its_own_width(
     genuine = rich.console.Console
     options = {"file": screen, "force_terminal": True, "width": 160, "_environ": {}}
     monkeypatch.setattr(rich.console, "Console", lambda **given: genuine(**{**given, **options}))
-    with diagnose_command._progress(False) as progress:
+    with diagnose_command.progress(False, diagnose_command.STAGES) as progress:
         progress("reading \x1b]0;ride.csv")
     # The escape character of a file's name does not reach the terminal.
     assert "reading ?]0;ride.csv" in screen.getvalue()

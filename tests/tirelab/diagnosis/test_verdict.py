@@ -90,13 +90,13 @@ def test_the_dictionary_is_the_content_of_diagnosis_json(damped_run):
 
 
 def test_the_page_of_a_verdict_is_that_of_the_command(damped_run, tmp_path: Path):
-    """But for the line that repeats the command, and the FMU that is not built."""
+    """But for what repeats the command, and the files that are not written."""
     damped_run.verdict.report(tmp_path / "page.html")
     own, other = (
         [
             line
             for line in path.read_text(encoding="utf-8").splitlines()
-            if line.startswith(("<h", "<tr", "<p"))
+            if line.startswith(("<h", "<tr", "<p")) and "explore-keys" not in line
         ]
         for path in (tmp_path / "page.html", damped_run.out / "report.html")
     )
