@@ -14,6 +14,7 @@ if sys.prefix != sys.base_prefix:
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
 COMMANDS = {
+    "open": "Open a page on this machine: drop recordings, diagnose, take the tire.",
     "identify": "Identify a tire from recordings of it.",
     "build": "Pack a tire as an FMU and validate it.",
     "compare": "Replay a tire's FMU on a recording.",
