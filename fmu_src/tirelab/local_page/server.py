@@ -90,13 +90,14 @@ class Workbench:
         """Keep an upload and return what it was understood to be; nothing is kept of what is no recording."""
         from .understood import understood
 
+        arrived = self.store.arrive(name, stream, size)
         with self.lock:
-            upload = self.store.receive(name, stream, size)
-            try:
-                understood(upload.file, upload.name)
-            except TirelabError:
-                self.store.remove(upload)
-                raise
+            upload = self.store.keep(arrived)
+        try:
+            understood(upload.file, upload.name)
+        except BaseException:
+            self.store.remove(upload)
+            raise
         return self._told(upload)
 
     def change(self, number: int, given: Any) -> dict[str, Any]:
@@ -239,6 +240,9 @@ class Handler(BaseHTTPRequestHandler):
             self._send_json({"problem": str(error)}, HTTPStatus.UNPROCESSABLE_ENTITY, close=True)
         except (BrokenPipeError, ConnectionResetError, TimeoutError):
             self.close_connection = True
+        except Exception as error:  # a fault of ours must not leave the page waiting
+            problem = f"tirelab stumbled over this ({type(error).__name__}: {error}); please report it"
+            self._send_json({"problem": problem}, HTTPStatus.INTERNAL_SERVER_ERROR, close=True)
 
     def _path(self) -> str:
         """Return the path after the token. Raises Refused for a wrong token, host or origin."""

@@ -72,6 +72,15 @@ class Upload:
 
 
 @dataclass(frozen=True)
+class Arrived:
+    """A file that was received and has no number yet: where it is, what the user calls it, its suffix."""
+
+    file: Path
+    name: str
+    suffix: str
+
+
+@dataclass(frozen=True)
 class Store:
     """The folder of a local page."""
 
@@ -118,9 +127,13 @@ class Store:
         return found[0]
 
     def receive(self, name: str, stream: Stream, size: int) -> Upload:
-        """Keep `size` bytes of a stream as a new recording that the user calls `name`.
+        """Keep `size` bytes of a stream as a new recording that the user calls `name`: `arrive`, then `keep`."""
+        return self.keep(self.arrive(name, stream, size))
 
-        Raises TirelabError, and keeps nothing, where its suffix is none that can be read or the stream ends early.
+    def arrive(self, name: str, stream: Stream, size: int) -> Arrived:
+        """Write `size` bytes of a stream aside.
+
+        Raises TirelabError, and leaves nothing, where the suffix is none that can be read or the stream ends early.
         """
         shown = clean_name(name)
         suffix = PurePosixPath(shown).suffix.lower()
@@ -132,13 +145,16 @@ class Store:
         try:
             with os.fdopen(descriptor, "wb") as file:
                 _copy(stream, file, size, shown)
-            number = max((u.number for u in self.uploads()), default=0) + 1
-            file_name = self._uploads / f"{number:04d}{suffix}"
-            os.replace(aside, file_name)
         except BaseException:
             Path(aside).unlink(missing_ok=True)
             raise
-        upload = Upload(number, file_name, shown, "fitted")
+        return Arrived(Path(aside), shown, suffix)
+
+    def keep(self, arrived: Arrived) -> Upload:
+        """Give what arrived a number; not at the same time as another."""
+        number = max((u.number for u in self.uploads()), default=0) + 1
+        upload = Upload(number, self._uploads / f"{number:04d}{arrived.suffix}", arrived.name, "fitted")
+        os.replace(arrived.file, upload.file)
         self._tell(upload)
         return upload
 

@@ -108,7 +108,8 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     """
     verdict, fit = diagnosis["verdict"], diagnosis["fit"]
     test = verdict["separating_test"]
-    clean = not verdict["unexplained"] and fit["after"] <= AT_THE_FLOOR * max(fit["noise"], 1e-12)
+    errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
+    clean = not verdict["unexplained"] and max(errors) <= AT_THE_FLOOR * max(fit["noise"], 1e-12)
     if verdict["confidence"] >= SURE and clean:
         return NextStep(
             "Nothing: use this tire." if verdict["effects"] else "Nothing: use the baseline tire."

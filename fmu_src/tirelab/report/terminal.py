@@ -95,6 +95,10 @@ def print_diagnosis(
 
     if verdict["separating_test"] is not None:
         console.print(Text(f"Recommended next test: {verdict['separating_test']['sentence']}"))
+    lacking = [f"{d['reason']}: {d['action']}" for d in verdict.get("alternative_details", []) if d["action"]]
+    step = first_screen.next_step(diagnosis, lacking)
+    if not step.drive:
+        console.print(Text(f"What to do next: {step.action} {step.why}".rstrip()))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
     files += [diagnosis["data"]] if diagnosis.get("data") else []
     if verdict["separating_test"] is not None:

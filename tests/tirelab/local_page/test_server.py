@@ -251,6 +251,19 @@ def test_a_diagnosis_that_fails_says_why(served: Server) -> None:
     assert "samples; at least 100 are needed" in problem
 
 
+def test_a_fault_of_ours_is_one_sentence_and_keeps_nothing(
+    served: Server, ride: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stumble(*_: Any) -> None:
+        raise RuntimeError("no such branch")
+
+    monkeypatch.setattr("tirelab.local_page.understood.understood", stumble)
+    status, told, _ = ask(served, "POST", "recordings?name=ride.csv", ride)
+    assert status == 500
+    assert told["problem"] == "tirelab stumbled over this (RuntimeError: no such branch); please report it"
+    assert kept(served) == []
+
+
 def test_what_the_page_names_is_what_the_server_serves() -> None:
     folder = Path(module.__file__).parent
     assert {p.name for p in folder.iterdir() if p.suffix in (".html", ".css", ".js")} == {

@@ -135,6 +135,12 @@ TEST = {
         (diagnosis({}, 0.95, unexplained=True), [], "Repeat one recording with another tire."),
         (diagnosis({"inertia": 9.0}, 0.95, after=30.0), [], "Repeat one recording with another tire."),
         (
+            diagnosis({"inertia": 9.0}, 0.95, held_out_after=30.0),
+            [],
+            "Repeat one recording with another tire.",
+        ),
+        (diagnosis({"inertia": 9.0}, 0.95, held_out_after=None), [], "Nothing: use this tire."),
+        (
             diagnosis({"inertia": 9.0}, 0.6, alternatives=[[]]),
             ["the difference is smaller than these recordings can show"],
             "Nothing: use this tire.",

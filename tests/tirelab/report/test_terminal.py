@@ -42,6 +42,8 @@ def test_the_next_test_is_recommended(kinds: dict[str, Any]) -> None:
     said = "Recommended next test: Drive triangles at three rates to 22 mm on flat ground."
     assert said in printed(kinds["alternatives"].diagnosis)
     assert "Recommended next test" not in printed(kinds["one"].diagnosis)
+    assert "What to do next: Nothing: use this tire." in printed(kinds["one"].diagnosis)
+    assert "What to do next" not in printed(kinds["alternatives"].diagnosis)
 
 
 def test_a_regression_is_printed_with_its_errors(kinds: dict[str, Any]) -> None:
