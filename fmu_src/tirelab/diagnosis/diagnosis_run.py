@@ -73,24 +73,42 @@ def run_diagnosis(
 
     Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
     """
+    return _run(_Request(tuple(recordings), out, tire, tuple(held_out), reading), progress)
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What `run_diagnosis` is asked for; samples: whether the data behind the plots is written."""
+
+    recordings: tuple[Path, ...]
+    out: Path
+    tire: Path | None = None
+    held_out: tuple[Path, ...] = ()
+    reading: Reading = Reading()  # noqa: RUF009
+    samples: bool = True
+
+
+def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
     report = progress or (lambda sentence: None)
-    baseline = _baseline(tire)
-    files, skipped = recording_files(recordings, reading.columns)
-    kept_files, more_skipped = recording_files(held_out, reading.columns)
+    baseline = _baseline(asked.tire)
+    files, skipped = recording_files(asked.recordings, asked.reading.columns)
+    kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
     _check_once([*files, *kept_files])
-    _check_folder(out)
-    fitted = [_read(file, reading, report) for file in files]
-    kept = [_read(file, reading, report) for file in kept_files]
-    verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+    _check_folder(asked.out)
+    fitted = [_read(file, asked.reading, report) for file in files]
+    kept = [_read(file, asked.reading, report) for file in kept_files]
     origin = {
-        "command": command_line(recordings, out, tire, held_out, reading),
+        "command": command_line(asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading),
         "date": datetime.now().astimezone().isoformat(timespec="seconds"),
-        "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], tire)],
+        "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], asked.tire)],
     }
-    with staged(out) as aside:
-        content, warnings = _delivered(aside, verdict, (fitted, kept), origin, report)
-    if verdict.test is None:  # the test of an earlier diagnosis does not belong to this one
-        (out / TEST).unlink(missing_ok=True)
+    verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+    with staged(asked.out) as aside:
+        content, warnings = _delivered(aside, verdict, (fitted, kept), origin, report, asked.samples)
+    # What an earlier diagnosis wrote and this one does not have would seem to belong to it.
+    for name, written in ((TEST, verdict.test is not None), (DATA, asked.samples)):
+        if not written:
+            (asked.out / name).unlink(missing_ok=True)
     notes = [*map(str, (*skipped, *more_skipped))]
     notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
     return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
@@ -102,10 +120,12 @@ def _delivered(
     recordings: tuple[Sequence[Recording], Sequence[Recording]],
     origin: Mapping[str, Any],
     report: Progress,
+    samples: bool,
 ) -> tuple[dict[str, Any], list[str]]:
     """Write everything into `folder`; return the content of diagnosis.json and the warnings.
 
-    recordings: fitted and held out; origin: command, date and files, by which the page says how to repeat it
+    recordings: fitted and held out; origin: command, date and files, by which the page says how to repeat it; samples:
+    whether the data behind the plots is written
     """
     fitted, kept = recordings
     report("building the corrected FMU")
@@ -114,8 +134,11 @@ def _delivered(
     on_kept, warnings = _replayed(fmu, kept, verdict, report)
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
+    if samples:
+        _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
+    else:
+        content["data"] = None
     _write(folder, content, verdict)
-    _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
     write_report(
         folder / REPORT,
         {**content, **verdict.page_content(), **origin, "warnings": [*more, *warnings]},
@@ -144,8 +167,11 @@ def _sha256(file: Path) -> str:
 
 
 def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
-    """Diagnose files with the baseline of a tire file, None for the article's, into the folder `out`."""
-    run_diagnosis(recordings, out, tire=tire)
+    """Diagnose files with the baseline of a tire file, None for the article's, into the folder `out`.
+
+    The data behind the plots is not written: hundreds of blind trials would fill a disk with it.
+    """
+    _run(_Request(tuple(recordings), out, tire, samples=False), None)
 
 
 def command_line(

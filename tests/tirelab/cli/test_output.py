@@ -54,6 +54,16 @@ def test_the_example_in_the_help_is_a_command_that_is_understood(name: str) -> N
             pass
 
 
+def test_the_page_on_the_command_line_says_what_the_help_says(repository: Path) -> None:
+    page = (repository / "examples" / "docs" / "command_line.md").read_text(encoding="utf-8")
+    told = run("--help").stdout
+    for name in COMMANDS:
+        assert f"| `{name}` |" in page or f"`tirelab {name}" in page
+    for shell in ("bash", "zsh", "fish"):
+        assert f"_TIRELAB_COMPLETE={shell}_source tirelab" in page
+        assert f"_TIRELAB_COMPLETE={shell}_source tirelab" in told
+
+
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The recordings of the article's rig, as a folder."""
