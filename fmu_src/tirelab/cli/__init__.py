@@ -14,17 +14,27 @@ if sys.prefix != sys.base_prefix:
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
 COMMANDS = {
-    "article": "Compute the article's claims and figures again.",
+    "open": "Open a page on this machine: drop recordings, diagnose, take the tire.",
+    "inspect": "Show what is understood of recordings, and keep it in recording.toml.",
+    "identify": "Identify a tire from recordings of it.",
     "build": "Pack a tire as an FMU and validate it.",
     "compare": "Replay a tire's FMU on a recording.",
     "diagnose": "Name the physics that a tire lacks, and correct it.",
-    "identify": "Identify a tire from recordings of it.",
-    "inspect": "Show what is understood of recordings, and keep it in recording.toml.",
-    "prove": "Put the diagnosis to blind trials.",
     "ride": "Ride over terrain: deflection and force at every position.",
     "rig": "Write the recordings that the article's rig would have made.",
+    "article": "Compute the article's claims and figures again.",
+    "prove": "Put the diagnosis to blind trials.",
 }
-"""The commands, each a module of this package, with what the list of commands says of them."""
+"""The commands in the order of the work, each a module of this package, with what the list says of them."""
+
+EPILOG = """\b
+Exit status: 0 done, 1 interrupted (Ctrl-C), 2 bad input, said in one sentence.
+Completion of commands and options in the shell:
+  bash: eval "$(_TIRELAB_COMPLETE=bash_source tirelab)"    in ~/.bashrc
+  zsh:  eval "$(_TIRELAB_COMPLETE=zsh_source tirelab)"     in ~/.zshrc
+  fish: _TIRELAB_COMPLETE=fish_source tirelab | source     in config.fish
+"""
+"""What every user of a command line may ask, at the end of the list of commands."""
 
 
 class LazyCommands(click.Group):
@@ -47,7 +57,7 @@ class LazyCommands(click.Group):
             formatter.write_dl(list(COMMANDS.items()))
 
 
-@click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"]}, epilog=EPILOG)
 @click.version_option(package_name="tirelab")
 def main() -> None:
     """Off-road bicycle tires: from recordings to a tire, an FMU, and the physics that a simulation left out."""

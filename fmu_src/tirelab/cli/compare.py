@@ -10,19 +10,23 @@ from radialtire import TireModel, read_tire
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, out_option, reading_options
+from .options import FILE, SentenceCommand, reading_options
+from .output import Output, example, output_options
 
 
-@click.command("compare", cls=SentenceCommand)
+@click.command(
+    "compare", cls=SentenceCommand, epilog=example("tirelab compare ride.csv --fmu dist/BicycleTire.fmu")
+)
 @click.argument("recording", type=FILE)
 @click.option("--fmu", type=FILE, help="The tire as an FMU: native code, use only one that you trust.")
 @click.option(
     "--tire", type=FILE, help="The tire as a tire file, instead of an FMU.  [default: the article's tire]"
 )
-@out_option("out")
+@output_options("out")
 @reading_options
-def command(recording: Path, fmu: Path | None, tire: Path | None, out: Path, reading: Reading) -> None:
+def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output, reading: Reading) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
+    from ..computing.staging import staged
     from ..fmu.build import build_fmu
     from ..fmu.replay import replay
     from ..report.comparison import compare, plot
@@ -31,23 +35,30 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, out: Path, rea
         raise TirelabError("--fmu and --tire both name a tire; give one of them")
     recorded = reading(recording)
     for note in recorded.notes:
-        click.echo(f"note: {note}")
+        output.note(note)
     with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
         if fmu is None:
             model = TireModel() if tire is None else read_tire(tire)
             fmu = build_fmu(model, Path(folder)).path
-            click.echo(f"{recorded.name} against {model.name}")
+            against = model.name
         else:
-            click.echo(f"{recorded.name} against {fmu}")
+            against = str(fmu)
+        output.stage(f"replaying {against} on {recorded.name}")
         result = compare(recorded, replay(fmu, recorded))
-    for sentence in result.sentences():
-        click.echo(sentence)
-    picture = out / f"{recorded.name}.compare.png"
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        plot(result, picture)
-    except OSError as error:
-        raise TirelabError(
-            f"{picture} cannot be written ({error.strerror}); name another with --out"
-        ) from None
-    click.echo(f"plot: {picture}")
+    picture = f"{recorded.name}.compare.png"
+    with staged(output.out) as folder:
+        plot(result, folder / picture)
+    lines = [f"{recorded.name} against {against}", *result.sentences(), f"plot: {output.out / picture}"]
+    content = {
+        "recording": recorded.name,
+        "against": against,
+        "samples": len(recorded),
+        "rmse": result.rmse,
+        "peak": result.peak,
+        "at": {
+            "time": float(recorded.time[result.at]),
+            "deflection": float(recorded.deflection[result.at]),
+        },
+        "plot": str(output.out / picture),
+    }
+    output.result(lines, content)

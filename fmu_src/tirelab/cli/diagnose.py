@@ -5,16 +5,17 @@ from __future__ import annotations
 import io
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, check_files, out_option, reading_options
+from .options import FILE, SentenceCommand, check_files, reading_options
+from .output import Output, echo, example, output_options, printable, progress
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnosis_run import DiagnosisRun
@@ -23,7 +24,26 @@ COLUMNS = 100
 """Width of the report where the output is no terminal."""
 
 
-@click.command("diagnose", cls=SentenceCommand)
+STAGES = MappingProxyType(
+    {
+        "reading": 0.0,
+        "comparing": 0.06,
+        "fitting": 0.19,
+        "validating": 0.6,
+        "searching": 0.67,
+        "building": 0.87,
+        "replaying": 0.9,
+        "writing": 0.93,
+    }
+)
+"""Part of the whole time that is spent when each stage begins, as on seven short and on three long recordings."""
+
+
+@click.command(
+    "diagnose",
+    cls=SentenceCommand,
+    epilog=example("tirelab diagnose slow.csv fast.csv --held-out third.csv --out diagnosis"),
+)
 @click.argument("recordings", type=FILE, nargs=-1, required=True, metavar="RECORDING...")
 @click.option("--tire", type=FILE, help="Tire file of the baseline.  [default: the article's tire]")
 @click.option(
@@ -37,11 +57,9 @@ COLUMNS = 100
 @click.option(
     "--fit", metavar="RANGE", help="Part of the one RECORDING that is fitted: 0s:20s (time), 100:2000 (rows)."
 )
-@out_option("diagnosis")
+@output_options("diagnosis")
 @reading_options
 @click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")
-@click.option("--json", "as_json", is_flag=True, help="Print only diagnosis.json.")
-@click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
     "--each",
     is_flag=True,
@@ -80,7 +98,8 @@ def _ranged(recordings: tuple[Path, ...], given: Path, option: str = "--held-out
 
 
 def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
-    if options["held_out"] or options["as_json"]:
+    output: Output = options["output"]
+    if options["held_out"] or output.as_json:
         raise TirelabError(
             "--each cannot be combined with --held-out or --json; read its summary.csv instead"
         )
@@ -94,10 +113,10 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     from ..batch.summary import summary_table
     from ..computing.workers import Cores
 
-    folder: Path = options["out"]
+    folder = output.out
     cores = Cores(options["jobs"], options["dask"])
     batch = Batch(recordings, folder, options["tire"], options["reading"])
-    result = diagnose_batch(batch, cores, click.echo)
+    result = diagnose_batch(batch, cores, (lambda line: None) if output.quiet else click.echo)
     Console(highlight=False).print(summary_table(result))
     click.echo(f"summary: {folder / 'summary.csv'}, {folder / 'summary.html'}")
 
@@ -106,51 +125,33 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if options["jobs"] is not None or options["dask"] is not None:
         raise TirelabError("--jobs and --dask need --each; add --each, or remove them")
     from ..diagnosis.diagnosis_run import run_diagnosis
-    from ..report.terminal import printable
 
-    folder: Path = options["out"]
+    output: Output = options["output"]
+    folder = output.out
     how: Reading = options["reading"]
-    with _progress(options["quiet"]) as progress:
+    with progress(output.quiet, STAGES) as show:
         run = run_diagnosis(
             recordings,
             folder,
             tire=options["tire"],
             held_out=options["held_out"],
             reading=how,
-            progress=progress,
+            progress=show,
         )
     if options["native"]:
         from ..fmu.native.pack import build_native_fmu
 
         build_native_fmu(run.verdict.tire, folder / "native")
-    if options["as_json"]:
+    if output.as_json:
         click.echo(json.dumps(run.content, indent=2, allow_nan=False))
         for warning in run.warnings:
             click.echo(f"note: {printable(warning)}", err=True)
         return
-    for note in (*run.notes, *run.warnings):
-        _echo(f"note: {printable(note)}")
+    for note in run.notes:
+        output.note(note)
+    for warning in run.warnings:
+        echo(f"note: {printable(warning)}")
     _print(run, folder)
-
-
-@contextmanager
-def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Give a function that shows a stage on standard error: a live line in a terminal, else one plain line each."""
-    from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    from ..report.terminal import printable
-
-    console = Console(stderr=True)
-    if quiet:
-        yield lambda sentence: None
-    elif not console.is_terminal:
-        yield lambda sentence: click.echo(printable(sentence), err=True)
-    else:
-        shown = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
-        with Progress(*shown, console=console, transient=True) as progress:
-            task = progress.add_task("starting", total=None)
-            yield lambda sentence: progress.update(task, description=printable(sentence))
 
 
 def _print(run: DiagnosisRun, out: Path) -> None:
@@ -166,10 +167,4 @@ def _print(run: DiagnosisRun, out: Path) -> None:
     plain = Console(file=text, width=COLUMNS, color_system=None, markup=False, highlight=False, emoji=False)
     print_diagnosis(plain, run.content, out)
     for line in text.getvalue().splitlines():
-        _echo(line.rstrip())
-
-
-def _echo(line: str) -> None:
-    """Print a line, with a question mark for each letter that the encoding of the output lacks."""
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-    click.echo(line.encode(encoding, errors="replace").decode(encoding))
+        echo(line.rstrip())

@@ -13,6 +13,7 @@ from radialtire.tirefile import LAWS
 from ..errors import TirelabError
 from ..recordings.reading import Reading
 from .options import FILE, SentenceCommand, reading_options
+from .output import Output, example, output_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -28,16 +29,11 @@ WIDTH_LEAST = 100
 """Columns that the tables need; a narrower terminal wraps them, a file has room."""
 
 
-@click.command("identify", cls=SentenceCommand)
-@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=FILE)
-@click.option(
-    "--out",
-    type=FILE,
-    default=Path("tire.json"),
-    show_default=True,
-    metavar="FILE",
-    help="The tire file written.",
+@click.command(
+    "identify", cls=SentenceCommand, epilog=example("tirelab identify recordings/*.csv --out tire.json")
 )
+@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=FILE)
+@output_options("tire.json", "The tire file written.", "FILE")
 @click.option(
     "--law",
     type=click.Choice(["auto", *LAWS]),
@@ -53,95 +49,105 @@ WIDTH_LEAST = 100
 )
 @click.option("--name", default="", help="The tire's name.")
 @reading_options
-def command(
-    recordings: tuple[Path, ...], law: str, part: str | None, reading: Reading, **options: Any
-) -> None:
+def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **options: Any) -> None:
     """Identify the tire that RECORDING..., files or folders of them, show, and say how sure that is.
 
     Writes the tire file, and beside it FILE.identification.json with uncertainties, intervals and Table 1.
     """
     from rich.console import Console
 
+    from ..computing.staging import staged
     from ..identification.identify import identify
     from ..identification.misfit import misfit_sentence
     from ..recordings.files import recording_files
 
-    out, name = options["out"], options["name"]
+    out, part = output.out, options["part"]
+    if out.is_dir():
+        raise TirelabError(f"{out} cannot be written (it is a folder); name a file with --out")
     console = Console(highlight=False)
     if not console.is_terminal:
         console.width = WIDTH_LEAST
     files, skipped = recording_files(recordings, reading.columns)
     for file in skipped:
-        console.print(f"note: {file}", markup=False, soft_wrap=True)
-    with _bars() as bars:
-        read = [reading(path) for path in bars.track(files, description="reading")]
-        if part is not None:
-            _part(console, read, part, out, name)
-            return
+        output.note(str(file))
+    with _bars(output.quiet) as bars:
         tasks: dict[str, TaskID] = {}
 
         def show(what: str, done: int, total: int) -> None:
             if what not in tasks:
                 tasks[what] = bars.add_task(what)
+                if bars.disable:
+                    output.stage(what)
             bars.update(tasks[what], completed=done, total=total or None)
 
-        found = identify(read, law=law, name=name, progress=show)
-    _print(console, read, found)
+        read = []
+        for number, path in enumerate(files):
+            show("reading", number, len(files))
+            read.append(reading(path))
+        show("reading", len(files), len(files))
+        found = None if part else identify(read, law=options["law"], name=options["name"], progress=show)
+    for recording in read:
+        for note in recording.notes:
+            output.note(f"{recording.name}: {note}")
+    if found is None:
+        _part(output, console, read, part, options["name"])
+        return
+    beside = out.parent / f"{out.stem}.identification.json"
+    with staged(out.parent) as folder:
+        write_tire(found.tire, folder / out.name)
+        (folder / beside.name).write_text(found.to_json(), encoding="utf-8")
     words = ["tirelab", "diagnose", *map(str, recordings), "--tire", str(out), *reading.words()]
     misfit = misfit_sentence(found.rmse, found.reading_noise, shlex.join(words))
+    if output.as_json:
+        output.result((), found.to_json())
+        if misfit:
+            output.note(misfit)
+        return
+    _print(console, found)
     if misfit:
         console.print(f"- {misfit}", markup=False, soft_wrap=True)
-    beside = out.parent / f"{out.stem}.identification.json"
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        write_tire(found.tire, out)
-        beside.write_text(found.to_json(), encoding="utf-8")
-    except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
     console.print(f"tire: {out}\nuncertainties: {beside}", soft_wrap=True)
 
 
-def _part(console: Console, recordings: list[Recording], part: str, out: Path, name: str) -> None:
+def _part(output: Output, console: Console, recordings: list[Recording], part: str, name: str) -> None:
     """Print what the laws leave of recordings of a part; write the tire file of the law that is named."""
+    from ..computing.staging import staged
     from ..identification.part_laws import fit_laws, tire_of
     from ..identification.table import law_table
 
-    for recording in recordings:
-        for note in recording.notes:
-            console.print(f"note: {recording.name}: {note}", markup=False, soft_wrap=True)
     fits = fit_laws(recordings)
-    console.print(law_table(fits))
-    if part == "compare":
+    tire = None if part == "compare" else output.out
+    if tire is not None:
+        model = tire_of(next(fit for fit in fits if fit.name == part), recordings, name)
+        with staged(tire.parent) as folder:
+            write_tire(model, folder / tire.name)
+    if output.as_json:
+        laws = [fit.to_dict() for fit in fits]
+        output.result((), {"laws": laws, "tire": None if tire is None else str(tire)})
         return
-    tire = tire_of(next(fit for fit in fits if fit.name == part), recordings, name)
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        write_tire(tire, out)
-    except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
-    console.print(f"tire: {out}", soft_wrap=True)
+    console.print(law_table(fits))
+    if tire is not None:
+        console.print(f"tire: {tire}", soft_wrap=True)
 
 
-def _bars() -> Progress:
+def _bars(quiet: bool) -> Progress:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         TimeElapsedColumn(),
+        TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
-        disable=not Console(stderr=True).is_terminal,
+        disable=quiet or not Console(stderr=True).is_terminal,
     )
 
 
-def _print(console: Console, recordings: list[Recording], found: Identification) -> None:
+def _print(console: Console, found: Identification) -> None:
     from ..identification.table import constant_table, surface_table
 
-    for recording in recordings:
-        for note in recording.notes:
-            console.print(f"note: {recording.name}: {note}", markup=False, soft_wrap=True)
     console.print(surface_table(found))
     console.print(constant_table(found))
     console.print(

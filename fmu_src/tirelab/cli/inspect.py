@@ -9,66 +9,97 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
 from .options import FILE, SentenceCommand, check_files, reading_options
+from .output import Output, echo, example, output_options
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from ..recordings.inspection import Inspection
 
+SETTINGS = "recording.toml"
+
 COLUMNS = 110
 """Width of the tables where the output is no terminal."""
 
 
-@click.command("inspect", cls=SentenceCommand)
-@click.argument("recordings", metavar="FILE...", nargs=-1, required=True, type=FILE)
-@click.option(
-    "--out", type=FILE, help="File of settings written.  [default: recording.toml beside each recording]"
+@click.command(
+    "inspect",
+    cls=SentenceCommand,
+    epilog=example("tirelab inspect press/*.csv --radius flat --picture press.png"),
 )
+@click.argument("recordings", metavar="FILE...", nargs=-1, required=True, type=FILE)
+@output_options(SETTINGS, "File of settings written; unless given, one beside each recording.", "FILE")
 @click.option("--picture", type=FILE, metavar="PNG", help="Draw the recordings into this picture too.")
 @reading_options
-def command(recordings: tuple[Path, ...], out: Path | None, picture: Path | None, reading: Reading) -> None:
+def command(recordings: tuple[Path, ...], output: Output, picture: Path | None, reading: Reading) -> None:
     """Show what is understood of each FILE (or folder of them), and write it into recording.toml, which all
     commands then use."""
     check_files(recordings)
     from ..recordings.files import recording_files
     from ..recordings.inspection import inspect_recording
-    from ..recordings.settings_file import write_settings
 
     console = _console()
     files, skipped = recording_files(recordings, reading.columns)
     for other in skipped:
-        console.print(f"note: {other}", soft_wrap=True)
+        output.note(str(other))
     found: list[Inspection] = []
     refused: list[str] = []
     for file in files:
+        output.stage(f"reading {file.name}")
         try:
             found.append(inspect_recording(file, reading))
         except TirelabError as error:
-            _show_assumed(console, file, reading, error)
-            _flush(console)
+            if not output.as_json:
+                _show_assumed(console, file, reading, error)
+                _flush(console)
             if len(files) == 1:
                 raise
             refused.append(_refusal(file, error))
             continue
-        _show(console, found[-1])
-        _flush(console)
-    by_file: dict[Path, dict[str, Inspection]] = {}
-    for one in found:
-        by_file.setdefault(out or one.path.with_name("recording.toml"), {})[one.key] = one
-    for target, ones in by_file.items():
-        there = " (what else it says stays)" if target.exists() else ""
-        write_settings(target, {key: one.settings for key, one in ones.items()})
-        console.print(f"settings: {target}{there}", soft_wrap=True)
+        if not output.as_json:
+            _show(console, found[-1])
+            _flush(console)
+    written = _write(found, _given(output))
     if picture is not None and found:
         _draw(found, picture)
-        console.print(f"picture: {picture}", soft_wrap=True)
-    _flush(console)
+    lines = [
+        f"settings: {target}{' (what else it says stays)' if old else ''}" for target, old in written.items()
+    ]
+    lines += [f"picture: {picture}"] if picture is not None and found else []
+    content = {
+        "recordings": [one.to_dict() for one in found],
+        "settings": [str(target) for target in written],
+        "picture": str(picture) if picture is not None and found else None,
+        "refused": len(refused),
+    }
+    output.result(lines, content)
     if refused:
         raise TirelabError("\n".join([f"{len(refused)} of {len(files)} files cannot be read:", *refused]))
+
+
+def _given(output: Output) -> Path | None:
+    """Return the file of settings that the user named, None where each stands beside its recording."""
+    source = click.get_current_context().get_parameter_source("out")
+    return None if source is ParameterSource.DEFAULT else output.out
+
+
+def _write(found: list[Inspection], out: Path | None) -> dict[Path, bool]:
+    """Write the settings; return each file that was written, and whether it was there before."""
+    from ..recordings.settings_file import write_settings
+
+    by_file: dict[Path, dict[str, Inspection]] = {}
+    for one in found:
+        by_file.setdefault(out or one.path.with_name(SETTINGS), {})[one.key] = one
+    written = {}
+    for target, ones in by_file.items():
+        written[target] = target.exists()
+        write_settings(target, {key: one.settings for key, one in ones.items()})
+    return written
 
 
 def _console() -> Console:
@@ -87,7 +118,7 @@ def _flush(console: Console) -> None:
     """Write what a console without a terminal holds, without the blanks that end the lines of a table."""
     if isinstance(console.file, io.StringIO):
         for line in console.file.getvalue().splitlines():
-            click.echo(line.rstrip())
+            echo(line.rstrip())
         console.file = io.StringIO()
 
 
@@ -133,7 +164,7 @@ def _show(console: Console, one: Inspection) -> None:
         console.print(f"{name + ':':<11}{printable(text)}", soft_wrap=True)
     for name, texts in (
         ("says", one.recording.provenance),
-        ("note", tuple(note for note in one.recording.notes if not note.startswith("doubtful: "))),
+        ("note", one.remarks),
         ("DOUBTFUL", one.recording.doubts),
     ):
         for text in texts:
@@ -142,12 +173,8 @@ def _show(console: Console, one: Inspection) -> None:
 
 
 def _draw(found: list[Inspection], picture: Path) -> None:
+    from ..computing.staging import staged
     from ..report.recording_picture import draw_recordings
 
-    try:
-        picture.parent.mkdir(parents=True, exist_ok=True)
-        draw_recordings([one.recording for one in found], picture)
-    except OSError as error:
-        raise TirelabError(
-            f"{picture} cannot be written ({error.strerror}); name another with --picture"
-        ) from None
+    with staged(picture.parent) as folder:
+        draw_recordings([one.recording for one in found], folder / picture.name)

@@ -6,15 +6,13 @@ import shlex
 from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 from radialtire import InputError, ParameterError, TireFileError
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-
-Command = TypeVar("Command", bound=Callable[..., Any])
 
 FILE = click.Path(path_type=Path)
 
@@ -23,7 +21,7 @@ WORDS = "tirelab.words"
 
 
 class Refusal(click.ClickException):
-    """Bad input reported in one sentence: exit status 2, no traceback."""
+    """Bad input reported in one sentence: exit status 2, no traceback. Ctrl-C ends a command with status 1."""
 
     exit_code = 2
 
@@ -129,15 +127,3 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in reversed(_READING):
         with_options = option(with_options)
     return with_options
-
-
-def out_option(default: str) -> Callable[[Command], Command]:
-    """Add the option --out DIR."""
-    return click.option(
-        "--out",
-        type=FILE,
-        default=Path(default),
-        show_default=True,
-        metavar="DIR",
-        help="Folder for what is written.",
-    )

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
-from .options import FILE, SentenceCommand
+from .options import SentenceCommand
+from .output import Output, example, output_options
 
 TABLE_WIDTH = 110
 """Width of the table [characters] where the output is no terminal."""
 
 
-@click.command("prove", cls=SentenceCommand)
+@click.command(
+    "prove", cls=SentenceCommand, epilog=example("tirelab prove --trials 40 --seed 20260101 --out proof")
+)
 @click.option("--trials", type=click.IntRange(min=1), default=200, show_default=True, help="How many trials.")
 @click.option("--seed", type=click.IntRange(min=0), required=True, help="Seed of all trials.")
-@click.option(
-    "--out",
-    type=FILE,
-    required=True,
-    metavar="DIR",
-    help="Folder for the proof; an interrupted proof is continued.",
-)
+@output_options(None, "Folder for the proof; an interrupted proof is continued.")
 @click.option("--jobs", type=int, help="Processes to work in.  [default: one per core]")
 @click.option(
     "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster to work on, such as tcp://host:8786."
@@ -36,7 +31,9 @@ TABLE_WIDTH = 110
     "the noise (loud), an engineer's first file (press), known physics in forms that the catalogue lacks (foreign), "
     "other physics (outside). all: these four and the drawn kinds in turn.  [default: drawn from none to open]",
 )
-def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | None, kind: str | None) -> None:
+def command(
+    trials: int, seed: int, output: Output, jobs: int | None, dask: str | None, kind: str | None
+) -> None:
     """Test the diagnosis by blind trials, and write proof.json and proof.html.
 
     An independent rig hides effects in recordings and writes the answers. The SHA-256 of every answer is printed
@@ -47,9 +44,17 @@ def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | Non
 
     from ..computing.workers import Cores
     from ..validation import BlindTrials, Folders, prove  # here: the rig is imported for this command only
+    from ..validation.page import numbers
     from ..validation.terminal import criteria_table, lines
 
-    proof = prove(BlindTrials(Folders(out), seed, trials, kind), Cores(jobs, dask), click.echo)
+    def show(line: str) -> None:
+        if not output.quiet:
+            click.echo(line, err=output.as_json)
+
+    proof = prove(BlindTrials(Folders(output.out), seed, trials, kind), Cores(jobs, dask), show)
+    if output.as_json:
+        output.result((), numbers(proof))
+        return
     console = Console()
     if not console.is_terminal:
         console.width = TABLE_WIDTH
@@ -58,4 +63,4 @@ def command(trials: int, seed: int, out: Path, jobs: int | None, dask: str | Non
         click.echo(line)
     for score in proof.failures:
         click.echo(f"trial {score.trial} failed: {score.error}")
-    click.echo(f"proof: {out / 'proof.html'}")
+    click.echo(f"proof: {output.out / 'proof.html'}")

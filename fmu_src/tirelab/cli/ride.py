@@ -12,7 +12,8 @@ from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
 from .option_group import option_group
-from .options import FILE, SentenceCommand, out_option
+from .options import FILE, SentenceCommand
+from .output import Output, example, output_options
 
 if TYPE_CHECKING:
     from ..terrain import Profile, ProfileColumns, Ride
@@ -88,7 +89,11 @@ class Passage:
     wheel_radius: float
 
 
-@click.command("ride", cls=SentenceCommand)
+@click.command(
+    "ride",
+    cls=SentenceCommand,
+    epilog=example("tirelab ride trail.gpx --speed 5 --obstacle log@12.5 --out ride"),
+)
 @click.argument("profile", required=False, type=FILE)
 @option_group(
     "terrain",
@@ -128,25 +133,25 @@ class Passage:
     ),
 )
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
-@out_option("ride")
+@output_options("ride")
 @click.option("--animation", is_flag=True, help="Write an animation too (ride.gif).")
 def command(
-    profile: Path | None, terrain: Terrain, passage: Passage, tire: Path | None, out: Path, animation: bool
+    profile: Path | None,
+    terrain: Terrain,
+    passage: Passage,
+    tire: Path | None,
+    output: Output,
+    animation: bool,
 ) -> None:
     """Ride over the terrain of PROFILE (CSV with s [m] and z [m], or GPX), or over random or flat ground.
 
     Prints the range of deflection and force, and how much of the ride lies outside the limits of the article's tire.
     Writes ride.csv and ride.png.
     """
+    from ..computing.staging import staged
     from ..terrain import HubPath, animate_ride, draw_ride, ground_from, ride, write_ride
     from ..terrain.profile_file import read_columns
 
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise TirelabError(
-            f"{out} cannot be written ({error.strerror}); name another folder with --out"
-        ) from None
     model = TireModel() if tire is None else read_tire(tire)
     ground = ground_from(terrain.profile(profile), terrain.spacing)
     load, hub_path, notes = passage.load, None, ground.notes
@@ -164,15 +169,34 @@ def command(
         hub_path=hub_path,
         wheel_radius=passage.wheel_radius,
     )
-    for line in _summary(result, model, notes):
-        click.echo(line)
-    write_ride(result, out / "ride.csv")
-    draw_ride(result, out / "ride.png")
-    written = [out / "ride.csv", out / "ride.png"]
-    if animation:
-        animate_ride(result, out / "ride.gif")
-        written.append(out / "ride.gif")
-    click.echo("written: " + ", ".join(str(path) for path in written))
+    names = ["ride.csv", "ride.png", *(["ride.gif"] if animation else [])]
+    with staged(output.out) as folder:
+        output.stage("writing and drawing the ride")
+        write_ride(result, folder / "ride.csv")
+        draw_ride(result, folder / "ride.png")
+        if animation:
+            output.stage("drawing the animation")
+            animate_ride(result, folder / "ride.gif")
+    written = [str(output.out / name) for name in names]
+    lines = _summary(result, model, () if output.quiet else notes)
+    output.result([*lines, f"written: {', '.join(written)}"], _content(result, model, notes, written))
+
+
+def _content(result: Ride, tire: TireModel, notes: tuple[str, ...], written: list[str]) -> dict[str, object]:
+    """Return what --json prints: lengths [m], forces [N], speed [m/s]."""
+    touch, force = result.contact, result.radial_force
+    return {
+        "ground": result.ground.name,
+        "tire": tire.name,
+        "speed": result.speed,
+        "positions": int(touch.position.size),
+        "deflection": [float(touch.deflection.min()), float(touch.deflection.max())],
+        "force": [float(force.min()), float(force.max())],
+        "force_mean": float(force.mean()),
+        "limits": list(result.report.sentences()),
+        "notes": list(notes),
+        "written": written,
+    }
 
 
 def _summary(result: Ride, tire: TireModel, notes: tuple[str, ...]) -> list[str]:

@@ -9,8 +9,8 @@ from pathlib import Path
 import click
 from radialtire import TireModel, read_tire
 
-from ..errors import TirelabError
-from .options import FILE, SentenceCommand, out_option
+from .options import FILE, SentenceCommand
+from .output import Output, example, output_options
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
@@ -34,8 +34,10 @@ def quantity(unit: str) -> Callable[[click.Context, click.Parameter, str], float
     return convert
 
 
-@click.command("rig", cls=SentenceCommand)
-@out_option("recordings")
+@click.command(
+    "rig", cls=SentenceCommand, epilog=example("tirelab rig --noise 10N --seed 1 --out recordings")
+)
+@output_options("recordings")
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
 @click.option(
     "--noise",
@@ -55,29 +57,37 @@ def quantity(unit: str) -> Callable[[click.Context, click.Parameter, str], float
 @click.option(
     "--cycles", type=click.IntRange(1, 1000), default=1, show_default=True, help="Triangles of 30 s."
 )
-def command(out: Path, tire: Path | None, noise: float, correlation: float, seed: int, cycles: int) -> None:
+def command(
+    output: Output, tire: Path | None, noise: float, correlation: float, seed: int, cycles: int
+) -> None:
     """Write the recordings that the rig of Hull, Wang & Moore (1996) would have made of a tire, as CSV.
 
     Ten convex surfaces, a flat one, three concave ones; a triangle wave of 30 s sampled at 5 Hz; force below 2240 N.
     """
     from ..article.press import ForceNoise, record_all
+    from ..computing.staging import staged
     from ..recordings.recording import write_recording
 
     model = TireModel() if tire is None else read_tire(tire)
     recordings = record_all(model, cycles=cycles, noise=ForceNoise(noise, correlation, (seed,)))
-    try:
-        out.mkdir(parents=True, exist_ok=True)
+    with staged(output.out) as folder:
         for recording in recordings:
-            write_recording(recording, out / f"{recording.name}.csv")
-    except OSError as error:
-        raise TirelabError(
-            f"{out} cannot be written ({error.strerror}); name another folder with --out"
-        ) from None
-    for recording in recordings:
-        click.echo(
-            f"{out / recording.name}.csv: to {100.0 * recording.deflection.max():.4g} cm and "
-            f"{recording.force.max():.0f} N, {recording.time.size} samples"
-        )
-    click.echo(
+            write_recording(recording, folder / f"{recording.name}.csv")
+    made = [
+        {
+            "file": str(output.out / f"{recording.name}.csv"),
+            "samples": int(recording.time.size),
+            "deflection_max": float(recording.deflection.max()),
+            "force_max": float(recording.force.max()),
+        }
+        for recording in recordings
+    ]
+    lines = [
+        f"{output.out / recording.name}.csv: to {100.0 * recording.deflection.max():.4g} cm and "
+        f"{recording.force.max():.0f} N, {recording.time.size} samples"
+        for recording in recordings
+    ]
+    lines.append(
         f"computed from {model.name or 'a tire'}; these are the law's numbers, not the authors' measurements"
     )
+    output.result(lines, {"tire": model.name, "recordings": made})

@@ -21,6 +21,9 @@ MOST = 10
 STILL, LONG_ENOUGH = 0.02, 1.0
 """A hold: less than this part of the root mean square rate, for at least so many seconds."""
 
+FASTER, REACHED = 10.0, 0.1
+"""The factor to another speed, and the speed [m/s] that every rig is taken to reach."""
+
 LAW_TRAITS = ("static",)
 """Traits of a refitted law: it depends on deflection and surface only."""
 
@@ -73,12 +76,13 @@ def reason_of(names: Sequence[str], other: Sequence[str], explanation: Explanati
     common = set.intersection(*differing) if differing else set()
     lacks = insufficient_excitation(explanation, dataset)
     if "static" in common:
-        return "they depend on deflection and surface only: record at a second pressure or on a stiffer rig"
+        return "they depend on deflection and surface only: repeat at a second pressure (2 bar, say)"
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):
         loops = [text for text in lacks if "surface" not in text]
-        return "; ".join(loops) or "their loops are alike at the recorded rates: drive slower and faster"
+        another = f"repeat at {1e3 * _another_speed(dataset):.2g} mm/s"
+        return "; ".join(loops) or f"their loops are alike at the recorded rates: {another}"
     return "; ".join(lacks) or "the difference is smaller than these recordings can show"
 
 
@@ -89,7 +93,7 @@ def insufficient_excitation(explanation: Explanation, dataset: Dataset) -> list[
     if not timed:
         lacks.append("no time: record it")
     elif explanation.excitation.one_speed:
-        lacks.append("one speed only: drive a second speed")
+        lacks.append(f"one speed only: repeat at {1e3 * _another_speed(dataset):.2g} mm/s")
     if len(dataset.radii) == 1:
         lacks.append("one surface only: press on a second surface")
     rates = [np.abs(e.motion.rate) for e in dataset.experiments]
@@ -100,6 +104,13 @@ def insufficient_excitation(explanation: Explanation, dataset: Dataset) -> list[
     if max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
         lacks.append("no repeated cycle: drive each cycle twice")
     return lacks
+
+
+def _another_speed(dataset: Dataset) -> float:
+    """Return a speed [m/s] far from those recorded: ten times the typical one where the rig is sure to reach that."""
+    speeds = np.concatenate([np.abs(e.motion.rate) for e in dataset.experiments])
+    typical, fastest = float(np.sqrt(np.mean(speeds**2))), float(speeds.max())
+    return FASTER * typical if FASTER * typical <= max(2.0 * fastest, REACHED) else typical / FASTER
 
 
 def _traits(name: str) -> tuple[str, ...]:

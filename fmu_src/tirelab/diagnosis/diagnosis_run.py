@@ -5,11 +5,13 @@ The command, the batch and the blind trials all call `run_diagnosis`.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -18,17 +20,19 @@ import polars as pl
 from numpy.typing import NDArray
 from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
 
+from ..computing.staging import staged
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..fmu.replay import replay
 from ..recordings.files import recording_files
+from ..recordings.metadata import read_sidecar
 from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
 from .diagnose import PoorRecording, diagnose
-from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
+from .outcome import DATA, DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
 
 AGREEMENT = 1e-9
@@ -70,50 +74,116 @@ def run_diagnosis(
 
     Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
     """
+    return _run(_Request(tuple(recordings), out, tire, tuple(held_out), reading), progress)
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What `run_diagnosis` is asked for; samples: whether the data behind the plots is written."""
+
+    recordings: tuple[Path, ...]
+    out: Path
+    tire: Path | None = None
+    held_out: tuple[Path, ...] = ()
+    reading: Reading = Reading()  # noqa: RUF009
+    samples: bool = True
+
+
+def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
     report = progress or (lambda sentence: None)
-    baseline = _baseline(tire)
-    files, skipped = recording_files(recordings, reading.columns)
-    kept_files, more_skipped = recording_files(held_out, reading.columns)
+    baseline = _baseline(asked.tire)
+    files, skipped = recording_files(asked.recordings, asked.reading.columns)
+    kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
     _check_once([*files, *kept_files])
-    _check_folder(out)
-    fitted = [_read(file, reading, report) for file in files]
-    kept = [_read(file, reading, report) for file in kept_files]
+    _check_folder(asked.out)
+    fitted = [_read(file, asked.reading, report) for file in files]
+    kept = [_read(file, asked.reading, report) for file in kept_files]
     _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
+    origin = {
+        "command": command_line(asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading),
+        "date": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], asked)],
+    }
     try:
         verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
     except PoorRecording as error:
         doubts = [f"{r.name}: {doubt}" for r in fitted for doubt in r.doubts]
         raise PoorRecording("; ".join([str(error), *doubts])) from None
+    with staged(asked.out) as aside:
+        content, warnings = _delivered(aside, verdict, (fitted, kept), origin, report, asked.samples)
+    # What an earlier diagnosis wrote and this one does not have would seem to belong to it.
+    for name, written in ((TEST, verdict.test is not None), (DATA, asked.samples)):
+        if not written:
+            (asked.out / name).unlink(missing_ok=True)
+    notes = [*map(str, (*skipped, *more_skipped))]
+    notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
+    return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
+
+
+def _delivered(
+    folder: Path,
+    verdict: Verdict,
+    recordings: tuple[Sequence[Recording], Sequence[Recording]],
+    origin: Mapping[str, Any],
+    report: Progress,
+    samples: bool,
+) -> tuple[dict[str, Any], list[str]]:
+    """Write everything into `folder`; return the content of diagnosis.json and the warnings.
+
+    recordings: fitted and held out; origin: command, date and files, by which the page says how to repeat it; samples:
+    whether the data behind the plots is written
+    """
+    fitted, kept = recordings
     report("building the corrected FMU")
-    fmu = build_fmu(verdict.tire, out).path
-    on_fitted, more = _replayed(fmu, fitted, baseline, verdict.tire, report)
-    on_kept, warnings = _replayed(fmu, kept, baseline, verdict.tire, report)
+    fmu = build_fmu(verdict.tire, folder).path
+    on_fitted, more = _replayed(fmu, fitted, verdict, report)
+    on_kept, warnings = _replayed(fmu, kept, verdict, report)
     warnings += _without_time((*fitted, *kept))
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
-    _write(out, content, verdict)
-    page = {
-        **content,
-        **verdict.page_content(),
-        "warnings": [*more, *warnings],
-        "command": command_line(recordings, out, tire, held_out, reading),
-    }
+    if samples:
+        _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
+    else:
+        content["data"] = None
+    _write(folder, content, verdict)
     write_report(
-        out / REPORT,
-        page,
+        folder / REPORT,
+        {**content, **verdict.page_content(), **origin, "warnings": [*more, *warnings]},
         fitted,
         on_fitted.before,
         on_fitted.after,
         held_out=(kept, on_kept.before, on_kept.after) if kept else None,
     )
-    notes = [*map(str, (*skipped, *more_skipped))]
-    notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
-    return DiagnosisRun(verdict, content, tuple(notes), (*more, *warnings))
+    return content, [*more, *warnings]
+
+
+def _files_read(recordings: Sequence[Path], asked: _Request) -> list[Path]:
+    """Return the files that a diagnosis depends on: the recordings, their settings, and the tire file."""
+    named = asked.reading.settings
+    parts = [split_piece(given) for given in recordings]
+    found = [file for file, _ in parts]
+    if named is not None:
+        found.append(named)
+    else:
+        for file, piece in parts:
+            found += [file.parent / name for name in read_sidecar(file, trial=piece.trial).sources]
+    return list(dict.fromkeys([*found, *([] if asked.tire is None else [asked.tire])]))
+
+
+def _sha256(file: Path) -> str:
+    with file.open("rb") as stream:
+        digest = hashlib.sha256()
+        while block := stream.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
-    """Diagnose files with the baseline of a tire file, None for the article's, into the folder `out`."""
-    run_diagnosis(recordings, out, tire=tire)
+    """Diagnose files with the baseline of a tire file, None for the article's, into the folder `out`.
+
+    The data behind the plots is not written: hundreds of blind trials would fill a disk with it.
+    """
+    _run(_Request(tuple(recordings), out, tire, samples=False), None)
 
 
 def command_line(
@@ -183,19 +253,15 @@ def _check_folder(out: Path) -> None:
 
 
 def _replayed(
-    fmu: Path,
-    recordings: Sequence[Recording],
-    baseline: TireModel,
-    corrected: TireModel,
-    progress: Progress,
+    fmu: Path, recordings: Sequence[Recording], verdict: Verdict, progress: Progress
 ) -> tuple[Replayed, list[str]]:
     """Return the forces of the baseline and of the corrected FMU, and warnings where FMU and simulation disagree."""
     forces, warnings = [], []
     for recording in recordings:
         progress(f"replaying the corrected FMU on {recording.name}")
         forces.append(replay(fmu, recording))
-        warnings += _disagreement(recording, forces[-1], simulate(corrected, recording))
-    before = tuple(simulate(baseline, r) for r in recordings)
+        warnings += _disagreement(recording, forces[-1], simulate(verdict.tire, recording))
+    before = tuple(simulate(verdict.baseline, r) for r in recordings)
     return Replayed(tuple(recordings), before, tuple(forces)), warnings
 
 
@@ -211,11 +277,10 @@ def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatAr
 
 
 def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:
-    """Write all but the FMU and the report; a test of an earlier diagnosis is removed."""
+    """Write all but the FMU and the report."""
     try:
         write_tire(verdict.tire, out / TIRE)
         (out / DIAGNOSIS).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        (out / TEST).unlink(missing_ok=True)
         if verdict.test is not None:
             motion = verdict.test.test
             pl.DataFrame(
@@ -225,5 +290,29 @@ def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:
                     "radius [cm]": np.round(100.0 * motion.surface_radius, 9),
                 }
             ).write_csv(out / TEST)
+    except OSError as error:
+        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
+
+
+def _write_samples(out: Path, groups: Sequence[tuple[str, Replayed]]) -> None:
+    """Write every sample of every recording with the forces before and after: the data behind the plots."""
+    tables = [
+        pl.DataFrame(
+            {
+                "recording": [recording.name] * len(recording),
+                "used": [used] * len(recording),
+                "time [s]": recording.time,
+                "deflection [mm]": 1e3 * recording.deflection,
+                "radius [cm]": 100.0 * recording.surface_radius,
+                "force [N]": recording.force,
+                "force before [N]": before,
+                "force after [N]": after,
+            }
+        )
+        for used, replayed in groups
+        for recording, before, after in zip(replayed.recordings, replayed.before, replayed.after, strict=True)
+    ]
+    try:
+        pl.concat(tables).write_csv(out / DATA, float_precision=6)
     except OSError as error:
         raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None

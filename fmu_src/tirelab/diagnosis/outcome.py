@@ -12,19 +12,20 @@ from numpy.typing import NDArray
 
 from ..estimation.findings import Evidence
 from ..recordings.recording import Recording
-from ..report.titles import newtons
+from ..report.titles import difference, newtons
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 
 FloatArray = NDArray[np.float64]
 
-TIRE, FMU, DIAGNOSIS, REPORT, TEST = (
+TIRE, FMU, DIAGNOSIS, REPORT, TEST, DATA = (
     "tire.json",
     "BicycleTire.fmu",
     "diagnosis.json",
     "report.html",
     "separating_test.csv",
+    "plots.csv",
 )
 """The files of a diagnosis, in its folder."""
 
@@ -46,7 +47,7 @@ class Replayed:
 
 
 def content_of(verdict: Mapping[str, Any], fitted: Replayed, held_out: Replayed) -> dict[str, Any]:
-    """Return the content of diagnosis.json, schema 1, with the errors of the corrected FMU and the names of the files.
+    """Return the content of diagnosis.json with the errors of the corrected FMU and the names of the files.
 
     verdict: from `Verdict.to_dict`. The held-out errors are those of the held-out recordings; without any, those of the
     part of the recordings that the diagnosis held out (`held_out_by` says which). A number that is not known is null.
@@ -65,7 +66,7 @@ def content_of(verdict: Mapping[str, Any], fitted: Replayed, held_out: Replayed)
     if content["verdict"]["separating_test"] is not None:
         test = {**content["verdict"]["separating_test"], "file": TEST}
         content["verdict"] = {**content["verdict"], "separating_test": test}
-    return finite({**content, "tire": TIRE, "corrected_fmu": FMU, "report": REPORT})
+    return finite({**content, "tire": TIRE, "corrected_fmu": FMU, "report": REPORT, "data": DATA})
 
 
 def page_content(
@@ -91,6 +92,23 @@ def page_content(
         if test is None
         else {"time": test.test.time.tolist(), "deflection": test.test.deflection.tolist()},
     }
+
+
+def alternative_detail(names: Sequence[str], alternative: Alternative) -> dict[str, Any]:
+    """Return an entry of `alternative_details` in diagnosis.json: how it differs from the verdict's `names`, why."""
+    lacks, action = split_reason(alternative.reason)
+    return {
+        "difference": difference(names, alternative.names),
+        "probability": alternative.probability,
+        "reason": lacks,
+        "action": action,
+    }
+
+
+def split_reason(reason: str) -> tuple[str, str]:
+    """Return what the recordings lack, and what to do about it, of sentences such as "no hold: hold 10 s at 15 mm"."""
+    parts = [part.partition(": ") for part in reason.split("; ")]
+    return "; ".join(lacks for lacks, _, _ in parts), "; ".join(action for _, _, action in parts if action)
 
 
 def _remark(number: int, log_evidence: float) -> str:

@@ -12,7 +12,7 @@ from radialtire import TireModel
 from ..errors import TirelabError
 from ..estimation.findings import Evidence, NamedEffect
 from ..estimation.remainder import Remainder
-from ..names import UNKNOWN
+from ..names import REFITTED_LAW, UNKNOWN
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..recordings.recording import Recording
@@ -20,8 +20,11 @@ from ..report.titles import headline
 from ..simulation.simulate import simulate
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
-from .localization import Span
-from .outcome import finite, page_content
+from .effect_sizes import effect_size, load_of
+from .effect_sketch import sketch_of
+from .law_change import LawChange, law_changes
+from .localization import Span, law_corrected
+from .outcome import alternative_detail, finite, page_content
 from .residual_model import ResidualModel
 
 if TYPE_CHECKING:
@@ -131,12 +134,17 @@ class Verdict:
                             "share": e.share,
                             "probability": e.probability,
                             "grounds": dict(e.grounds),
+                            "size": effect_size(e.name, self.tire, self.baseline, self.recordings),
+                            **({"law": [c.to_dict() for c in self._law()]} if e.name == REFITTED_LAW else {}),
                         }
                         for e in self.effects
                     ],
                     "confidence": self.confidence,
                     "grounds": dict(self.grounds),
                     "alternatives": [list(r.names) for r in self.alternatives],
+                    "alternative_details": [
+                        alternative_detail([e.name for e in self.effects], a) for a in self.alternatives
+                    ],
                     "unexplained": self.unexplained,
                     "remainder": self.remainder.to_dict(),
                     "summary": self.summary,
@@ -150,11 +158,13 @@ class Verdict:
                     "after": self.fit.after,
                     "held_out_before": self.fit.held_out_before,
                     "held_out_after": self.fit.held_out_after,
+                    "load": load_of(self.recordings),
                 },
                 "held_out_by": self.fit.held_out_by,
                 "tire": None,
                 "corrected_fmu": None,
                 "report": None,
+                "data": None,
             }
         )
 
@@ -164,7 +174,33 @@ class Verdict:
             **page_content(self.evidence, self.alternatives, self.residual_models, self.test),
             "tire_before": self.baseline.name,
             "tire_after": self.tire.name,
+            "located": self._located(),
+            "law_changes": [
+                {"radius": c.radius, "deflection": c.deflection.tolist(), "difference": c.difference.tolist()}
+                for c in self._law()
+            ],
+            "sketches": {
+                e.name: {
+                    "deflection": s.deflection.tolist(),
+                    "force": s.force.tolist(),
+                    "varied": {parameter: force.tolist() for parameter, force in s.varied.items()},
+                }
+                for e in self.effects
+                if (s := sketch_of(e.name, self.tire, self.recordings)) is not None
+            },
         }
+
+    def _law(self) -> tuple[LawChange, ...]:
+        """Return the change of the law on every surface; nothing where the law was not refitted."""
+        refitted = [e for e in self.effects if e.name == REFITTED_LAW]
+        if not refitted:
+            return ()
+        return law_changes(self.baseline, self.tire, refitted[0].parameters, self.recordings)
+
+    def _located(self) -> list[FloatArray]:
+        """Return the residuals [N] in which the places of `where` lie, one array for each recording."""
+        before = [r.force - simulate(self.baseline, r) for r in self.recordings]
+        return law_corrected(self.recordings, before, self.baseline, self.tire)
 
     def report(self, path: Path | str) -> None:
         """Write the page that `tirelab diagnose` writes, with the forces of the simulated corrected tire, to `path`.

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,14 @@ class LawFit:
     def value(self, symbol: str) -> float:
         """Return a constant; raises KeyError where the law has none of that symbol."""
         return {s: value for s, value, _, _ in self.constants}[symbol]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it for JSON."""
+        constants = {
+            symbol: {"value": value, "std": deviation, "unit": unit}
+            for symbol, value, deviation, unit in self.constants
+        }
+        return {"name": self.name, "constants": constants, "rmse": self.rmse, "bic": self.bic}
 
 
 @dataclass(frozen=True)

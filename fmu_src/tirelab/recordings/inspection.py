@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +61,24 @@ class Inspection:
     facts: tuple[tuple[str, str], ...]
     channels: tuple[ChannelFound, ...]
     settings: Mapping[str, Any]
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What reading did to the numbers, without what is doubtful of them."""
+        return tuple(note for note in self.recording.notes if not note.startswith("doubtful: "))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it for JSON."""
+        return {
+            "file": str(self.path),
+            "name": self.recording.name,
+            "channels": [asdict(channel) for channel in self.channels],
+            "facts": dict(self.facts),
+            "says": list(self.recording.provenance),
+            "notes": list(self.remarks),
+            "doubts": list(self.recording.doubts),
+            "settings": dict(self.settings),
+        }
 
 
 def inspect_recording(path: Path | str, how: Choices) -> Inspection:

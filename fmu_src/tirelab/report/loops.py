@@ -95,7 +95,7 @@ def draw_difference(case: Case, mark: str) -> Markup:
     residual, added = case.recording.force - case.before, case.after - case.before
     frame = Frame(limits_of(mm), limits_of(residual, added))
     with drawing() as (figure, axes):
-        _dots(axes, mm, residual, frame, GREY, 2)
+        draw_dots(axes, mm, residual, frame, GREY, 2)
         if not case.alike:
             _line(axes, mm, added, frame, PAGE.after, BLUE)
         title = "Recorded minus simulated force"
@@ -107,7 +107,7 @@ def draw_difference(case: Case, mark: str) -> Markup:
 def _loops(axes: Axes, case: Case, which: str, palette: Palette) -> None:
     mm, force = 1e3 * case.recording.deflection, case.recording.force
     frame = Frame(limits_of(mm), limits_of(force, case.before, case.after))
-    _dots(axes, mm, force, frame, GREY, 2)
+    draw_dots(axes, mm, force, frame, GREY, 2)
     if which != "after":
         _line(axes, mm, case.before, frame, palette.before, ORANGE)
     if which != "before" and not case.alike:
@@ -115,7 +115,7 @@ def _loops(axes: Axes, case: Case, which: str, palette: Palette) -> None:
     axes.set(xlim=frame.across, ylim=frame.up, xlabel="deflection [mm]", ylabel="radial force [N]")
 
 
-def _dots(
+def draw_dots(
     axes: Axes, x: FloatArray, y: FloatArray, frame: Frame, colour: tuple[int, int, int], wide: int = 0
 ) -> None:
     picture = np.zeros((*DOTS, 4), dtype=np.uint8)
@@ -130,6 +130,6 @@ def _line(
 ) -> None:
     path = trail(x, y, frame.across, frame.up)
     if path[0].size > LONGEST_LINE:
-        _dots(axes, x, y, frame, dots)
+        draw_dots(axes, x, y, frame, dots)
     else:
         axes.plot(*path, color=colour, lw=1.1)

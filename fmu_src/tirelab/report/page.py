@@ -19,8 +19,9 @@ from radialtire import CATALOGUE
 from ..errors import TirelabError
 from ..names import REFITTED_LAW
 from ..recordings.recording import Recording
-from . import titles, words
+from . import explore, first_screen, titles, words
 from .loops import Case, draw_difference, draw_loops
+from .places import Located, draw_where, shaded
 from .residuals import (
     draw_maps,
     draw_over_deflection,
@@ -29,7 +30,7 @@ from .residuals import (
     draw_slow_changes,
     misfit_of,
 )
-from .sketches import draw_correction, draw_waveform
+from .sketches import draw_correction, draw_law_changes, draw_sketch, draw_waveform
 
 FloatArray = NDArray[np.float64]
 
@@ -42,13 +43,30 @@ MOST_LOOPS = 4
 MOST_PLACES = 8
 """Rows of the table of places."""
 
+MOST_TOLD = 2
+"""Places that the first screen tells in words."""
+
 MOST_SETS = 15
 """Rows of the table of sets that were compared."""
 
-BESIDE = ("tire_before", "tire_after", "evidence", "reasons", "correction", "waveform", "warnings", "command")
+BESIDE = (
+    "tire_before",
+    "tire_after",
+    "evidence",
+    "reasons",
+    "correction",
+    "waveform",
+    "warnings",
+    "command",
+    "date",
+    "files",
+    "located",
+    "law_changes",
+    "sketches",
+)
 """What a diagnosis may have besides the content of diagnosis.json."""
 
-VERSIONS_OF = ("tirelab", "numpy", "scipy", "matplotlib")
+VERSIONS_OF = ("tirelab", "numpy", "scipy", "numba", "fmpy", "matplotlib")
 
 
 def write_report(
@@ -73,6 +91,10 @@ def write_report(
         waveform      {"time" [s], "deflection" [m]} of the recommended next test
         warnings      sentences for the top of the page
         command       the command line
+        date          when, as text; files: (name, SHA-256) of every file that was read
+        law_changes   [{"radius" [m], "deflection" [m], "difference" [N]}]: the refitted law less the baseline's
+        sketches      effect -> {"deflection" [m], "force" [N], "varied": parameter -> force [N]}
+        located       residuals [N] in which the places lie, one array for each recording; without, those before
     before, after: simulated forces [N], one array for each recording; held_out: the same for the held-out
     recordings
 
@@ -97,15 +119,20 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     environment.filters |= {"number": words.number, "percent": words.percent}
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
-    alternatives = verdict["alternatives"]
     return page.render(
-        style=Markup((here / "report.css").read_text(encoding="utf-8")),
+        script=explore.script(),
+        explored=explore.explored(
+            [("fitted", c) for c in fitted] + [("held-out", c) for c in held_out],
+            float(diagnosis["fit"]["noise"]),
+            all(c.alike for c in fitted),
+        ),
+        first=_first_screen(diagnosis, fitted, reasons),
+        style=explore.style() + Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
         verdict=verdict,
-        effects=[_effect(effect) for effect in verdict["effects"]],
-        alternatives=list(
-            zip(alternatives, reasons + [""] * (len(alternatives) - len(reasons)), strict=False)
-        ),
+        effects=[_effect(effect, diagnosis["sketches"] or {}) for effect in verdict["effects"]],
+        alternatives=_alternatives(verdict),
+        law_curves=draw_law_changes(diagnosis["law_changes"], "law") if diagnosis["law_changes"] else None,
         fit=_fit(diagnosis["fit"], diagnosis.get("held_out_by", ""), fitted, held_out),
         loops=_loops(fitted, held_out),
         maps=_maps(fitted, float(diagnosis["fit"]["noise"])),
@@ -142,25 +169,92 @@ def _cases(
     return [Case(r, b, a) for r, b, a in zip(recordings, before, after, strict=True)]
 
 
-def _effect(effect: Mapping[str, Any]) -> dict[str, Any]:
+def _first_screen(
+    diagnosis: Mapping[str, Any], fitted: Sequence[Case], reasons: Sequence[str]
+) -> dict[str, Any]:
+    """What the first screen shows: see `first_screen`."""
+    verdict, noise = diagnosis["verdict"], float(diagnosis["fit"]["noise"])
+    residuals = diagnosis["located"]
+    if not residuals or [len(r) for r in residuals] != [len(c.recording) for c in fitted]:
+        residuals = [c.recording.force - c.before for c in fitted]
+    located = [
+        Located(c.recording, np.asarray(r, float), c.before) for c, r in zip(fitted, residuals, strict=True)
+    ]
+    where = words.foremost(diagnosis["where"], MOST_PLACES)
+    worst = max(located, key=lambda at: float(np.sum(at.residual**2)))
+    places = shaded(where, worst)
+    test = verdict["separating_test"] or {}
+    return {
+        "headline": first_screen.headline(diagnosis),
+        "lead": first_screen.lead(verdict),
+        "sure": first_screen.sureness(verdict),
+        "undecided": first_screen.undecided(verdict),
+        "figures": first_screen.figures(diagnosis),
+        "picture": draw_where(worst, places, noise, "where"),
+        "recording": worst.recording.name if len(located) > 1 else "",
+        "places": [
+            (words.coordinate(p["by"]), words.span(p), p["share"]) for p in (places or where)[:MOST_TOLD]
+        ],
+        "is_shaded": bool(places),
+        "next": (step := first_screen.next_step(diagnosis, reasons)),
+        "drive": test.get("file") if step.drive else None,
+        "links": [
+            (title, name)
+            for title, name in (
+                ("Tire", diagnosis.get("tire")),
+                ("FMU", diagnosis.get("corrected_fmu")),
+                ("Drive file", test.get("file")),
+                ("Data of the plots", diagnosis.get("data")),
+                ("Numbers", "diagnosis.json" if diagnosis.get("tire") else None),
+            )
+            if name
+        ],
+    }
+
+
+def _effect(effect: Mapping[str, Any], sketches: Mapping[str, Any]) -> dict[str, Any]:
     name = effect["name"]
     known = CATALOGUE.get(name)
+    sketch = sketches.get(name)
     return {
         "title": titles.effect_title(name),
+        "size": words.number(effect.get("size")) if effect.get("size") is not None else "",
         "statement": words.LAW_STATEMENT if name == REFITTED_LAW else "",
         "tell_tale": known.tell_tale if known else "",
         "imitators": titles.listed([titles.effect_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",
         "share": effect["share"],
+        "law": [words.law_row(row) for row in effect.get("law", [])],
+        "sketched": sketch is not None,
         "parameters": [
             (
                 titles.effect_title(parameter),
                 words.estimate(e["value"], e["std"], e["unit"]),
+                words.interval(e["value"], e["std"], e["unit"], words.bounds(name, parameter)),
                 words.meaning(name, parameter),
+                draw_sketch(sketch, parameter) if sketch else "",
             )
             for parameter, e in effect["parameters"].items()
+            if not (effect.get("law") and words.is_of_a_surface(parameter))
         ],
     }
+
+
+def _alternatives(verdict: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The alternatives by their reasons, each of them once: what decides, and the sets as differences."""
+    names = [effect["name"] for effect in verdict["effects"]]
+    details = verdict.get("alternative_details") or [
+        {"difference": titles.difference(names, other), "probability": None, "reason": "", "action": ""}
+        for other in verdict["alternatives"]
+    ]
+    groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    for d in details:
+        chance = "not seen" if d["probability"] is None else words.percent(d["probability"])
+        groups.setdefault((d["reason"], d["action"]), []).append((d["difference"], chance))
+    return [
+        {"reason": words.sentence(reason), "action": words.sentence(action), "sets": sets}
+        for (reason, action), sets in groups.items()
+    ]
 
 
 def _rmse(cases: Sequence[Case], which: str) -> float:

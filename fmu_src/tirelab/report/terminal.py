@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from . import titles, words
+from . import first_screen, titles, words
 
 MOST_PLACES = 6
 """Rows of the table of places."""
@@ -26,8 +26,8 @@ def print_diagnosis(
     diagnosis: the content of diagnosis.json
     """
     verdict, fit = diagnosis["verdict"], diagnosis["fit"]
-    console.print(Text(words.headline(verdict), style="bold"))
-    console.print(Text(words.besides(verdict)))
+    console.print(Text(first_screen.headline(diagnosis), style="bold"))
+    console.print(Text(verdict["summary"]))
     console.print()
     errors = _table("RMS error [N]", "before", "after", "noise")
     noise = words.number(fit["noise"])
@@ -60,9 +60,16 @@ def print_diagnosis(
     for effect in verdict["effects"]:
         title = f"{titles.effect_title(effect['name'])}, {words.percent(effect['share'])} of the error"
         console.print(Text(title, style="dim"))
+        if effect.get("law"):
+            surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
+            for row in map(words.law_row, effect["law"]):
+                surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
+            console.print(surfaces)
         parameters = _table("", "", "")
         parameters.show_header = False
         for name, e in effect["parameters"].items():
+            if effect.get("law") and words.is_of_a_surface(name):
+                continue
             value = words.estimate(e["value"], e["std"], e["unit"])
             parameters.add_row(titles.effect_title(name), value, words.meaning(effect["name"], name))
         console.print(parameters)
@@ -78,9 +85,22 @@ def print_diagnosis(
         console.print(regressed)
         console.print()
 
+    if verdict.get("alternative_details"):
+        others = _table("cannot be ruled out", "probability", "what decides")
+        for other in verdict["alternative_details"]:
+            chance = "not seen" if other["probability"] is None else words.percent(other["probability"])
+            others.add_row(other["difference"], chance, other["action"] or other["reason"])
+        console.print(others)
+        console.print()
+
     if verdict["separating_test"] is not None:
         console.print(Text(f"Recommended next test: {verdict['separating_test']['sentence']}"))
+    lacking = [f"{d['reason']}: {d['action']}" for d in verdict.get("alternative_details", []) if d["action"]]
+    step = first_screen.next_step(diagnosis, lacking)
+    if not step.drive:
+        console.print(Text(f"What to do next: {step.action} {step.why}".rstrip()))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
+    files += [diagnosis["data"]] if diagnosis.get("data") else []
     if verdict["separating_test"] is not None:
         files.append(verdict["separating_test"]["file"])
     console.print(Text(f"Written to {printable(str(out))}: {', '.join(files)}"))

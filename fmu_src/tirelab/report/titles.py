@@ -29,6 +29,33 @@ def effect_title(name: str) -> str:
     )
 
 
+_SHORT = {
+    "rate_independent_hysteresis": "friction loop",
+    "series_compliance": "series spring",
+    "viscoelastic_relaxation": "relaxation",
+}
+"""Names for headlines and lists of effects whose own name is long."""
+
+
+def short_title(name: str) -> str:
+    """Return the name of an effect where there is little room."""
+    return _SHORT.get(name) or effect_title(name)
+
+
+def short_set(names: Sequence[str]) -> str:
+    """Return the name of a set of effects where there is little room."""
+    return " + ".join(short_title(name) for name in names) or "nothing missing"
+
+
+def difference(names: Sequence[str], other: Sequence[str]) -> str:
+    """Return how another set differs from `names`: "+ series spring", "− refitted law", "B instead of A"."""
+    added = [short_title(name) for name in other if name not in names]
+    removed = [short_title(name) for name in names if name not in other]
+    if len(added) == len(removed) == 1:
+        return f"{added[0]} instead of {removed[0]}"
+    return " ".join([*(f"+ {title}" for title in added), *(f"− {title}" for title in removed)]) or "the same"
+
+
 def set_title(names: Sequence[str]) -> str:
     """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
     known = {*CATALOGUE, REFITTED_LAW, UNKNOWN}

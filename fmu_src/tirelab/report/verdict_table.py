@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from . import titles, words
+from . import first_screen, titles, words
 
 _TABLE = Markup(
     '<table style="border-collapse:collapse;color:inherit;background:transparent">'
@@ -52,7 +52,7 @@ def verdict_table(diagnosis: Mapping[str, Any]) -> str:
     if verdict["separating_test"] is not None:
         rows.append(("recommended next test", verdict["separating_test"]["sentence"]))
     body = Markup("").join(_ROW.format(title=title, text=text) for title, text in rows)
-    return str(_TABLE.format(caption=words.headline(verdict), rows=body))
+    return str(_TABLE.format(caption=first_screen.headline(diagnosis), rows=body))
 
 
 def _change(before: float, after: float | None) -> str:

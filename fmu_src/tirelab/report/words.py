@@ -10,11 +10,13 @@ from typing import Any
 from radialtire import CATALOGUE, FLAT_RADIUS
 
 from ..names import REFITTED_LAW
-from . import titles
 
 LAW_STATEMENT = (
     "the elastic law has other coefficients than in the baseline tire; a refitted law is not missing physics"
 )
+
+NORMAL_95 = 1.96
+"""Standard deviations of a 95 % interval of a normal distribution."""
 
 _SCALES = {
     "m": (1e3, "mm"),
@@ -88,11 +90,62 @@ def estimate(value: float, std: float | None, unit: str) -> str:
     return with_unit(text.replace("-", "−"), name)
 
 
+def bounds(effect: str, parameter: str) -> tuple[float, float]:
+    """Return the values that the catalogue allows a parameter; all of them where it does not know it."""
+    owner = CATALOGUE.get(effect)
+    found = [(p.minimum, p.maximum) for p in owner.parameters if p.name == parameter] if owner else []
+    return found[0] if found else (-math.inf, math.inf)
+
+
+def interval(
+    value: float, std: float | None, unit: str, allowed: tuple[float, float] = (-math.inf, math.inf)
+) -> str:
+    """Return the 95 % interval of a value with its unit, inside what is `allowed`; a dash where it is not known."""
+    if std is None or not math.isfinite(std) or std <= 0.0:
+        return "–"
+    factor, name = scaled(unit)
+    wide = NORMAL_95 * std
+    decimals = min(max(1 - math.floor(math.log10(factor * std)), 0), 6)
+    least, most = max(value - wide, allowed[0]), min(value + wide, allowed[1])
+    ends = [f"{factor * end + 0.0:.{decimals}f}".replace("-", "−") for end in (least, most)]
+    return with_unit(" to ".join(ends), name)
+
+
+def is_of_a_surface(parameter: str) -> bool:
+    """Return whether a parameter of a refitted law belongs to one surface."""
+    return parameter.partition(",")[0] in _OF_THE_LAW
+
+
+def law_row(row: Mapping[str, Any]) -> dict[str, str]:
+    """Return an entry of `law` in words: surface, and A and B before and after."""
+
+    def after(entry: Mapping[str, Any]) -> str:
+        return estimate(entry["after"], entry["std"], "1")
+
+    told = {"surface": surface(row["radius"])}
+    for key in ("A", "B"):
+        told |= {f"{key}_before": number(row[key]["before"], 4), f"{key}_after": after(row[key])}
+    return told
+
+
+def sentence(text: str) -> str:
+    """Return a text as a sentence; empty where it is."""
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
 def percent(share: float) -> str:
     """Return a share as percent; less than half a percent is shown as "< 1 %"."""
     if 0.0 < share < 0.005:
         return "< 1 %"
     return f"{100.0 * share:.0f} %".replace("-", "−")
+
+
+def of_load(size: float | None, load: float | None) -> str:
+    """Return a force's size as a part of the load, both root mean squares [N]; empty where one is not known."""
+    if size is None or not load:
+        return ""
+    share = size / load
+    return f"{100.0 * share:.1f} %" if 0.005 <= share < 0.0095 else percent(share)
 
 
 def confidence_word(confidence: float) -> str:
@@ -162,17 +215,6 @@ def surface(radius: float | str) -> str:
     if abs(size) >= FLAT_RADIUS:
         return "flat ground"
     return f"{'convex' if size > 0.0 else 'concave'}, radius {number(100.0 * abs(size))} cm"
-
-
-def headline(verdict: Mapping[str, Any]) -> str:
-    """Return the verdict in one line."""
-    names = [effect["name"] for effect in verdict["effects"]]
-    return titles.headline(names, bool(verdict["unexplained"]), bool(verdict["alternatives"]))
-
-
-def besides(verdict: Mapping[str, Any], but: str = "") -> str:
-    """Return the summary after its headline, without the sentence `but`."""
-    return " ".join(str(verdict["summary"]).removeprefix(headline(verdict)).replace(but, "").split())
 
 
 def held_out_part(by: str) -> str:

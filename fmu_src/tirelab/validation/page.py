@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from . import figures
 from . import metrics as summary
@@ -17,7 +17,15 @@ from .acceptance_criteria import Criterion, criteria
 from .calibration import Answers, answers, effect_reliability, skills
 from .metrics import Mean, Point, Rate
 from .score import Score
-from .wide_kinds import PARTS, is_wide, kind_criteria, right_verdicts, sound, sound_alternative
+from .wide_kinds import (
+    PARTS,
+    WIDEST_INTERVAL,
+    is_wide,
+    kind_criteria,
+    right_verdicts,
+    sound,
+    sound_alternative,
+)
 
 PROOF_SCHEMA = 5
 
@@ -146,7 +154,10 @@ def page(proof: Proof) -> str:
     source = importlib.resources.files(__package__).joinpath("proof.html.jinja").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters |= {"interval": interval, "value": value_text, "names": names_text, "words": _words}
+    environment.filters |= {"judged": judged, "too_few": too_few}
+    style = importlib.resources.files("tirelab.report").joinpath("report.css").read_text(encoding="utf-8")
     return environment.from_string(source).render(
+        style=Markup(style),
         proof=proof,
         kinds=summary.by_kind(scores, right_verdicts),
         wrongly_unknown=summary.wrongly_unknown(proof.drawn),
@@ -160,13 +171,31 @@ def page(proof: Proof) -> str:
         regions=summary.regions(scores),
         discriminations=summary.discriminations(scores),
         pictures={
-            "confusion": _picture(figures.confusion_matrix(summary.confusion(scores)), "confusion"),
-            "naming": _picture(figures.naming_curves(summary.naming(scores)), "naming"),
-            "reliability": _picture(
-                figures.reliability_diagram(summary.reliability(proof.drawn)), "reliability"
+            "confusion": _picture(
+                figures.confusion_matrix(summary.confusion(scores)),
+                "confusion",
+                "Matrix of hidden effects and the names that their verdicts gave them.",
             ),
-            "effects": _picture(figures.effect_reliability_diagram(effect_reliability(scores)), "effects"),
-            "held_out": _picture(figures.held_out_errors(scores), "held_out"),
+            "naming": _picture(
+                figures.naming_curves(summary.naming(scores)),
+                "naming",
+                "For each effect, how often it was named over its size in noises, with 95 % intervals.",
+            ),
+            "reliability": _picture(
+                figures.reliability_diagram(summary.reliability(proof.drawn)),
+                "reliability",
+                "How often verdicts were exact over their stated confidence, with 95 % intervals.",
+            ),
+            "effects": _picture(
+                figures.effect_reliability_diagram(effect_reliability(scores)),
+                "effects",
+                "How often named effects were there over their stated probability, with 95 % intervals.",
+            ),
+            "held_out": _picture(
+                figures.held_out_errors(scores),
+                "held_out",
+                "Held-out error of the corrected tire over that of the baseline, one point for each trial.",
+            ),
         },
     )
 
@@ -178,6 +207,17 @@ def value_text(measured: Rate | Mean) -> str:
     if isinstance(measured, Rate):
         return f"{100.0 * measured.value:.1f} % ({measured.hits} of {measured.trials})"
     return f"{measured.value:.3g}"
+
+
+def too_few(measured: Rate | Mean) -> bool:
+    """Whether a rate's interval is too wide to judge by."""
+    low, high = measured.interval
+    return isinstance(measured, Rate) and not math.isnan(measured.value) and high - low > WIDEST_INTERVAL
+
+
+def judged(criterion: Criterion) -> str:
+    """What came out of a criterion, in words; "too few trials" wherever the interval is too wide to judge by."""
+    return "too few trials" if too_few(criterion.measured) else criterion.result
 
 
 def interval(measured: Rate | Mean) -> str:
@@ -201,9 +241,10 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _picture(figure: Any, name: str) -> Markup:
+def _picture(figure: Any, name: str, title: str) -> Markup:
     # the text in a figure is names of effects, and matplotlib escapes it
-    return Markup(figures.svg(figure, name))
+    drawn = figures.svg(figure, name)
+    return Markup(drawn.replace("<svg", f'<svg role="img" aria-label="{escape(title)}"', 1))
 
 
 def _measured(measured: Rate | Mean) -> dict[str, Any]:

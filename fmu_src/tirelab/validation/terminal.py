@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.table import Table
 
 from .calibration import skills
-from .page import REDRAWN, Proof, interval, value_text
+from .page import REDRAWN, Proof, interval, judged, value_text
 from .wide_kinds import PARTS, kind_criteria
 
 COLOURS = {"pass": "[green]pass[/]", "fail": "[red]fail[/]"}
@@ -22,7 +22,7 @@ def criteria_table(proof: Proof) -> Table:
             value_text(criterion.measured),
             interval(criterion.measured),
             f"{'>=' if criterion.at_least else '<='} {criterion.limit:g}",
-            COLOURS.get(criterion.result, criterion.result),
+            COLOURS.get(judged(criterion), judged(criterion)),
         )
     return table
 

@@ -55,21 +55,24 @@ def known(damped_run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def check_contract(content: Any) -> None:
     """The contract of diagnosis.json, schema 2, written out by hand."""
-    top = {"schema", "verdict", "where", "fit", "tire", "corrected_fmu", "report"}
+    top = {"schema", "verdict", "where", "fit", "tire", "corrected_fmu", "report", "data"}
     assert content.keys() == top | {"held_out_by"}
     assert content["schema"] == 2
-    assert (content["tire"], content["corrected_fmu"], content["report"]) == (
+    assert (content["tire"], content["corrected_fmu"], content["report"], content["data"]) == (
         "tire.json",
         "BicycleTire.fmu",
         "report.html",
+        "plots.csv",
     )
 
     verdict = content["verdict"]
     keys = {"effects", "confidence", "alternatives", "unexplained", "summary", "separating_test"}
-    assert verdict.keys() - {"corrections"} == keys | {"remainder"}
+    assert verdict.keys() - {"corrections"} == keys | {"remainder", "alternative_details"}
+    assert len(verdict["alternative_details"]) == len(verdict["alternatives"])
     assert ("corrections" in verdict) == verdict["unexplained"]
     for effect in verdict["effects"]:
-        assert effect.keys() == {"name", "parameters", "share", "probability"}
+        assert effect.keys() - {"law"} == {"name", "parameters", "share", "probability", "size"}
+        assert 0.0 < effect["size"] < content["fit"]["load"]
         assert 0.0 <= effect["probability"] <= 1.0
         assert effect["name"] in {*CATALOGUE, "recalibration"}
         assert 0.0 <= effect["share"] <= 1.0
@@ -105,7 +108,7 @@ def check_contract(content: Any) -> None:
         assert math.isfinite(place["mean_residual"])
 
     fit = content["fit"]
-    assert fit.keys() == {"noise", "before", "after", "held_out_before", "held_out_after"}
+    assert fit.keys() == {"noise", "before", "after", "held_out_before", "held_out_after", "load"}
     for name, value in fit.items():
         assert (value is None and name.startswith("held_out")) or value >= 0.0
 
@@ -117,7 +120,7 @@ def rmse(recording: Recording, force: Any) -> float:
 def test_the_files_are_written_and_keep_the_contract(done: tuple[Result, Path]) -> None:
     result, out = done
     assert result.exit_code == 0, result.output
-    names = {"tire.json", "BicycleTire.fmu", "diagnosis.json", "report.html"}
+    names = {"tire.json", "BicycleTire.fmu", "diagnosis.json", "report.html", "plots.csv"}
     assert {f.name for f in out.iterdir()} - {"separating_test.csv"} == names
     content = json.loads((out / "diagnosis.json").read_text(), parse_constant=pytest.fail)
     check_contract(content)
@@ -148,9 +151,12 @@ def test_the_corrected_tire_says_what_it_is(done: tuple[Result, Path]) -> None:
 
 
 def headline_of(verdict: Verdict) -> str:
-    """The first line on a tire that lacks damping; the recordings may leave alternatives."""
-    doubt = " – but these recordings cannot rule out alternatives" if verdict.alternatives else ""
-    return f"Left out: viscous damping{doubt}."
+    """The first line on a tire that lacks damping: the part of the load, from the sizes by hand."""
+    damping = dict(verdict.tire.effects)[CATALOGUE["viscous_damping"]][0]
+    (recording,) = verdict.recordings
+    rate = np.gradient(recording.deflection, recording.time)
+    share = damping * np.sqrt(np.mean(rate**2)) / np.sqrt(np.mean(recording.force**2))
+    return f"Viscous damping, {100.0 * share:.0f} % of the load"
 
 
 def test_the_terminal_report_is_short_and_plain(done: tuple[Result, Path], damped_run: Any) -> None:
@@ -199,7 +205,7 @@ def test_a_terminal_shows_one_live_line_and_a_report_of_its_own_width(
     genuine = rich.console.Console
     options = {"file": screen, "force_terminal": True, "width": 160, "_environ": {}}
     monkeypatch.setattr(rich.console, "Console", lambda **given: genuine(**{**given, **options}))
-    with diagnose_command._progress(False) as progress:
+    with diagnose_command.progress(False, diagnose_command.STAGES) as progress:
         progress("reading \x1b]0;ride.csv")
     # The escape character of a file's name does not reach the terminal.
     assert "reading ?]0;ride.csv" in screen.getvalue()

@@ -65,7 +65,30 @@ def test_every_command_listed_is_there_and_says_what_it_does() -> None:
         assert command.name == name
         assert command.help
         assert " ".join(sentence.split()) in " ".join(listed.split())
-    assert main.list_commands(context) == sorted(COMMANDS)
+    # in the order of the work: a tire, its FMU, a comparison, what is missing; the article and the proof last
+    assert main.list_commands(context) == list(COMMANDS)
+    assert list(COMMANDS)[:5] == ["open", "identify", "build", "compare", "diagnose"]
+    assert list(COMMANDS)[-2:] == ["article", "prove"]
+
+
+def test_the_list_of_commands_tells_the_exit_statuses_and_the_completion() -> None:
+    told = CliRunner().invoke(main, ["--help"]).stdout
+    assert "Exit status: 0 done, 1 interrupted (Ctrl-C), 2 bad input" in told
+    for shell in ("bash", "zsh", "fish"):
+        assert f"_TIRELAB_COMPLETE={shell}_source tirelab" in told
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_shell_completes_commands_and_options(shell: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = CliRunner().invoke(main, [], prog_name="tirelab", env={"_TIRELAB_COMPLETE": f"{shell}_source"})
+    if shell == "bash" and "is not supported" in result.output:
+        pytest.skip("bash is too old or missing")
+    assert "_TIRELAB_COMPLETE" in result.output
+    words = {"COMP_WORDS": "tirelab diagnose --he", "COMP_CWORD": "--he" if shell == "fish" else "2"}
+    found = CliRunner().invoke(
+        main, [], prog_name="tirelab", env={"_TIRELAB_COMPLETE": f"{shell}_complete", **words}
+    )
+    assert "--held-out" in found.output
 
 
 def test_a_command_that_does_not_exist_is_refused() -> None:

@@ -88,9 +88,9 @@ def test_the_log_odds_are_those_of_the_verdict_that_is_delivered() -> None:
 @pytest.mark.parametrize(
     ("one", "other", "said"),
     [
-        (("recalibration",), ("gas_compression",), "record at a second pressure or on a stiffer rig"),
+        (("recalibration",), ("gas_compression",), "repeat at a second pressure (2 bar, say)"),
         (("warm_up",), ("pressure_leak",), "repeat the first cycle after a rest"),
-        (LOOP, DAMPING, "one speed only: drive a second speed"),
+        (LOOP, DAMPING, "one speed only: repeat at "),
     ],
 )
 def test_the_reason_is_what_to_record(one: tuple[str, ...], other: tuple[str, ...], said: str) -> None:

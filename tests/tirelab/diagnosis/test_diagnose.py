@@ -106,6 +106,7 @@ def test_a_verdict_is_json(alike_verdict):
         "effects",
         "confidence",
         "alternatives",
+        "alternative_details",
         "unexplained",
         "remainder",
         "summary",
@@ -117,6 +118,7 @@ def test_a_verdict_is_json(alike_verdict):
         "after",
         "held_out_before",
         "held_out_after",
+        "load",
     }
     assert content["verdict"]["effects"][0]["parameters"]["damping"]["unit"] == "N.s/m"
     # 500 N s/m at 0.03 m/s RMS are several noises in each of 12 000 samples: there is no doubt of it.

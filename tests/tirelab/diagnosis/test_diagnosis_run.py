@@ -7,6 +7,8 @@ import shlex
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import polars as pl
 import pytest
 from radialtire import TireModel, read_tire
 from tirelab.diagnosis import diagnosis_run
@@ -82,6 +84,7 @@ def test_everything_is_written(damped_run: Any) -> None:
         "BicycleTire.fmu",
         "diagnosis.json",
         "report.html",
+        "plots.csv",
     }
     assert ("separating_test.csv" in files) == (damped_run.verdict.test is not None)
     assert damped_run.verdict.alternatives or damped_run.verdict.test is None
@@ -121,5 +124,16 @@ def test_diagnose_files_writes_the_same(
 ) -> None:
     monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: damped_run.verdict)
     diagnosis_run.diagnose_files([damped_run.rides / "ride.csv"], None, tmp_path / "out")
-    assert (tmp_path / "out" / "diagnosis.json").is_file()
-    assert (tmp_path / "out" / "report.html").is_file()
+    assert json.loads((tmp_path / "out" / "diagnosis.json").read_text())["data"] is None
+    assert "plots.csv" not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert not (tmp_path / "out" / "plots.csv").exists()
+
+
+def test_the_data_behind_the_plots_is_every_sample_with_its_forces(damped_run: Any) -> None:
+    table = pl.read_csv(damped_run.out / "plots.csv")
+    assert table["recording"].unique(maintain_order=True).to_list() == ["ride", "kept"]
+    ride = table.filter(pl.col("used") == "fitted")
+    fit = damped_run.run.content["fit"]
+    for when in ("before", "after"):
+        left = ride["force [N]"] - ride[f"force {when} [N]"]
+        assert float(np.sqrt(np.mean(left.to_numpy() ** 2))) == pytest.approx(fit[when], rel=1e-6)

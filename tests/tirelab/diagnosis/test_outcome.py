@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
-from tirelab.diagnosis.outcome import Replayed, content_of, finite, page_content
+from tirelab.diagnosis.outcome import (
+    Replayed,
+    alternative_detail,
+    content_of,
+    finite,
+    page_content,
+    split_reason,
+)
 from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.estimation.findings import Evidence
 from tirelab.recordings.recording import Recording
@@ -110,3 +117,31 @@ def test_a_regression_says_whether_it_repeats(r2, after, held_out, said):
     (shown,) = page_content((), (), (model,), None)["correction"]
     assert said in shown["repeats"]
     assert (shown["by"], shown["unit"], shown["x"], shown["std"]) == ("rate", "m/s", TIME.tolist(), None)
+
+
+@pytest.mark.parametrize(
+    ("reason", "lacks", "action"),
+    [
+        ("no hold: hold 10 s at 15 mm", "no hold", "hold 10 s at 15 mm"),
+        (
+            "one speed only: repeat at 3 mm/s; no hold: hold",
+            "one speed only; no hold",
+            "repeat at 3 mm/s; hold",
+        ),
+        ("the recording has no time", "the recording has no time", ""),
+    ],
+)
+def test_a_reason_is_what_lacks_and_what_to_do(reason, lacks, action):
+    assert split_reason(reason) == (lacks, action)
+
+
+def test_an_alternative_is_told_as_a_difference():
+    told = alternative_detail(
+        ["inertia"], Alternative(("force_lag", "inertia"), 3.0, "no hold: hold it", 0.05)
+    )
+    assert told == {
+        "difference": "+ force lag",
+        "probability": 0.05,
+        "reason": "no hold",
+        "action": "hold it",
+    }

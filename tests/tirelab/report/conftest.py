@@ -97,10 +97,12 @@ def diagnosed(
             "after": _rmse(made[:-1], after[:-1]),
             "held_out_before": _rmse(made[-1:], before[-1:]),
             "held_out_after": _rmse(made[-1:], after[-1:]),
+            "load": 1000.0,
         },
         "tire": "tire.json",
         "corrected_fmu": "BicycleTire.fmu",
         "report": "report.html",
+        "data": "plots.csv",
         "tire_before": "Hull, Wang & Moore 1996",
         "tire_after": corrected.name,
         "command": "tirelab diagnose ride_0.csv ride_1.csv --held-out ride_2.csv --out out",
@@ -109,7 +111,7 @@ def diagnosed(
     return Diagnosed(diagnosis, made[:-1], before[:-1], after[:-1], (made[-1:], before[-1:], after[-1:]))
 
 
-_BESIDE = ("evidence", "reasons", "correction", "waveform", "warnings")
+_BESIDE = ("evidence", "reasons", "correction", "waveform", "warnings", "law_changes", "sketches")
 
 
 def _where() -> list[dict[str, Any]]:
@@ -126,7 +128,7 @@ def _where() -> list[dict[str, Any]]:
 def effect(name: str, share: float, **parameters: tuple[float, float | None, str]) -> dict[str, Any]:
     """An entry of the verdict's effects."""
     told = {p: {"value": v, "std": s, "unit": u} for p, (v, s, u) in parameters.items()}
-    return {"name": name, "parameters": told, "share": share, "probability": 0.97}
+    return {"name": name, "parameters": told, "share": share, "probability": 0.97, "size": 40.0 * share}
 
 
 def nothing_missing() -> Diagnosed:
@@ -153,15 +155,22 @@ def two_and_another_tire() -> Diagnosed:
         deflection_offset={"offset": 8e-4},
     ).effects
     tire = TireModel(law=law, effects=effects, name="another tire")
+    a, b = (550.9, 600.0, 1.2), (1.422, 1.38, 0.004)
+    flat = {k: dict(zip(("before", "after", "std"), v, strict=True)) for k, v in (("A", a), ("B", b))}
+    x = np.linspace(0.0, 0.022, 12)
+    sketch = {"deflection": x.tolist(), "force": (1e3 * x).tolist()}
     return diagnosed(
         tire,
         tire,
         [
-            effect(
-                "recalibration",
-                0.61,
-                **{"log factor on A, flat": (0.085, 0.003, "1"), "bend": (0.011, 0.004, "1")},
-            ),
+            {
+                **effect(
+                    "recalibration",
+                    0.61,
+                    **{"log factor on A, flat": (0.085, 0.003, "1"), "bend": (0.011, 0.004, "1")},
+                ),
+                "law": [{"radius": "inf", **flat}],
+            },
             effect(
                 "rate_independent_hysteresis",
                 0.27,
@@ -174,6 +183,14 @@ def two_and_another_tire() -> Diagnosed:
         surfaces=(np.inf, 0.254, -0.381, 0.1, 0.05, 0.4),
         samples=4000,
         confidence=0.74,
+        law_changes=[{"radius": np.inf, "deflection": x.tolist(), "difference": (3e3 * x).tolist()}],
+        sketches={
+            "rate_independent_hysteresis": {
+                **sketch,
+                "varied": {p: (2e3 * x).tolist() for p in ("slip_force", "load_share", "reach")},
+            },
+            "deflection_offset": {**sketch, "varied": {"offset": (2e3 * x).tolist()}},
+        },
     )
 
 
@@ -186,7 +203,21 @@ def alternatives() -> Diagnosed:
         [effect("rate_independent_hysteresis", 0.98, slip_force=(25.0, 0.4, "N"), reach=(1e-3, 6e-5, "m"))],
         confidence=0.46,
         alternatives=[["viscous_damping"], ["viscoelastic_relaxation", "recalibration"]],
-        reasons=["one constant rate only: drive a second rate", "no hold: hold 10 s at 14 mm"],
+        alternative_details=[
+            {
+                "difference": "viscous damping instead of friction loop",
+                "probability": 0.3,
+                "reason": "one speed only",
+                "action": "repeat at 30 mm/s",
+            },
+            {
+                "difference": "+ series spring",
+                "probability": 0.07,
+                "reason": "no hold",
+                "action": "hold 10 s at 14 mm",
+            },
+        ],
+        reasons=["one speed only: repeat at 30 mm/s", "no hold: hold 10 s at 14 mm"],
         separating_test={
             "waveform": "triangles at three rates",
             "duration": 60.0,

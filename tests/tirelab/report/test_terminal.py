@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from rich.console import Console
+from tirelab.report import first_screen
 from tirelab.report.terminal import print_diagnosis, printable
 
 
@@ -20,8 +21,9 @@ def printed(diagnosis: dict[str, Any]) -> str:
 @pytest.mark.parametrize("kind", ["nothing", "one", "two", "alternatives", "unknown"])
 def test_every_kind_begins_with_its_verdict_and_ends_with_its_files(kinds: dict[str, Any], kind: str) -> None:
     text = printed(kinds[kind].diagnosis)
-    assert text.startswith(("Nothing is missing.", "Left out: ", "Something is missing that no known effect"))
-    files = "report.html, tire.json, BicycleTire.fmu, diagnosis.json"
+    assert text.startswith(first_screen.headline(kinds[kind].diagnosis))
+    assert kinds[kind].diagnosis["verdict"]["summary"] in text
+    files = "report.html, tire.json, BicycleTire.fmu, diagnosis.json, plots.csv"
     assert text.endswith(
         f"Written to out: {files}" + (", separating_test.csv" if kind == "alternatives" else "")
     )
@@ -40,6 +42,8 @@ def test_the_next_test_is_recommended(kinds: dict[str, Any]) -> None:
     said = "Recommended next test: Drive triangles at three rates to 22 mm on flat ground."
     assert said in printed(kinds["alternatives"].diagnosis)
     assert "Recommended next test" not in printed(kinds["one"].diagnosis)
+    assert "What to do next: Nothing: use this tire." in printed(kinds["one"].diagnosis)
+    assert "What to do next" not in printed(kinds["alternatives"].diagnosis)
 
 
 def test_a_regression_is_printed_with_its_errors(kinds: dict[str, Any]) -> None:
@@ -59,3 +63,11 @@ def test_without_places_and_held_out_data_their_tables_are_left_out(kinds: dict[
 
 def test_what_could_control_a_terminal_is_a_question_mark() -> None:
     assert printable("a\x1b[31mb\tc\n轮胎") == "a?[31mb?c?轮胎"
+
+
+def test_alternatives_and_the_refitted_law_are_printed_as_people_know_them(kinds: dict[str, Any]) -> None:
+    text = printed(kinds["alternatives"].diagnosis)
+    assert "viscous damping instead of friction loop 30 % repeat at 30 mm/s" in text
+    text = printed(kinds["two"].diagnosis)
+    assert "flat ground 550.9 600.0 ± 1.2 1.422 1.3800 ± 0.0040" in text
+    assert "log factor on A" not in text

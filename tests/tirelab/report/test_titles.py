@@ -52,3 +52,46 @@ def test_forces_and_confidence() -> None:
         "-1500 N",
     ]
     assert titles.sure(0.946) == "Confidence 95 %."
+
+
+@pytest.mark.parametrize(
+    ("names", "unexplained", "alternatives", "told"),
+    [
+        ([], False, [], "Nothing is missing."),
+        (["recalibration"], False, [], "No physics is missing: the elastic law has other coefficients."),
+        (
+            ["recalibration"],
+            True,
+            [],
+            "Left out: something that no known effect explains, and the elastic law has other coefficients.",
+        ),
+        (["inertia", "force_lag"], False, [], "Left out: inertia and force lag."),
+        ([], True, [], "Something is missing that no known effect explains."),
+        (
+            [],
+            False,
+            [["force_offset"]],
+            "Nothing is missing – but these recordings cannot rule out alternatives.",
+        ),
+    ],
+)
+def test_first_sentences(
+    names: list[str], unexplained: bool, alternatives: list[list[str]], told: str
+) -> None:
+    assert titles.headline(names, unexplained, bool(alternatives)) == told
+
+
+@pytest.mark.parametrize(
+    ("names", "other", "told"),
+    [
+        (["inertia"], ["inertia", "series_compliance"], "+ series spring"),
+        (["recalibration", "inertia"], ["inertia"], "− refitted law"),
+        (["rate_independent_hysteresis"], ["viscous_damping"], "viscous damping instead of friction loop"),
+        (["inertia"], ["viscous_damping", "force_lag"], "+ viscous damping + force lag − inertia"),
+        ([], ["force_offset"], "+ force offset"),
+        (["force_offset"], [], "− force offset"),
+        (["inertia", "force_lag"], ["force_lag", "inertia"], "the same"),
+    ],
+)
+def test_alternatives_are_told_as_differences(names: list[str], other: list[str], told: str) -> None:
+    assert titles.difference(names, other) == told

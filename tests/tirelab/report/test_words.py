@@ -76,34 +76,6 @@ def test_the_foremost_places_do_not_crowd_each_other_out() -> None:
     assert [p["by"] for p in words.foremost(bands, 12)] == ["deflection"]
 
 
-@pytest.mark.parametrize(
-    ("names", "unexplained", "alternatives", "told"),
-    [
-        ([], False, [], "Nothing is missing."),
-        (["recalibration"], False, [], "No physics is missing: the elastic law has other coefficients."),
-        (
-            ["recalibration"],
-            True,
-            [],
-            "Left out: something that no known effect explains, and the elastic law has other coefficients.",
-        ),
-        (["inertia", "force_lag"], False, [], "Left out: inertia and force lag."),
-        ([], True, [], "Something is missing that no known effect explains."),
-        (
-            [],
-            False,
-            [["force_offset"]],
-            "Nothing is missing – but these recordings cannot rule out alternatives.",
-        ),
-    ],
-)
-def test_headlines(names: list[str], unexplained: bool, alternatives: list[list[str]], told: str) -> None:
-    effects = [{"name": name} for name in names]
-    assert (
-        words.headline({"effects": effects, "unexplained": unexplained, "alternatives": alternatives}) == told
-    )
-
-
 def test_sets_are_named_whether_known_or_not() -> None:
     assert titles.set_title([]) == "nothing missing"
     assert titles.set_title(["recalibration"]) == "refitted law"
@@ -131,3 +103,24 @@ def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
 @pytest.mark.parametrize(("share", "told"), [(0.0, "0 %"), (0.001, "< 1 %"), (0.424, "42 %"), (1.0, "100 %")])
 def test_percent(share: float, told: str) -> None:
     assert words.percent(share) == told
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "unit", "allowed", "told"),
+    [
+        (10.0, 1.0, "N", (-100.0, 100.0), "8.0 to 12.0 N"),
+        (1e-3, 1e-4, "m", (0.0, 1.0), "0.80 to 1.20 mm"),
+        (0.6, 0.4, "N", (0.0, 100.0), "0.00 to 1.38 N"),
+        (-0.5, 0.1, "1", (-1.0, 1.0), "−0.70 to −0.30"),
+        (3.0, None, "N", (0.0, 9.0), "–"),
+    ],
+)
+def test_intervals_hold_95_percent_inside_the_bounds(
+    value: float, std: float | None, unit: str, allowed: tuple[float, float], told: str
+) -> None:
+    assert words.interval(value, std, unit, allowed) == told
+
+
+def test_bounds_are_those_of_the_catalogue() -> None:
+    assert words.bounds("inertia", "mass")[0] == 0.0
+    assert words.bounds("phlogiston", "mass") == (-float("inf"), float("inf"))

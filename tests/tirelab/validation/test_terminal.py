@@ -25,18 +25,20 @@ def line_with(lines: list[str], figure: str) -> str:
 
 
 def test_every_criterion_is_a_line_with_its_limit_and_result(score: Make) -> None:
-    nine_right = [score("single", "lag", "lag", confidence=1.0) for _ in range(9)]
-    lines = lines_of(Proof(7, (*nine_right, score("none", "none", "gas", confidence=0.5))))
-    assert "10 blind trials, seed 7" in lines[0]
+    right = [score("single", "lag", "lag", confidence=1.0) for _ in range(81)]
+    alarms_made = [score("none", "none", "gas", confidence=0.5) for _ in range(9)]
+    lines = lines_of(Proof(7, (*right, *alarms_made)))
+    assert "90 blind trials, seed 7" in lines[0]
     exact = line_with(lines, "exact set named")
-    assert "90.0 % (9 of 10)" in exact
+    assert "90.0 % (81 of 90)" in exact
     assert ">= 0.9" in exact
     assert exact.rstrip(" │").endswith("pass")
     alarms = line_with(lines, "false alarms")
-    assert "100.0 % (1 of 1)" in alarms
+    assert "100.0 % (9 of 9)" in alarms
     assert "<= 0.02" in alarms
-    assert alarms.rstrip(" │").endswith("fail")
-    # nine confident and right, one alarm at half confidence: 0.25 / 10
+    # nine trials leave 70 to 100 %
+    assert alarms.rstrip(" │").endswith("too few trials")
+    # 81 confident and right, nine alarms at half confidence: 9 * 0.25 / 90
     assert "0.025" in line_with(lines, "Brier")
 
 

@@ -1,0 +1,46 @@
+"""Results that are there whole or not at all: written aside, then moved into their folder."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ..errors import TirelabError
+
+PREFIX = ".tirelab-"
+"""How a folder begins that is being written; one that a power cut leaves can be deleted."""
+
+
+@contextmanager
+def staged(folder: Path) -> Iterator[Path]:
+    """Give a folder to write into; when the block ends its files stand in `folder`, when it is interrupted none does.
+
+    Files of the same names are replaced, each at once. A `folder` that was made for this goes again where nothing was
+    written. Raises TirelabError where `folder` cannot be written.
+    """
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        aside = Path(tempfile.mkdtemp(prefix=PREFIX, dir=folder))
+    except OSError as error:
+        raise _refusal(folder, error) from None
+    try:
+        yield aside
+        try:
+            for file in sorted(aside.iterdir()):
+                os.replace(file, folder / file.name)
+        except OSError as error:
+            raise _refusal(folder, error) from None
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+        with suppress(OSError):  # where something was written, it is not empty
+            for path in made:
+                path.rmdir()
+
+
+def _refusal(folder: Path, error: OSError) -> TirelabError:
+    return TirelabError(f"{folder} cannot be written ({error.strerror}); name another folder with --out")

@@ -1,0 +1,148 @@
+"""One diagnosis in a process of its own, which says its stages line by line and can be interrupted."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import IO, Any
+
+from ..errors import TirelabError
+from ..recordings.reading import Reading
+from .store import Upload
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be diagnosed: files, their names, the baseline's file or None for the article's, the folder."""
+
+    fitted: tuple[str, ...]
+    held_out: tuple[str, ...]
+    names: tuple[tuple[str, str], ...]
+    tire: str | None
+    out: str
+
+    @classmethod
+    def of(cls, uploads: Sequence[Upload], tire: Path | None, out: Path) -> Order:
+        """Return the order for uploads as they are used. Raises TirelabError where none is to be fitted."""
+        fitted = tuple(str(u.file) for u in uploads if u.use == "fitted")
+        if not fitted:
+            raise TirelabError('no recording is to be fitted; drop one, or set one to "fitted"')
+        return cls(
+            fitted,
+            tuple(str(u.file) for u in uploads if u.use == "held-out"),
+            _names(uploads),
+            None if tire is None else str(tire),
+            str(out),
+        )
+
+
+@dataclass(frozen=True)
+class Named(Reading):
+    """A reading that gives each recording the user's name for it."""
+
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def __call__(self, file: Path | str) -> Any:
+        """Return the recording in a file under its name."""
+        recording = super().__call__(file)
+        return replace(recording, name=self.names.get(str(file), recording.name))
+
+
+class Job:
+    """A diagnosis that runs: its stages so far, and in the end what went wrong, or nothing."""
+
+    def __init__(self, order: Order, ended: Callable[[], None] = lambda: None) -> None:
+        self.stages: list[str] = []
+        self.problem: str | None = None
+        self.done = False
+        self._ended = ended
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", __name__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            encoding="utf-8",
+        )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(json.dumps(order.__dict__))
+        self._process.stdin.close()
+        self._thread = threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        """Whether it still works."""
+        return self._thread.is_alive()
+
+    def stop(self) -> None:
+        """Interrupt it, as Ctrl-C does: what it had begun to write is taken away."""
+        self.problem = self.problem or "stopped"
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGTERM if sys.platform == "win32" else signal.SIGINT)
+
+    def wait(self, seconds: float) -> None:
+        """Wait until it has ended, so many seconds at most."""
+        self._thread.join(seconds)
+
+    def _listen(self, lines: IO[str]) -> None:
+        for line in lines:
+            said = json.loads(line)
+            if "stage" in said:
+                self.stages.append(said["stage"])
+            elif "problem" in said:
+                self.problem = self.problem or said["problem"]
+            else:
+                self.done = True
+        self._process.wait()
+        lines.close()
+        if not self.done and self.problem is None:
+            self.problem = "the diagnosis ended without an answer; run tirelab diagnose on the same files"
+        self._ended()
+
+
+def _names(uploads: Sequence[Upload]) -> tuple[tuple[str, str], ...]:
+    """Return files with names that tell them apart."""
+    found: dict[str, str] = {}
+    for upload in uploads:
+        stem = upload.name.rpartition(".")[0] or upload.name
+        name = stem if stem not in found.values() else f"{stem} ({upload.number})"
+        found[str(upload.file)] = name
+    return tuple(found.items())
+
+
+def main() -> None:
+    """Do the order on standard input; say each stage, and the end, as a line of JSON."""
+
+    def say(**what: str | bool) -> None:
+        print(json.dumps(what), flush=True)
+
+    order = Order(**json.loads(sys.stdin.read()))
+    try:
+        from ..diagnosis.diagnosis_run import run_diagnosis
+
+        run_diagnosis(
+            [Path(file) for file in order.fitted],
+            Path(order.out),
+            tire=None if order.tire is None else Path(order.tire),
+            held_out=[Path(file) for file in order.held_out],
+            reading=Named(names=dict(order.names)),
+            progress=lambda sentence: say(stage=sentence),
+        )
+    except (TirelabError, ValueError) as error:
+        say(problem=str(error))
+    except KeyboardInterrupt:
+        say(problem="stopped")
+    else:
+        say(done=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,164 @@
+"use strict";
+// The local page: everything that came from outside is set as text, never as HTML.
+(function () {
+  const $ = (id) => document.getElementById(id);
+  const make = (tag, text, attributes) => {
+    const e = document.createElement(tag);
+    if (text !== undefined) e.textContent = text;
+    for (const [name, value] of Object.entries(attributes || {})) e.setAttribute(name, value);
+    return e;
+  };
+  // Part of the whole time that is spent when each stage begins, as in the command line.
+  const SHARES = [["reading", 0.01], ["comparing", 0.06], ["fitting", 0.19], ["validating", 0.6], ["searching", 0.67], ["building", 0.87], ["replaying", 0.9], ["writing", 0.93]];
+  let shown = "";
+
+  async function ask(path, options) {
+    const answer = await fetch(path, options);
+    const content = await answer.json();
+    if (!answer.ok) throw new Error(content.problem || answer.statusText);
+    return content;
+  }
+  function say(problem) { $("problem").textContent = problem; $("problem").hidden = !problem; }
+  async function attempt(work) {
+    try { say(""); await work(); } catch (error) { say(error.message); }
+    await refresh();
+  }
+
+  async function send(files) {
+    const problems = [];
+    for (const file of files) {
+      $("stage").textContent = `receiving ${file.name}`;
+      try { await ask(`recordings?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file }); }
+      catch (error) { problems.push(error.message); }
+      await refresh();
+    }
+    $("stage").textContent = "";
+    $("files").value = "";
+    say(problems.join(" · "));
+  }
+
+  function recording(r) {
+    const box = make("article", undefined, { class: "recording", "data-number": r.number });
+    const title = make("h3");
+    title.append(make("bdi", r.name));
+    box.append(title);
+    if (r.problem) box.append(make("p", r.problem, { class: "alarm" }));
+    if (r.facts.length) box.append(make("p", r.facts.map(([what, text]) => `${what} ${text}`).join(", "), { class: "facts" }));
+    for (const note of r.notes) box.append(make("p", note, { class: "caption" }));
+
+    const row = make("div", undefined, { class: "row" });
+    const label = make("label", "Use: "), use = make("select");
+    for (const [value, text] of [["fitted", "fit"], ["held-out", "hold out, to check the correction"], ["left out", "leave out"]]) {
+      const option = make("option", text, { value });
+      option.selected = value === r.use;
+      use.append(option);
+    }
+    use.addEventListener("change", () => attempt(() => ask(`recordings/${r.number}`, { method: "POST", body: JSON.stringify({ use: use.value }) })));
+    label.append(use);
+    const remove = make("button", "Remove", { type: "button" });
+    remove.addEventListener("click", () => attempt(() => ask(`recordings/${r.number}`, { method: "DELETE" })));
+    row.append(label, remove);
+    box.append(row);
+
+    const details = make("details");
+    details.open = Boolean(r.problem);
+    details.append(make("summary", "Columns, units and surface"));
+    const form = make("form"), table = make("table"), head = make("tr");
+    for (const text of ["Quantity", "Column", "Unit", "Sign"]) head.append(make("th", text, { scope: "col" }));
+    table.append(head);
+    const fields = [];
+    const channels = r.channels.length ? r.channels : [];
+    channels.forEach((c) => {
+      const line = make("tr");
+      line.append(make("th", c.required ? c.channel : `${c.channel} (optional)`, { scope: "row" }));
+      const column = make("select", undefined, { "aria-label": `column of ${c.channel}` });
+      column.append(make("option", c.column ? `as read: ${c.column}` : "none", { value: "" }));
+      const set = r.settings.columns[c.channel] || "", given = set.replace(/^[+-]/, "");
+      r.headers.forEach((text, i) => {
+        const option = make("option", text, { value: `#${i + 1}` });
+        option.selected = given === `#${i + 1}`;
+        column.append(option);
+      });
+      const sign = make("select", undefined, { "aria-label": `sign of ${c.channel}` });
+      for (const [value, text] of [["", "as read"], ["+", "keep"], ["-", "turn"]]) {
+        const option = make("option", text, { value });
+        option.selected = value !== "" && set.startsWith(value);
+        sign.append(option);
+      }
+      const unit = make("input", undefined, { "aria-label": `unit of ${c.channel}`, size: 8, placeholder: c.unit, value: r.settings.units[c.channel] || "" });
+      const cells = [make("td"), make("td"), make("td")];
+      cells[0].append(column);
+      cells[1].append(unit);
+      if (c.channel === "deflection" || c.channel === "force") cells[2].append(sign);
+      line.append(...cells);
+      table.append(line);
+      fields.push([c.channel, column, unit, sign, `#${r.headers.indexOf(c.column) + 1}`]);
+    });
+    const surface = make("label", "Surface, where no column has its radius: "), radius = make("input", undefined, { size: 12, placeholder: "flat, 25.4 cm", value: r.settings.radius });
+    surface.append(radius);
+    const scroll = make("div", undefined, { class: "scroll" });
+    scroll.append(table);
+    form.append(scroll, surface, make("button", "Read it so", { type: "submit" }));
+    form.addEventListener("submit", (e) => {
+      e.preventDefault();
+      const columns = {}, units = {};
+      for (const [channel, column, unit, sign, read] of fields) {
+        const chosen = column.value || (sign.value && read !== "#0" ? read : "");
+        if (chosen) columns[channel] = sign.value + chosen;
+        if (unit.value.trim()) units[channel] = unit.value.trim();
+      }
+      attempt(() => ask(`recordings/${r.number}`, { method: "POST", body: JSON.stringify({ columns, units, radius: radius.value }) }));
+    });
+    details.append(form);
+    box.append(details);
+    return box;
+  }
+
+  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Data of the plots" };
+  function diagnosis(d) {
+    const box = make("article", undefined, { class: "result" });
+    box.append(make("h3", d.headline), make("p", d.sure, { class: "caption" }));
+    const links = make("ul", undefined, { class: "links" });
+    for (const name of d.files) {
+      const item = make("li"), link = make("a", TITLES[name] || name, { href: `diagnoses/${d.number}/${name}` });
+      if (name === "report.html") link.target = "_blank"; else link.setAttribute("download", name);
+      item.append(link);
+      links.append(item);
+    }
+    box.append(links);
+    return box;
+  }
+
+  async function refresh() {
+    let state;
+    try { state = await ask("state"); } catch (error) { say(`tirelab open no longer answers (${error.message}); start it again.`); return; }
+    const listed = JSON.stringify([state.recordings, state.diagnoses]);
+    if (listed !== shown) {
+      shown = listed;
+      $("recordings").replaceChildren(...state.recordings.map(recording));
+      $("diagnoses").replaceChildren(...(state.diagnoses.length ? state.diagnoses.map(diagnosis).reverse() : [make("p", "None yet.", { class: "caption" })]));
+    }
+    const job = state.job, running = Boolean(job && job.running);
+    const fitted = state.recordings.filter((r) => r.use === "fitted"), unread = state.recordings.filter((r) => r.problem && r.use !== "left out");
+    $("diagnose").disabled = running || !fitted.length || unread.length > 0;
+    $("why").textContent = running ? "" : unread.length ? "Correct how the marked recording is read, or leave it out." : fitted.length ? "" : "Drop a recording first.";
+    $("stop").hidden = !running;
+    $("progress").hidden = !running;
+    if (job) {
+      const stage = job.stages[job.stages.length - 1] || "starting";
+      const found = SHARES.find(([begin]) => stage.startsWith(begin));
+      if (running) { $("stage").textContent = stage; $("progress").value = found ? found[1] : 0; }
+      else $("stage").textContent = job.problem ? job.problem : "done";
+      $("stage").className = !running && job.problem ? "alarm" : "";
+    }
+    if (running) setTimeout(refresh, 500);
+  }
+
+  $("files").addEventListener("change", () => send($("files").files));
+  $("diagnose").addEventListener("click", () => attempt(() => ask("diagnose", { method: "POST", body: "" })));
+  $("stop").addEventListener("click", () => attempt(() => ask("diagnose", { method: "DELETE" })));
+  for (const kind of ["dragover", "dragenter"]) document.addEventListener(kind, (e) => { e.preventDefault(); $("drop").classList.add("over"); });
+  document.addEventListener("dragleave", () => $("drop").classList.remove("over"));
+  document.addEventListener("drop", (e) => { e.preventDefault(); $("drop").classList.remove("over"); send(e.dataTransfer.files); });
+  refresh();
+})();

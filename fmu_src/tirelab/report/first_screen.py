@@ -1,0 +1,217 @@
+"""What a reader needs in ten seconds: what is missing, how sure that is, how much it helps, what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from radialtire import CATALOGUE
+
+from ..names import REFITTED_LAW, UNKNOWN
+from . import titles, words
+
+MOST = 70
+"""Characters of a headline at most."""
+
+DECIDED = 0.5
+"""Below this confidence, and with alternatives, the recordings do not decide: that is the headline."""
+
+SURE = 0.9
+"""From this confidence on a tire whose error is noise can be used as it is."""
+
+AT_THE_FLOOR = 1.5
+"""An error of more than this many noises is more than the noise."""
+
+
+WORSE = 1.05
+"""A held-out error that grows by more than this factor is told as worse."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One error [N] with its title; alarm: why it is a bad one, empty where it is not; note: what it was."""
+
+    title: str
+    value: float
+    alarm: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class NextStep:
+    """What to do next, as an action; why: what it decides; drive: whether it is the motion of the drive file."""
+
+    action: str
+    why: str = ""
+    drive: bool = False
+
+
+def headline(diagnosis: Mapping[str, Any]) -> str:
+    """Return what was found in one line of at most MOST characters.
+
+    diagnosis: the content of diagnosis.json; without sizes and load the line names the effects alone
+    """
+    return next((line for line in _headlines(diagnosis) if len(line) <= MOST), "Several effects are missing")
+
+
+def undecided(verdict: Mapping[str, Any]) -> bool:
+    """Return whether the recordings do not decide between the verdict and its alternatives."""
+    return bool(verdict["alternatives"]) and verdict["confidence"] < DECIDED
+
+
+def sureness(verdict: Mapping[str, Any]) -> str:
+    """Return how sure the verdict is, in words and as a number."""
+    word = words.confidence_word(verdict["confidence"])
+    return f"{word[0].upper()}{word[1:]}: {words.percent(verdict['confidence'])}"
+
+
+def lead(verdict: Mapping[str, Any]) -> str:
+    """Return one sentence on what is missing, after the headline."""
+    names = [effect["name"] for effect in verdict["effects"]]
+    physics = [CATALOGUE[name].statement for name in names if name in CATALOGUE]
+    if undecided(verdict):
+        return "These recordings cannot tell the explanations apart; the likeliest one is shown."
+    if physics:
+        return f"{'; '.join(_capital(text) for text in physics[:2])}."
+    if verdict["unexplained"]:
+        return "No known effect explains the difference."
+    if names:
+        return "The tire is elastic as the law says, with other coefficients: no physics is missing."
+    return "The difference between simulation and recordings is noise."
+
+
+def figures(diagnosis: Mapping[str, Any]) -> list[Figure]:
+    """Return the errors before, after, on held-out data, and the noise floor."""
+    fit, verdict = diagnosis["fit"], diagnosis["verdict"]
+    noise = fit["noise"]
+    if verdict["effects"]:
+        shown = [
+            Figure("Error before", fit["before"]),
+            Figure("Error after", fit["after"], _left(fit["after"], noise)),
+        ]
+    else:
+        shown = [Figure("Error", fit["before"], _left(fit["before"], noise))]
+    if fit["held_out_after"] is not None:
+        alarm, was = _left(fit["held_out_after"], noise), fit["held_out_before"]
+        if was is not None and fit["held_out_after"] > WORSE * was:
+            alarm = "worse than before"
+        note = f"from {words.number(was)} N" if was is not None and verdict["effects"] else ""
+        shown.append(Figure("Held-out", fit["held_out_after"], alarm, note))
+    return [*shown, Figure("Noise floor", noise)]
+
+
+def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> NextStep:
+    """Return what to do next: one recording within the rig's limits, or nothing.
+
+    reasons: of each alternative what the recordings lack, as "lack: action"
+    """
+    verdict, fit = diagnosis["verdict"], diagnosis["fit"]
+    test = verdict["separating_test"]
+    errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
+    clean = not verdict["unexplained"] and max(errors) <= AT_THE_FLOOR * max(fit["noise"], 1e-12)
+    if verdict["confidence"] >= SURE and clean:
+        return NextStep(
+            "Nothing: use this tire." if verdict["effects"] else "Nothing: use the baseline tire."
+        )
+    if test is not None:
+        return NextStep(_drive(test), _decides(test), drive=True)
+    if verdict["unexplained"]:
+        return NextStep(
+            "Repeat one recording with another tire.", "What comes back is the rig's, not the tire's."
+        )
+    if verdict["alternatives"] and (found := actions(reasons)):
+        return NextStep(
+            f"{_capital(found[0])}.",
+            "No motion of this rig on these surfaces decides between the alternatives.",
+        )
+    if not clean:
+        return NextStep(
+            "Repeat one recording with another tire.",
+            "The error left is more than the noise: what comes back is the rig's.",
+        )
+    return NextStep("Nothing: use this tire." if verdict["effects"] else "Nothing: use the baseline tire.")
+
+
+def actions(reasons: Sequence[str]) -> list[str]:
+    """Return the actions of sentences such as "no hold: hold 10 s at 15 mm", each once, in their order."""
+    found = [part.partition(": ")[2].strip() for reason in reasons for part in reason.split("; ")]
+    return list(dict.fromkeys(action for action in found if action))
+
+
+def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
+    """Yield headlines from the fullest to the shortest."""
+    verdict = diagnosis["verdict"]
+    if undecided(verdict):
+        yield from _undecided(verdict)
+        return
+    physics = [e for e in verdict["effects"] if e["name"] != REFITTED_LAW]
+    refitted = len(physics) < len(verdict["effects"])
+    sized = sorted(physics, key=lambda e: -(e.get("size") or 0.0))
+    parts = [
+        (titles.short_title(e["name"]), words.of_load(e.get("size"), diagnosis["fit"].get("load")))
+        for e in sized
+    ]
+    if verdict["unexplained"]:
+        rms = verdict.get("remainder", {}).get("rms")
+        parts.append((titles.effect_title(UNKNOWN), words.of_load(rms, diagnosis["fit"].get("load"))))
+    if not parts:
+        yield "No physics is missing: the law is refitted" if refitted else "Nothing is missing"
+        return
+    law = "; law refitted" if refitted else ""
+    if len(parts) == 1:
+        (name, share) = parts[0]
+        yield _capital(f"{name}, {share} of the load{law}" if share else f"{name}{law}")
+        yield _capital(f"{name}{law}")
+        return
+    if all(share for _, share in parts):
+        yield _capital(f"{titles.listed([f'{name} {share}' for name, share in parts])} of the load{law}")
+    yield _capital(f"{titles.listed([name for name, _ in parts])}{law}")
+    for shown in range(len(parts) - 1, 0, -1):
+        others = len(parts) - shown
+        more = f"{others} more effect{'s' if others > 1 else ''}"
+        yield _capital(f"{titles.listed([*(name for name, _ in parts[:shown]), more])}{law}")
+
+
+def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
+    own = [e["name"] for e in verdict["effects"]] + ([UNKNOWN] if verdict["unexplained"] else [])
+    sets = [titles.short_set(own)]
+    for names in verdict["alternatives"]:
+        added = [name for name in names if name not in own]
+        beside = bool(own) and set(own) < set(names)
+        sets.append(f"+ {titles.short_set(added)}" if beside else titles.short_set(names))
+    yield f"Undecided: {titles.listed(sets, 'or')}"
+    for shown in range(len(sets) - 1, 0, -1):
+        others = len(sets) - shown
+        more = f"{others} other{'s' if others > 1 else ''}"
+        yield f"Undecided: {titles.listed([*sets[:shown], more], 'or')}"
+    yield f"Undecided between {len(sets)} explanations"
+
+
+def _left(after: float | None, noise: float) -> str:
+    if after is None or noise <= 0.0 or after <= AT_THE_FLOOR * noise:
+        return ""
+    return f"{words.number(after / noise, 2)} × the noise"
+
+
+def _drive(test: Mapping[str, Any]) -> str:
+    """Return the recommended recording in one sentence; the one of diagnosis.json where it is not complete."""
+    keys = ("waveform", "amplitude", "rate_max", "duration", "surfaces")
+    if any(test.get(key) is None for key in keys):
+        return str(test.get("sentence", ""))
+    place = titles.listed([words.surface(radius) for radius in test["surfaces"]])
+    return (
+        f"Record {test['waveform']} to {words.number(1e3 * test['amplitude'])} mm on {place}, at up to "
+        f"{words.number(1e3 * test['rate_max'])} mm/s, for {words.number(test['duration'], 2)} s."
+    )
+
+
+def _decides(test: Mapping[str, Any]) -> str:
+    between = test.get("between")
+    if not between:
+        return ""
+    return f"It decides between {titles.listed([titles.short_set(names) for names in between])}."
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,48 @@
+"""Files that appear whole or not at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tirelab.computing.staging import staged
+from tirelab.errors import TirelabError
+
+
+def test_files_appear_when_all_are_written(tmp_path: Path) -> None:
+    out = tmp_path / "deep" / "out"
+    with staged(out) as folder:
+        (folder / "a.txt").write_text("a")
+        assert not (out / "a.txt").exists()
+        (folder / "b.txt").write_text("b")
+    assert sorted(f.name for f in out.iterdir()) == ["a.txt", "b.txt"]
+
+
+@pytest.mark.parametrize("end", [KeyboardInterrupt, ValueError, SystemExit])
+def test_what_is_interrupted_leaves_nothing(tmp_path: Path, end: type[BaseException]) -> None:
+    def interrupted() -> None:
+        with staged(tmp_path / "deep" / "out") as folder:
+            (folder / "a.txt").write_text("half")
+            raise end
+
+    with pytest.raises(end):
+        interrupted()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_stood_there_stays_until_it_is_replaced(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("old")
+    (tmp_path / "other.txt").write_text("other")
+    with staged(tmp_path) as folder:
+        (folder / "a.txt").write_text("new")
+        assert (tmp_path / "a.txt").read_text() == "old"
+    assert {f.name: f.read_text() for f in tmp_path.iterdir()} == {"a.txt": "new", "other.txt": "other"}
+
+
+def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("")
+    with (
+        pytest.raises(TirelabError, match="name another folder with --out"),
+        staged(tmp_path / "taken" / "out"),
+    ):
+        pytest.fail("it began to write")

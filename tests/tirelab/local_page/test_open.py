@@ -1,0 +1,164 @@
+"""The local page in a browser, from a dropped recording to the tire that is downloaded."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import CONTRAST, Watched, browser
+from drives import damped, saved
+from radialtire import read_tire
+
+HOSTILE = "<img src=x onerror=document.title='run'>.csv"
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    with browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def opened(tmp_path: Path) -> Iterator[tuple[str, Path]]:
+    """The program as a user starts it: the address that it prints, and its folder."""
+    folder = tmp_path / "desk"
+    words = [sys.executable, "-m", "tirelab", "open", str(folder), "--no-browser"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
+        assert program.stdout is not None
+        address = program.stdout.readline().strip()
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{20,}/", address)
+        yield address, folder
+        program.send_signal(signal.SIGINT)
+        _, said = program.communicate(timeout=60)
+    assert program.returncode == 0
+    assert "Traceback" not in said
+
+
+DROP = """
+([text, name]) => {
+  const data = new DataTransfer();
+  data.items.add(new File([text], name));
+  const options = { dataTransfer: data, bubbles: true, cancelable: true };
+  for (const kind of ["dragenter", "dragover", "drop"])
+    document.getElementById("drop").dispatchEvent(new DragEvent(kind, options));
+}
+"""
+"""Drops a file on the page, as the hand does."""
+
+
+def test_from_drop_to_download(chromium: Any, opened: tuple[str, Path], tmp_path: Path) -> None:
+    address, folder = opened
+    text = saved(damped(1, samples=2000), tmp_path / "ride.csv").read_text()
+    shown = Watched(chromium, viewport={"width": 1280, "height": 800}, accept_downloads=True)
+    page = shown.page
+    page.goto(address)
+    assert page.locator("#diagnose").is_disabled()
+
+    page.evaluate(DROP, ["Dear colleague,\nall went well.\n", "notes.txt"])
+    page.wait_for_selector("#problem:not([hidden])")
+    assert "notes.txt is no recording" in page.inner_text("#problem")
+    assert page.locator(".recording").count() == 0
+
+    # a column without name and unit: the user says what it is
+    lines = text.splitlines()
+    odd = "\n".join(["time [s],deflection [cm],radius [cm],Kanal 4", *lines[1:]])
+    page.evaluate(DROP, [odd, HOSTILE])
+    page.wait_for_selector(".recording")
+    box = page.locator(".recording")
+    assert box.locator("h3").inner_text() == HOSTILE
+    assert page.locator("img").count() == 0
+    assert page.locator("#diagnose").is_disabled()
+    assert box.locator(".alarm").count() == 1
+    box.locator("select[aria-label='column of force']").select_option(label="Kanal 4")
+    box.locator("input[aria-label='unit of force']").fill("N")
+    box.locator("button[type=submit]").click()
+    page.wait_for_selector(".recording .facts")
+    assert "samples 2000" in box.locator(".facts").inner_text()
+    assert page.evaluate(CONTRAST) == []
+
+    page.locator("#files").set_input_files(tmp_path / "ride.csv")
+    page.locator(".recording").nth(1).wait_for()
+    page.locator(".recording").nth(1).locator("select").first.select_option(value="held-out")
+    page.wait_for_selector("#diagnose:not([disabled])")
+
+    page.click("#diagnose")
+    page.wait_for_selector("#stop:visible")
+    page.wait_for_selector("#progress:visible")
+    page.wait_for_selector(".result", timeout=180_000)
+    page.locator("#stage", has_text="done").wait_for()
+    assert "Viscous damping" in page.inner_text(".result h3")
+
+    with page.expect_download() as download:
+        page.click(".result a:text('Tire')")
+    download.value.save_as(tmp_path / "tire.json")
+    assert [effect.name for effect, _ in read_tire(tmp_path / "tire.json").effects] == ["viscous_damping"]
+    with page.expect_download() as download:
+        page.click(".result a:text('FMU')")
+    download.value.save_as(tmp_path / "tire.fmu")
+    assert (tmp_path / "tire.fmu").read_bytes().startswith(b"PK")
+    with shown.context.expect_page() as opening:
+        page.click(".result a:text('Report')")
+    report = opening.value
+    report.wait_for_selector("#explore[data-ready]")
+    assert report.locator("h1").inner_text().startswith("Viscous damping")
+    assert HOSTILE.removesuffix(".csv") in report.inner_text("body")
+    assert report.title() != "run"
+
+    assert all(url.startswith((address, "data:")) for url in shown.asked)
+    # the refusal of notes.txt is an answer with status 422, which the browser notes
+    assert [line for line in shown.said if "422" not in line] == []
+    assert sorted(p.name for p in (folder / "uploads").iterdir()) == [
+        "0001.csv",
+        "0001.json",
+        "0001.toml",
+        "0002.csv",
+        "0002.json",
+    ]
+    told = json.loads((folder / "diagnoses" / "0001" / "diagnosis.json").read_text())
+    assert told["fit"]["held_out_after"] < 0.5 * told["fit"]["held_out_before"]
+    shown.context.close()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_fits_a_phone_in_light_and_dark(
+    chromium: Any, opened: tuple[str, Path], scheme: str, tmp_path: Path
+) -> None:
+    shown = Watched(chromium, viewport={"width": 390, "height": 844}, color_scheme=scheme)
+    shown.page.goto(opened[0])
+    shown.page.locator("#files").set_input_files(
+        saved(damped(1, samples=500), tmp_path / f"{'long_name_' * 9}.csv")
+    )
+    shown.page.wait_for_selector(".recording")
+    shown.page.locator("summary").click()
+    assert shown.page.evaluate("() => document.documentElement.scrollWidth") <= 390
+    assert shown.page.evaluate(CONTRAST) == []
+    assert shown.said == []
+    shown.context.close()
+
+
+def test_it_starts_soon(tmp_path: Path) -> None:
+    """The address is printed before a heavy library is loaded: soon after a program that does nothing would end."""
+
+    def spent(*words: str) -> float:
+        start = time.perf_counter()
+        with subprocess.Popen(
+            [sys.executable, "-m", "tirelab", *words], stdout=subprocess.PIPE, text=True
+        ) as program:
+            assert program.stdout is not None
+            program.stdout.readline()
+            took = time.perf_counter() - start
+            program.kill()
+        return took
+
+    least = min(spent("--version") for _ in range(3))
+    opened = min(spent("open", str(tmp_path / "desk"), "--no-browser") for _ in range(3))
+    assert opened < 2.0 * least + 0.3
+    print(f"tirelab --version {least:.2f} s, tirelab open {opened:.2f} s")

@@ -1,0 +1,124 @@
+"""The folder of the local page: names from outside are text, never paths."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+from tirelab.errors import TirelabError
+from tirelab.local_page.store import SUFFIXES, Store, clean_name, clean_texts
+from tirelab.recordings.formats import LOADERS
+from tirelab.recordings.metadata import read_sidecar
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    made = Store(tmp_path / "desk")
+    made.prepare()
+    return made
+
+
+def files(store: Store) -> set[str]:
+    return {p.relative_to(store.folder).as_posix() for p in store.folder.rglob("*") if p.is_file()}
+
+
+def test_the_suffixes_are_those_that_can_be_read() -> None:
+    assert set(SUFFIXES) == set(LOADERS)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("slow.csv", "slow.csv"),
+        ("../../etc/passwd.csv", "passwd.csv"),
+        ("C:\\rig\\..\\slow.csv", "slow.csv"),
+        ("/absolute.csv", "absolute.csv"),
+        ("<img src=x onerror=alert(1)>.csv", "<img src=x onerror=alert(1)>.csv"),
+        ("a\x00b\nc.csv", "a?b?c.csv"),
+        ("", "recording"),
+    ],
+)
+def test_a_name_is_kept_as_text_and_the_file_has_a_number(store: Store, name: str, shown: str) -> None:
+    assert clean_name(name) == shown
+    if name:
+        upload = store.receive(name, io.BytesIO(b"12345"), 5)
+        assert upload.name == shown
+        assert upload.file == store.folder / "uploads" / "0001.csv"
+        assert files(store) == {"uploads/0001.csv", "uploads/0001.json"}
+        assert store.uploads() == [upload]
+
+
+def test_a_long_name_keeps_its_suffix() -> None:
+    shown = clean_name("x" * 500 + ".csv")
+    assert len(shown) <= 130
+    assert shown.endswith(".csv")
+
+
+@pytest.mark.parametrize("name", ["page.html", "run.exe", "noname", "x.csv/", ".csv.php"])
+def test_what_cannot_be_read_is_refused_before_it_is_kept(store: Store, name: str) -> None:
+    with pytest.raises(TirelabError, match="is no recording: its name must end in one of"):
+        store.receive(name, io.BytesIO(b"12345"), 5)
+    assert files(store) == set()
+
+
+def test_what_does_not_arrive_whole_is_not_kept(store: Store) -> None:
+    with pytest.raises(TirelabError, match="did not arrive whole"):
+        store.receive("slow.csv", io.BytesIO(b"123"), 5)
+    assert files(store) == set()
+
+
+def test_numbers_go_on_and_a_removed_recording_leaves_nothing(store: Store) -> None:
+    first, second = (store.receive(f"{n}.csv", io.BytesIO(b"1"), 1) for n in "ab")
+    assert (first.number, second.number) == (1, 2)
+    store.settings(second, {"force": "#2"}, {}, "")
+    store.remove(second)
+    assert files(store) == {"uploads/0001.csv", "uploads/0001.json"}
+
+
+def test_settings_are_the_sidecar_that_the_reader_reads(store: Store) -> None:
+    upload = store.receive("slow.csv", io.BytesIO(b"1"), 1)
+    odd = 'Load "cell" \\ Ω'
+    store.settings(upload, {"force": odd, "deflection": "-#2"}, {"force": "lbf"}, "25.4 cm")
+    told = read_sidecar(upload.file)
+    assert dict(told.columns) == {"force": odd, "deflection": "-#2"}
+    assert dict(told.units) == {"force": "lbf"}
+    assert told.radius == "25.4 cm"
+    store.settings(upload, {}, {}, "")
+    assert read_sidecar(upload.file).columns == {}
+
+
+@pytest.mark.parametrize(
+    "values", [{"mass": "m"}, {"force": 3}, {"force": "a\nb"}, {"force": "x" * 300}, "text", None]
+)
+def test_settings_that_are_no_short_texts_are_refused(values: object) -> None:
+    with pytest.raises(TirelabError, match=r"by channel|short printable"):
+        clean_texts(values, ("force",))
+
+
+@pytest.mark.parametrize(
+    "name", ["../../tire.json", "other.txt", "", "report.html/", "..", "diagnosis.json\x00"]
+)
+def test_only_files_of_a_diagnosis_are_given_out(store: Store, name: str) -> None:
+    folder = store.folder / "diagnoses" / "0001"
+    folder.mkdir()
+    for file in ("diagnosis.json", "other.txt"):
+        (folder / file).write_text("{}")
+    assert store.result(1, name) is None
+    assert store.result(2, "diagnosis.json") is None
+    assert store.result(1, "diagnosis.json") == folder / "diagnosis.json"
+    assert store.diagnoses() == [(1, folder)]
+
+
+def test_a_use_is_one_of_three(store: Store) -> None:
+    upload = store.receive("slow.csv", io.BytesIO(b"1"), 1)
+    store.use(upload, "held-out")
+    assert store.upload(1).use == "held-out"
+    with pytest.raises(TirelabError, match="a recording is one of"):
+        store.use(upload, "../fitted")
+
+
+def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(TirelabError, match="cannot be written"):
+        Store(tmp_path / "taken").prepare()

@@ -1,0 +1,164 @@
+"""What a reader is told in ten seconds."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Any
+
+import pytest
+from radialtire import CATALOGUE
+from tirelab.report import first_screen
+
+
+def diagnosis(
+    sizes: dict[str, float | None], confidence: float = 0.95, load: float | None = 500.0, **more: Any
+) -> dict[str, Any]:
+    """A diagnosis in which each effect adds so many newtons."""
+    fit = {"noise": 6.0, "before": 60.0, "after": 6.1, "held_out_before": 61.0, "held_out_after": 6.2}
+    effects = [{"name": name, "share": 0.5, "size": size} for name, size in sizes.items()]
+    verdict = {"alternatives": [], "unexplained": False, "separating_test": None}
+    given = {k: v for k, v in more.items() if k in verdict}
+    return {
+        "verdict": {
+            "effects": effects,
+            "confidence": confidence,
+            "remainder": {"rms": 20.0},
+            **verdict,
+            **given,
+        },
+        "fit": {**fit, "load": load, **{k: v for k, v in more.items() if k in fit}},
+    }
+
+
+@pytest.mark.parametrize(
+    ("sizes", "more", "told"),
+    [
+        ({}, {}, "Nothing is missing"),
+        ({"rate_independent_hysteresis": 20.0}, {}, "Friction loop, 4 % of the load"),
+        ({"rate_independent_hysteresis": None}, {}, "Friction loop"),
+        ({"recalibration": 90.0}, {}, "No physics is missing: the law is refitted"),
+        (
+            {"recalibration": 90.0, "rate_independent_hysteresis": 20.0},
+            {},
+            "Friction loop, 4 % of the load; law refitted",
+        ),
+        (
+            {"viscous_damping": 10.0, "rate_independent_hysteresis": 20.0},
+            {},
+            "Friction loop 4 % and viscous damping 2 % of the load",
+        ),
+        ({}, {"unexplained": True}, "Something unknown, 4 % of the load"),
+        ({"inertia": 1.0}, {}, "Inertia, < 1 % of the load"),
+        (
+            {"inertia": 1.0},
+            {"confidence": 0.4, "alternatives": [["force_lag"], []]},
+            "Undecided: inertia, force lag or nothing missing",
+        ),
+        (
+            {"inertia": 1.0},
+            {"confidence": 0.4, "alternatives": [["inertia", "force_lag"]]},
+            "Undecided: inertia or + force lag",
+        ),
+    ],
+)
+def test_headlines(sizes: dict[str, float | None], more: dict[str, Any], told: str) -> None:
+    assert first_screen.headline(diagnosis(sizes, **more)) == told
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+@pytest.mark.parametrize("confidence", [0.95, 0.4])
+def test_no_headline_is_longer_than_its_line(count: int, confidence: float) -> None:
+    names = ["recalibration", *CATALOGUE]
+    for chosen in combinations(names, count):
+        others = [list(chosen[:i]) for i in range(4)]
+        told = diagnosis(dict.fromkeys(chosen, 61.0), confidence, alternatives=others, unexplained=count == 2)
+        line = first_screen.headline(told)
+        assert 0 < len(line) <= 70, line
+        assert "_" not in line
+
+
+def test_where_the_recordings_cannot_decide_that_is_the_headline() -> None:
+    doubtful = {"alternatives": [["viscous_damping"]]}
+    assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.49, **doubtful)).startswith("Undecided: ")
+    assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.51, **doubtful)).startswith("Inertia, ")
+    assert "cannot tell" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful)["verdict"])
+
+
+def test_alarm_is_where_something_is_wrong() -> None:
+    def alarms(**errors: float | None) -> dict[str, str]:
+        shown = first_screen.figures(diagnosis({"inertia": 9.0}, **errors))
+        return {figure.title: figure.alarm for figure in shown if figure.alarm}
+
+    assert alarms() == {}
+    assert alarms(after=12.0) == {"Error after": "2.0 × the noise"}
+    assert alarms(held_out_after=70.0) == {"Held-out": "worse than before"}
+    assert alarms(held_out_before=None, held_out_after=None) == {}
+    (error, *_) = first_screen.figures(diagnosis({}, unexplained=True))
+    assert (error.title, error.alarm) == ("Error", "10 × the noise")
+
+
+def test_the_errors_are_told_with_what_they_were() -> None:
+    shown = {f.title: (f.value, f.note) for f in first_screen.figures(diagnosis({"inertia": 9.0}))}
+    assert shown == {
+        "Error before": (60.0, ""),
+        "Error after": (6.1, ""),
+        "Held-out": (6.2, "from 61.0 N"),
+        "Noise floor": (6.0, ""),
+    }
+
+
+TEST = {
+    "waveform": "sweep",
+    "amplitude": 0.022,
+    "rate_max": 0.25,
+    "duration": 60.0,
+    "surfaces": ["inf"],
+    "between": [["inertia"], ["rate_independent_hysteresis"]],
+}
+
+
+@pytest.mark.parametrize(
+    ("given", "reasons", "action"),
+    [
+        (diagnosis({"inertia": 9.0}), [], "Nothing: use this tire."),
+        (diagnosis({}, before=6.0, after=6.0), [], "Nothing: use the baseline tire."),
+        (
+            diagnosis({"inertia": 9.0}, 0.6, alternatives=[[]], separating_test=TEST),
+            [],
+            "Record sweep to 22.0 mm on flat ground, at up to 250 mm/s, for 60 s.",
+        ),
+        (
+            diagnosis({"inertia": 9.0}, 0.6, alternatives=[[]]),
+            ["no hold: hold 10 s at 15 mm; one speed only: repeat at 30 mm/s"],
+            "Hold 10 s at 15 mm.",
+        ),
+        (diagnosis({}, 0.95, unexplained=True), [], "Repeat one recording with another tire."),
+        (diagnosis({"inertia": 9.0}, 0.95, after=30.0), [], "Repeat one recording with another tire."),
+        (
+            diagnosis({"inertia": 9.0}, 0.95, held_out_after=30.0),
+            [],
+            "Repeat one recording with another tire.",
+        ),
+        (diagnosis({"inertia": 9.0}, 0.95, held_out_after=None), [], "Nothing: use this tire."),
+        (
+            diagnosis({"inertia": 9.0}, 0.6, alternatives=[[]]),
+            ["the difference is smaller than these recordings can show"],
+            "Nothing: use this tire.",
+        ),
+    ],
+)
+def test_one_thing_to_do_next(given: dict[str, Any], reasons: list[str], action: str) -> None:
+    step = first_screen.next_step(given, reasons)
+    assert step.action == action
+    assert step.drive == action.startswith("Record ")
+
+
+def test_actions_are_told_once() -> None:
+    told = ["no hold: hold 10 s at 15 mm; one speed only: repeat at 30 mm/s", "no hold: hold 10 s at 15 mm"]
+    assert first_screen.actions(told) == ["hold 10 s at 15 mm", "repeat at 30 mm/s"]
+    assert first_screen.actions(["the recording has no time"]) == []
+
+
+def test_confidence_is_told_in_words_and_as_a_number() -> None:
+    assert first_screen.sureness({"confidence": 0.82}) == "Fairly sure: 82 %"
+    assert first_screen.sureness({"confidence": 0.3}) == "One of several possibilities: 30 %"
