@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 import math
 import subprocess
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 from hypothesis import given

@@ -1,0 +1,161 @@
+/*
+ * Calls every function of the native FMU in random order with random values, good and bad, for some seconds.
+ *
+ *     cc -fsanitize=address,undefined fuzz.c kernel.c tire.c fmi2.c -lm -o fuzz && ./fuzz RESOURCES GUID SECONDS SEED
+ *
+ * Prints how many calls were made and how many gave each status; a fault ends it through the sanitizers.
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef struct {
+    void (*logger)(void *, const char *, int, const char *, const char *, ...);
+    void *(*allocate)(size_t, size_t);
+    void (*release)(void *);
+    void *finished, *environment;
+} Callbacks;
+
+void *fmi2Instantiate(const char *, int, const char *, const char *, const Callbacks *, int, int);
+void fmi2FreeInstance(void *);
+int fmi2SetDebugLogging(void *, int, size_t, const char *const *), fmi2SetupExperiment(void *, int, double, double, int, double);
+int fmi2EnterInitializationMode(void *), fmi2ExitInitializationMode(void *), fmi2Terminate(void *), fmi2Reset(void *);
+int fmi2GetReal(void *, const unsigned *, size_t, double *), fmi2SetReal(void *, const unsigned *, size_t, const double *);
+int fmi2GetBoolean(void *, const unsigned *, size_t, int *), fmi2SetBoolean(void *, const unsigned *, size_t, const int *);
+int fmi2GetInteger(void *, const unsigned *, size_t, int *), fmi2SetInteger(void *, const unsigned *, size_t, const int *);
+int fmi2GetFMUstate(void *, void **), fmi2SetFMUstate(void *, void *), fmi2FreeFMUstate(void *, void **);
+int fmi2SerializedFMUstateSize(void *, void *, size_t *), fmi2SerializeFMUstate(void *, void *, char *, size_t);
+int fmi2DeSerializeFMUstate(void *, const char *, size_t, void **);
+int fmi2GetDirectionalDerivative(void *, const unsigned *, size_t, const unsigned *, size_t, const double *, double *);
+int fmi2DoStep(void *, double, double, int), fmi2GetRealStatus(void *, int, double *), fmi2CancelStep(void *);
+int fmi2EnterEventMode(void *), fmi2NewDiscreteStates(void *, void *), fmi2EnterContinuousTimeMode(void *);
+int fmi2CompletedIntegratorStep(void *, int, int *, int *), fmi2SetTime(void *, double);
+int fmi2SetContinuousStates(void *, const double *, size_t), fmi2GetContinuousStates(void *, double *, size_t);
+int fmi2GetDerivatives(void *, double *, size_t), fmi2GetEventIndicators(void *, double *, size_t);
+int fmi2GetNominalsOfContinuousStates(void *, double *, size_t);
+
+static unsigned long long seed;
+static unsigned draw(unsigned below)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (unsigned)(seed >> 33) % below;
+}
+
+static double real(void)
+{
+    static const double odd[] = {0, -0.0, NAN, INFINITY, -INFINITY, 1e308, -1e308, 5e-324, 22, 1e-300, -1, 1};
+    unsigned long long bits;
+    double any;
+    switch (draw(8)) {
+    case 0:
+        return odd[draw(sizeof odd / sizeof *odd)];
+    case 1:
+        bits = ((unsigned long long)draw(1u << 31) << 33) ^ ((unsigned long long)draw(1u << 31) << 11) ^ draw(2048);
+        memcpy(&any, &bits, sizeof any);
+        return any;
+    default:
+        return 1e-5 * (double)draw(3000);
+    }
+}
+
+static long messages;
+static void told(void *environment, const char *name, int status, const char *category, const char *format, ...)
+{
+    char line[2000];
+    va_list arguments;
+    (void)environment, (void)name, (void)status, (void)category;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    messages += *line != 0;
+}
+
+int main(int argc, char **argv)
+{
+    const Callbacks callbacks = {told, calloc, free, NULL, NULL};
+    long calls = 0, statuses[6] = {0};
+    if (argc != 5)
+        return 2;
+    const time_t end = time(NULL) + atol(argv[3]);
+    seed = strtoull(argv[4], NULL, 10);
+    while (time(NULL) < end) {
+        static const char *const guids[] = {NULL, "", "{00000000-0000-0000-0000-000000000000}"};
+        static const char *const places[] = {NULL, "", "file:///nowhere", "file://%zz%", "file:"};
+        void *tire = fmi2Instantiate("tire", (int)draw(2), argv[2], argv[1], &callbacks, 0, 0);
+        void *state = NULL;
+        double time_now = 0;
+        if (!tire)
+            return 1;
+        fmi2FreeInstance(fmi2Instantiate(draw(2) ? "" : NULL, (int)draw(3), guids[draw(3)], argv[1], &callbacks, 0, 1));
+        fmi2FreeInstance(fmi2Instantiate("tire", 1, argv[2], places[draw(5)], &callbacks, 0, 1));
+        for (int i = 0; i < 3000; i++) {
+            unsigned v[4];
+            double x[32], y[32];
+            int n[32] = {0}, flags[2];
+            const size_t count = draw(5), some = draw(9);
+            size_t size = 0;
+            int status = 0;
+            for (int k = 0; k < 4; k++)
+                v[k] = draw(20) ? draw(4) ? draw(2) : draw(120) : draw(1u << 31) * 2;
+            for (int k = 0; k < 32; k++)
+                x[k] = real();
+            switch (draw(34)) {
+            case 0: status = fmi2SetupExperiment(tire, 0, 0, draw(4) ? 0 : real(), 0, 0); break;
+            case 1: status = fmi2EnterInitializationMode(tire); break;
+            case 2: status = fmi2ExitInitializationMode(tire); break;
+            case 3: status = draw(20) ? 0 : fmi2Terminate(tire); break;
+            case 4: status = draw(20) ? 0 : fmi2Reset(tire); break;
+            case 5: case 6: status = fmi2GetReal(tire, v, count, y); break;
+            case 7: case 8: case 9: status = fmi2SetReal(tire, v, count, x); break;
+            case 10: status = fmi2GetBoolean(tire, v, count, n); break;
+            case 11: status = fmi2SetBoolean(tire, v, count, n); break;
+            case 12: status = fmi2GetInteger(tire, v, count, n); break;
+            case 13: status = fmi2SetInteger(tire, NULL, count, NULL); break;
+            case 14: status = fmi2GetFMUstate(tire, &state); break;
+            case 15: status = state ? fmi2SetFMUstate(tire, state) : 0; break;
+            case 16: status = fmi2FreeFMUstate(tire, &state); break;
+            case 17:
+                fmi2SerializedFMUstateSize(tire, state, &size);
+                if (state && size) {
+                    char *bytes = malloc(size);
+                    void *copy = NULL;
+                    status = fmi2SerializeFMUstate(tire, state, bytes, size);
+                    if (draw(2))
+                        bytes[draw((unsigned)size)] ^= (char)draw(256);
+                    status |= fmi2DeSerializeFMUstate(tire, bytes, draw(3) ? size : draw((unsigned)size), &copy);
+                    fmi2FreeFMUstate(tire, &copy);
+                    free(bytes);
+                }
+                break;
+            case 18: status = fmi2GetDirectionalDerivative(tire, v, draw(3), v + 2, draw(3), x, y); break;
+            case 19: status = fmi2GetRealStatus(tire, (int)draw(4), y); break;
+            case 20: status = fmi2CancelStep(tire); break;
+            case 21: status = fmi2EnterEventMode(tire); break;
+            case 22: status = fmi2NewDiscreteStates(tire, draw(9) ? y : NULL); break;
+            case 23: status = fmi2EnterContinuousTimeMode(tire); break;
+            case 24: status = fmi2CompletedIntegratorStep(tire, 1, flags, draw(9) ? flags + 1 : NULL); break;
+            case 25: status = fmi2SetTime(tire, draw(3) ? time_now += 1e-3 : real()); break;
+            case 26: status = fmi2SetContinuousStates(tire, x, some); break;
+            case 27: status = fmi2GetContinuousStates(tire, y, some); break;
+            case 28: status = fmi2GetDerivatives(tire, y, some); break;
+            case 29: status = fmi2GetEventIndicators(tire, y, draw(2)); break;
+            case 30: status = fmi2GetNominalsOfContinuousStates(tire, y, some); break;
+            case 31: status = fmi2GetReal(tire, NULL, count, y); break;
+            default: {
+                double reached = 0;
+                fmi2GetRealStatus(tire, 2, &reached);
+                status = fmi2DoStep(tire, draw(9) ? reached : real(), draw(5) ? 1e-3 * (double)draw(30) : real(), 1);
+            }
+            }
+            calls++;
+            statuses[status & 3 ? 3 : status]++;
+        }
+        fmi2FreeFMUstate(tire, &state);
+        fmi2FreeInstance(tire);
+    }
+    printf("%ld calls, %ld taken, %ld refused, %ld messages\n", calls, statuses[0], statuses[3], messages);
+    return 0;
+}
