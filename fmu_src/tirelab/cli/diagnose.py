@@ -7,6 +7,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +40,11 @@ COLUMNS = 100
 )
 @out_option("diagnosis")
 @reading_options
+@click.option(
+    "--believed-force",
+    metavar="COLUMN",
+    help="Look for effects beside a simulation: the recordings' column of its force.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print only diagnosis.json.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
@@ -50,6 +56,10 @@ COLUMNS = 100
 @click.option("--dask", metavar="ADDRESS", help="With --each: address of the scheduler of a Dask cluster.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     """Find the physics that a tire model lacks to reproduce RECORDING... (files or folders), and correct it."""
+    believed = options.pop("believed_force")
+    if believed is not None:
+        reading: Reading = options["reading"]
+        options["reading"] = replace(reading, columns={**reading.columns, "believed_force": believed})
     fit = options.pop("fit")
     options["held_out"] = tuple(_ranged(recordings, file) for file in options["held_out"])
     if fit is not None:

@@ -27,6 +27,7 @@ from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
+from .believed_force import believed_of, write_corrected
 from .diagnose import PoorRecording, diagnose
 from .outcome import DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
@@ -79,6 +80,11 @@ def run_diagnosis(
     fitted = [_read(file, reading, report) for file in files]
     kept = [_read(file, reading, report) for file in kept_files]
     _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
+    believed = believed_of(fitted, kept)
+    if believed is not None:
+        if tire is not None:
+            raise TirelabError("--tire and --believed-force both name a simulation; give one of them")
+        baseline, fitted, kept = believed.tire, list(believed.fitted), list(believed.kept)
     try:
         verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
     except PoorRecording as error:
@@ -89,6 +95,11 @@ def run_diagnosis(
     on_fitted, more = _replayed(fmu, fitted, baseline, verdict.tire, report)
     on_kept, warnings = _replayed(fmu, kept, baseline, verdict.tire, report)
     warnings += _without_time((*fitted, *kept))
+    if believed is not None:
+        warnings += believed.notes()
+        report("building the FMU of the believed simulation's law")
+        build_fmu(believed.tire, out / "believed")
+        write_corrected(out, believed, verdict.tire)
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
     _write(out, content, verdict)
