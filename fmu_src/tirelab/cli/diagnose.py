@@ -6,6 +6,7 @@ import io
 import json
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -59,6 +60,11 @@ STAGES = MappingProxyType(
 )
 @output_options("diagnosis")
 @reading_options
+@click.option(
+    "--believed-force",
+    metavar="COLUMN",
+    help="Look for effects beside a simulation: the recordings' column of its force.",
+)
 @click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")
 @click.option(
     "--each",
@@ -69,6 +75,10 @@ STAGES = MappingProxyType(
 @click.option("--dask", metavar="ADDRESS", help="With --each: address of the scheduler of a Dask cluster.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     """Find the physics that a tire model lacks to reproduce RECORDING... (files or folders), and correct it."""
+    believed = options.pop("believed_force")
+    if believed is not None:
+        reading: Reading = options["reading"]
+        options["reading"] = replace(reading, columns={**reading.columns, "believed_force": believed})
     fit = options.pop("fit")
     options["held_out"] = tuple(_ranged(recordings, file) for file in options["held_out"])
     if fit is not None:

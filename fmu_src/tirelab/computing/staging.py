@@ -19,7 +19,7 @@ PREFIX = ".tirelab-"
 def staged(folder: Path) -> Iterator[Path]:
     """Give a folder to write into; when the block ends its files stand in `folder`, when it is interrupted none does.
 
-    Files of the same names are replaced, each at once. A `folder` that was made for this goes again where nothing was
+    Files of the same names are replaced, each at once, and other files stay, in subfolders too. A `folder` that was made for this goes again where nothing was
     written. Raises TirelabError where `folder` cannot be written.
     """
     made = [path for path in (folder, *folder.parents) if not path.exists()]
@@ -31,8 +31,10 @@ def staged(folder: Path) -> Iterator[Path]:
     try:
         yield aside
         try:
-            for file in sorted(aside.iterdir()):
-                os.replace(file, folder / file.name)
+            for file in sorted(path for path in aside.rglob("*") if path.is_file()):
+                target = folder / file.relative_to(aside)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                os.replace(file, target)
         except OSError as error:
             raise _refusal(folder, error) from None
     finally:

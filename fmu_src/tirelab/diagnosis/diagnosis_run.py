@@ -31,6 +31,7 @@ from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
+from .believed_force import Believed, believed_of, write_corrected
 from .diagnose import PoorRecording, diagnose
 from .outcome import DATA, DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
@@ -104,13 +105,19 @@ def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
         "date": datetime.now().astimezone().isoformat(timespec="seconds"),
         "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], asked)],
     }
+    believed = believed_of(fitted, kept)
+    if believed is not None:
+        if asked.tire is not None:
+            raise TirelabError("--tire and --believed-force both name a simulation; give one of them")
+        baseline, fitted, kept = believed.tire, list(believed.fitted), list(believed.kept)
     try:
         verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
     except PoorRecording as error:
         doubts = [f"{r.name}: {doubt}" for r in fitted for doubt in r.doubts]
         raise PoorRecording("; ".join([str(error), *doubts])) from None
     with staged(asked.out) as aside:
-        content, warnings = _delivered(aside, verdict, (fitted, kept), origin, report, asked.samples)
+        found = _Found(verdict, tuple(fitted), tuple(kept), believed)
+        content, warnings = _delivered(aside, found, origin, report, asked.samples)
     # What an earlier diagnosis wrote and this one does not have would seem to belong to it.
     for name, written in ((TEST, verdict.test is not None), (DATA, asked.samples)):
         if not written:
@@ -120,25 +127,35 @@ def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
     return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
 
 
+@dataclass(frozen=True)
+class _Found:
+    """A verdict with the recordings that it is of, fitted and held out, and the simulation that stands in them."""
+
+    verdict: Verdict
+    fitted: tuple[Recording, ...]
+    kept: tuple[Recording, ...]
+    believed: Believed | None
+
+
 def _delivered(
-    folder: Path,
-    verdict: Verdict,
-    recordings: tuple[Sequence[Recording], Sequence[Recording]],
-    origin: Mapping[str, Any],
-    report: Progress,
-    samples: bool,
+    folder: Path, found: _Found, origin: Mapping[str, Any], report: Progress, samples: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Write everything into `folder`; return the content of diagnosis.json and the warnings.
 
-    recordings: fitted and held out; origin: command, date and files, by which the page says how to repeat it; samples:
-    whether the data behind the plots is written
+    origin: command, date and files, by which the page says how to repeat it; samples: whether the data behind the plots
+    is written
     """
-    fitted, kept = recordings
+    verdict, fitted, kept, believed = found.verdict, found.fitted, found.kept, found.believed
     report("building the corrected FMU")
     fmu = build_fmu(verdict.tire, folder).path
     on_fitted, more = _replayed(fmu, fitted, verdict, report)
     on_kept, warnings = _replayed(fmu, kept, verdict, report)
     warnings += _without_time((*fitted, *kept))
+    if believed is not None:
+        warnings += believed.notes()
+        report("building the FMU of the believed simulation's law")
+        build_fmu(believed.tire, folder / "believed")
+        write_corrected(folder, believed, verdict.tire)
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
     if samples:

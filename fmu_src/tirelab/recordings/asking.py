@@ -25,6 +25,7 @@ EXAMPLE_UNITS: Mapping[str, str] = {
     "pressure": "kPa",
     "temperature": "degC",
     "speed": "m/s",
+    "believed_force": "N",
 }
 """The unit of each channel that advice names."""
 

@@ -58,6 +58,8 @@ CHANNELS = (
     ),
     _channel("temperature", "K", "temp, tire temperature, tyre temperature", "T", required=False),
     _channel("speed", "m/s", "forward speed, riding speed, travel speed, vehicle speed", "v", required=False),
+    # a force that a simulation gave: read only where the user names its column
+    Channel("believed_force", "N", frozenset(), "", required=False),
 )
 """The channels in the order of the house form of a recording."""
 
@@ -312,6 +314,8 @@ def _finds(headers: Sequence[Header], text: str) -> list[int]:
 
 def _may_be(header: Header, channel: Channel) -> bool:
     name = header.name
+    if not channel.words:
+        return False
     if len(name) == 1:
         if header.unit:
             return name.lower() == channel.symbol.lower() and measures(header.unit, channel.unit)

@@ -192,7 +192,9 @@ def _channels(found: Understood) -> list[ChannelFound]:
 
 
 def _si(name: str) -> str:
-    return {"time": "s", "force": "N", "temperature": "K", "speed": "m/s"}.get(name, "")
+    return {"time": "s", "force": "N", "believed_force": "N", "temperature": "K", "speed": "m/s"}.get(
+        name, ""
+    )
 
 
 def _settings(found: Understood) -> dict[str, Any]:

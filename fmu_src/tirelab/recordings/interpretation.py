@@ -160,6 +160,10 @@ def interpret(
     notes += [f"settings read from {source}" for source in sources]
     notes += _unit_notes(plan.conversions, plan.headers)
     doubt, turned = _turn_signs(values, plan.matches, notes)
+    believed = values.get("believed_force")
+    if believed is not None and float(np.dot(believed, values["force"])) < 0.0:
+        values["believed_force"] = -believed
+        notes.append("believed_force turned in sign: it counts the other way than the force")
     part = samples_within(plan.origin.name, piece, values["time"], _numbered(rows, samples))
     if part is not None:
         values = {name: column[part] for name, column in values.items()}

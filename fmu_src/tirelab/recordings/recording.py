@@ -47,6 +47,7 @@ class Recording:
     pressure         [Pa], gauge, or None
     temperature      [K], or None
     speed            [m/s], or None
+    believed_force   [N] of a simulation, compressive > 0, or None
     source           the file read, or None
     notes            everything that reading did to the numbers, in sentences
     timed            whether time was measured, or its sampling given; otherwise the times are made up
@@ -71,6 +72,7 @@ class Recording:
     timed: bool = True
     doubts: tuple[str, ...] = ()
     provenance: tuple[str, ...] = ()
+    believed_force: FloatArray | None = None
 
     def __post_init__(self) -> None:
         samples = len(self.time)
@@ -163,7 +165,7 @@ class Recording:
     def _repr_html_(self) -> str:
         extra = [
             (name, "recorded")
-            for name in ("pressure", "temperature", "speed")
+            for name in ("pressure", "temperature", "speed", "believed_force")
             if getattr(self, name) is not None
         ]
         notes = [("note", note) for note in self.notes]
@@ -190,6 +192,7 @@ class Recording:
             ("pressure", self.pressure),
             ("temperature", self.temperature),
             ("speed", self.speed),
+            ("believed_force", self.believed_force),
         )
         return ((name, values) for name, values in named if values is not None)
 
@@ -292,6 +295,7 @@ def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> 
             notes=found.notes,
             timed=plan.timed,
             doubts=found.doubts,
+            believed_force=values.get("believed_force"),
         )
     except SampleFault as fault:
         raise found.error(fault.index, fault.channel, fault.what) from None

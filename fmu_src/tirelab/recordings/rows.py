@@ -18,7 +18,7 @@ MOST_BLANK = 0.1
 MOST_NAMED = 12
 """How many rows a note names one by one."""
 
-OPTIONAL = ("pressure", "temperature", "speed")
+OPTIONAL = ("pressure", "temperature", "speed", "believed_force")
 """The channels a recording can do without."""
 
 

@@ -18,6 +18,7 @@ LARGEST_PLAUSIBLE = {
     "pressure": 1e9,
     "temperature": 1e4,
     "speed": 1e4,
+    "believed_force": 1e8,
 }
 """Magnitudes [SI] that no rig and no ride reaches: the unit of a larger number is wrong."""
 

@@ -46,3 +46,13 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
         staged(tmp_path / "taken" / "out"),
     ):
         pytest.fail("it began to write")
+
+
+def test_folders_are_moved_file_by_file(tmp_path: Path) -> None:
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "other.txt").write_text("other")
+    with staged(tmp_path) as folder:
+        (folder / "deep").mkdir()
+        (folder / "deep" / "a.txt").write_text("a")
+    assert {f.name for f in (tmp_path / "deep").iterdir()} == {"a.txt", "other.txt"}
+    assert [f.name for f in tmp_path.iterdir()] == ["deep"]
