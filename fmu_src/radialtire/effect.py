@@ -89,7 +89,8 @@ class Effect:
     statement: one sentence for the verdict; tell_tale: how it shows in a recording; imitators: what looks like it
     source: where equation and magnitudes come from
     differentiates: whether it uses rate or acceleration; traits: of TRAITS
-    form_error: part of its response by which other formulations of the same physics differ from it once fitted
+    form_error: part of its response by which other formulations of the same physics differ from it once fitted, as
+    measured by `tirelab.validation.form_errors` (at least 0.001; a lag of the deflection and a drift were never alone)
     flow: the effect as differential equations, or None: then its state is memory, kept at accepted steps
     """
 

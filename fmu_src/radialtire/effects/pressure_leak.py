@@ -79,5 +79,5 @@ PRESSURE_LEAK = Effect(
     imitators=("warm_up", "mullins_softening", "force_drift"),
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
     traits=("slow",),
-    form_error=0.005,
+    form_error=0.0036,
 )

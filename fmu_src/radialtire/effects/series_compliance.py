@@ -120,5 +120,5 @@ SERIES_COMPLIANCE = Effect(
     imitators=("recalibration", "deflection_offset", "gas_compression", "saturation"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Hopkins & Principe 1990: 2e6 N/m",
     traits=("static",),
-    form_error=0.005,
+    form_error=0.001,
 )

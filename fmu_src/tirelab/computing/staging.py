@@ -19,8 +19,8 @@ PREFIX = ".tirelab-"
 def staged(folder: Path) -> Iterator[Path]:
     """Give a folder to write into; when the block ends its files stand in `folder`, when it is interrupted none does.
 
-    Files of the same names are replaced, each at once, and other files stay, in subfolders too. A `folder` that was made for this goes again where nothing was
-    written. Raises TirelabError where `folder` cannot be written.
+    Files of the same names are replaced, each at once; others stay, in subfolders too. A `folder` that was made for
+    this goes again where nothing was written. Raises TirelabError where `folder` cannot be written.
     """
     made = [path for path in (folder, *folder.parents) if not path.exists()]
     try:

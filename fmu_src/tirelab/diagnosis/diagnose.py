@@ -18,6 +18,7 @@ from ..simulation.simulate import simulate
 from .acceptance import accept
 from .alternatives import Alternative, alternatives_of
 from .confidence import grounds_of_effect, grounds_of_verdict, probability
+from .contradiction import Contradiction, contradiction_of
 from .discriminating_test import DiscriminatingTest, Limits, discriminate
 from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
@@ -80,6 +81,7 @@ def diagnose(
         None if unexplained else explanation.residuals,
     )
     fit = _figures(before, explanation, validation)
+    contradiction = contradiction_of(explanation, fitted)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset, timed))
     return Verdict(
@@ -90,7 +92,7 @@ def diagnose(
         remainder=left,
         unexplained_by=unexplained,
         residual_models=remainder,
-        summary=summarise(effects, alternatives, remainder, confidence, fit, test),
+        summary=_said(summarise(effects, alternatives, remainder, confidence, fit, test), contradiction),
         where=places_told(places, timed),
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
@@ -102,6 +104,10 @@ def diagnose(
         held_out=tuple(kept),
         baseline=baseline,
     )
+
+
+def _said(summary: str, contradiction: Contradiction | None) -> str:
+    return summary if contradiction is None else f"{summary} {contradiction.sentence}"
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

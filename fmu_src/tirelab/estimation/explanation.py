@@ -20,7 +20,7 @@ from ..regressors.excitation import Excitation, excitation_of
 from ..regressors.law import LAW, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.signature import in_other_noise, signatures_of
-from ..selection.discrepancy import FLOOR_OF_SIGNATURES, discrepancy_of
+from ..selection.discrepancy import FLOOR_OF_FORMS, discrepancy_of
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import search
 from ..simulation.simulate import simulate
@@ -132,13 +132,11 @@ def explain_misfit(
     raw = (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
     quiet = with_saturated_noise(dataset, raw)
     signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
-    rough = discrepancy_of(quiet.misfit, FLOOR_OF_SIGNATURES)
+    rough = discrepancy_of(quiet.misfit, FLOOR_OF_FORMS)
     equations = normal_equations(signatures, quiet.misfit)
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
     progress("fitting the sets that can win")
-    ranking = ranked(
-        quiet, signatures, discrepancy_of(quiet.misfit, 0.0), starts, partial(_alike, excitation)
-    )
+    ranking = ranked(quiet, signatures, rough, starts, partial(_alike, excitation))
     return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()))
 
 

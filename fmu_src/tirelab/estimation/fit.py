@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,7 +12,7 @@ from radialtire import TireModel
 from ..regressors.dataset import Dataset
 from ..regressors.signature import size_of
 from ..selection.discrepancy import Discrepancy
-from .form_error import form_error, form_errors, smooth_functions
+from .form_error import form_errors, smooth_functions
 from .laplace import Linearised, laplace_evidence
 from .least_squares import Minimum, Objective, begun, minimised
 from .problem import EstimationProblem, Values, problem_of
@@ -125,9 +124,7 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
     near = Linearised(
         found.residual, found.jacobian[:, ~held], found.positions[~held], forms, problem.groups[~held]
     )
-    # What smooth functions do not follow of a form error is a discrepancy without a shape.
-    rough = [form_error(name) * size_of(curve) for name, curve in curves.items()]
-    evidence = laplace_evidence(near, discrepancy.above(math.hypot(problem.dataset.gauge_error, *rough)))
+    evidence = laplace_evidence(near, discrepancy.above(problem.dataset.gauge_error))
     return Fit(
         problem,
         found.positions,

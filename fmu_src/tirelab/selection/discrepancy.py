@@ -26,10 +26,11 @@ FloatArray = NDArray[np.float64]
 EFFECTIVE = 30.0
 """Effective samples of a discrepancy."""
 
-FLOOR_OF_SIGNATURES = 0.01
-"""Part of the misfit that a signature's few columns may leave of a catalogue form."""
+FLOOR_OF_FORMS = 0.018
+"""Part of the misfit that a right set may leave without a shape: the form errors of all effects together, measured."""
 
 GRID = 40
+"""Variances that are tried."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class Discrepancy:
         """Return the discrepancy of a set whose forms may always miss this much, a root mean square in units of the
         noise.
         """
-        lowest = 1.0 + form_error**2 * self.samples / self.effective
+        lowest = self.lowest + form_error**2 * self.samples / self.effective
         return replace(self, lowest=lowest, highest=max(self.highest, 2.0 * lowest))
 
     def grid(self) -> FloatArray:

@@ -1,0 +1,78 @@
+"""Measure how far the catalogue's forms are from another formulation of the same physics.
+
+Run: python -m tirelab.validation.form_errors --seed SEED --draws N
+
+The independent rig hides one effect alone, 30 to 1000 times the noise, its parameters drawn over their ranges; the
+catalogue's form is fitted to it. Its form error is the root mean square of what it leaves beyond the noise, over the
+size of the effect:
+
+    f = 1.4826 median over draws of sqrt(left^2 - 1) / size,   in units of the noise
+
+which is the root mean square of normal errors, and is not moved by a fit that stopped far off. It is what
+`Effect.form_error` states, rounded to two digits.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from radialtire import read_tire
+
+from ..computing.workers import Cores, work
+from ..estimation.explanation import explain_misfit
+from ..names import REFITTED_LAW
+from ..preprocessing.robust_scale import MEDIAN_TO_SIGMA
+from ..recordings.recording import read_recording
+from .commitment import draw_and_commit
+from .folders import Folders, read_json
+
+
+def form_error_of(folder: Path, seed: int, number: int, only: str | None) -> dict[str, Any]:
+    """Return the name of the one effect of a loud draw and its form error; nothing where there are several, or another
+    than the one that is wanted.
+    """
+    folders = Folders(folder / str(number))
+    (key,) = (k for k in draw_and_commit(folders, seed, number, "loud") if not k.endswith(".derived"))
+    answer = read_json(folders.sealed(key))
+    (name, *more) = answer["right"][0]
+    if more or len(answer["right"]) > 1 or name != (only or name):
+        return {}
+    recordings = [read_recording(path) for path in folders.recordings(key, "train")]
+    found = explain_misfit(recordings, read_tire(folders.tire(key)), [name], lambda stage: None).of([name])
+    fit = found.model.fit
+    beyond = max(fit.power / fit.residual.size - 1.0, 0.0)
+    return {"name": name, "error": float(np.sqrt(beyond)) / fit.sizes[name]}
+
+
+def form_errors_of(errors: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Return the form error of each effect, from those of its draws."""
+    return {name: MEDIAN_TO_SIGMA * float(np.median(values)) for name, values in sorted(errors.items())}
+
+
+@click.command()
+@click.option("--seed", type=int, required=True)
+@click.option("--draws", type=click.IntRange(min=1), default=300, show_default=True)
+@click.option("--only", help="One effect.")
+def main(seed: int, draws: int, only: str | None) -> None:
+    """Print the form error of every effect that was drawn alone, and from how many draws."""
+    errors: dict[str, list[float]] = {}
+    with tempfile.TemporaryDirectory() as name:
+        tasks = {str(n): (Path(name), seed, n, only) for n in range(draws)}
+        for done in work(form_error_of, tasks, Cores(), "measuring forms"):
+            if done.value is None:
+                click.echo(f"draw {done.key} failed: {done.error}")
+            elif done.value:
+                errors.setdefault(done.value["name"], []).append(done.value["error"])
+    for effect, error in form_errors_of(errors).items():
+        own = np.array(errors[effect])
+        title = "the refitted law" if effect == REFITTED_LAW else effect
+        click.echo(f"{title:28s} {error:.4f}  (largest {own.max():.4f}, {own.size} draws)")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,210 @@
+"""The numbers that can change a verdict, in one table: python tests/constants.py > examples/docs/constants.md
+
+Read from the source of the rooms between a recording and its verdict: every upper-case number there, its value and its
+own words. Where it comes from stands in KINDS below; tests/test_constants.py holds that none is missing and that the
+page is what this prints.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+SOURCE = Path(__file__).parents[1] / "fmu_src" / "tirelab"
+ROOMS = ("preprocessing", "regressors", "selection", "estimation", "diagnosis")
+WORDS_ONLY = (
+    "diagnosis_file.py",
+    "diagnosis_run.py",
+    "effect_sizes.py",
+    "effect_sketch.py",
+    "law_change.py",
+    "outcome.py",
+    "summary.py",
+    "verdict.py",
+)
+"""Modules of these rooms whose numbers cannot change a verdict."""
+
+KINDS: dict[str, str] = {
+    "derived": "from a definition, a theorem, a cited source or the numbers' own precision",
+    "calibrated": "measured by a command on declared seeds",
+    "budget": "bounds time or memory; more would change a verdict only where the search was cut short",
+    "chosen": "set by hand and tried on drawn cases",
+}
+
+DERIVED = (
+    "preprocessing/data_checks.FEWEST_SAMPLES",
+    "preprocessing/data_checks.FEWEST_STEPS",
+    "preprocessing/dataset.LEAST_CM",
+    "preprocessing/dataset.PEAK_QUANTILE",
+    "preprocessing/deflection_noise.LEAST_NOISE",
+    "preprocessing/deflection_noise.FINEST_STEP",
+    "preprocessing/deflection_noise.LEAST_LEVELS",
+    "preprocessing/deflection_noise.GRID_TOLERANCE",
+    "preprocessing/robust_scale.MEDIAN_TO_SIGMA",
+    "preprocessing/robust_scale.SPIKE_LIMIT",
+    "preprocessing/smoothing.PADDING",
+    "preprocessing/smoothing.WEIGHT_ROUNDS",
+    "regressors/draws.LEAST_MASS",
+    "regressors/signature.SILENT",
+    "regressors/signature.FEWEST",
+    "selection/discrepancy.GRID",
+    "estimation/findings.STEP",
+    "estimation/least_squares.STEP",
+    "estimation/least_squares.DAMPING",
+    "estimation/free_parameter.COMMON",
+    "estimation/laplace.LAW_SCALES",
+    "estimation/laplace.FORM_SCALES",
+    "estimation/uncertainty.DETERMINED",
+    "diagnosis/acceptance.WORSE",
+    "diagnosis/localization.LOCATED",
+    "diagnosis/discriminating_test.DECISIVE",
+    "diagnosis/confidence.FURTHEST",
+    "diagnosis/confidence.SMALLEST",
+    "diagnosis/alternatives.CREDIBLE",
+)
+
+CALIBRATED = {
+    "selection/discrepancy.FLOOR_OF_FORMS": "python -m tirelab.validation.form_errors --seed 424242 --draws 260",
+}
+
+BUDGET = (
+    "preprocessing/dataset.ROWS",
+    "preprocessing/dataset.MOST_FREE_SURFACES",
+    "regressors/dataset.ROWS",
+    "regressors/dataset.MOST_ROWS",
+    "regressors/dataset.FEWEST_ROWS",
+    "regressors/signature.DRAWS",
+    "regressors/signature.COLUMNS",
+    "regressors/signature.ENERGY",
+    "selection/marginal_likelihood.ROUNDS",
+    "selection/search.BEAM",
+    "selection/search.POLISHED",
+    "selection/search.MOST",
+    "selection/search.LOST",
+    "estimation/fit.REWEIGHTED",
+    "estimation/fit.OPTIONAL_GAIN",
+    "estimation/fit.ROUNDS",
+    "estimation/fit.ENOUGH",
+    "estimation/laplace.PASSES",
+    "estimation/least_squares.TRIES",
+    "estimation/least_squares.TRUSTED",
+    "estimation/least_squares.LONGEST",
+    "estimation/problem.MOST_SURFACES",
+    "estimation/ranking.BEGUN",
+    "estimation/ranking.REACH",
+    "estimation/ranking.MOST_FITS",
+    "estimation/ranking.REPEATS",
+    "estimation/ranking.MOST_EFFECTS",
+    "estimation/ranking.PROMISING",
+    "estimation/ranking.SWAPPED",
+    "estimation/ranking.HOPE",
+    "diagnosis/acceptance.CONSIDERED",
+    "diagnosis/alternatives.MOST",
+    "diagnosis/localization.MOST_SPANS",
+    "diagnosis/binning.BINS",
+    "diagnosis/binning.NARROWEST",
+    "diagnosis/residual_model.KNOTS",
+    "diagnosis/residual_model.SAMPLES_PER_KNOT",
+    "diagnosis/residual_model.FOLDS",
+    "diagnosis/diagnose.MOST_TESTED",
+    "regressors/law.HATS",
+    "regressors/law.HEIGHTS",
+    "regressors/dataset.SECANTS",
+    "selection/marginal_likelihood.SIZES",
+    "selection/marginal_likelihood.NARROWEST",
+    "selection/marginal_likelihood.WIDEST",
+    "diagnosis/localization.DEPTHS",
+    "estimation/form_error.DEPTHS",
+    "estimation/form_error.WAYS",
+)
+
+
+@dataclass(frozen=True)
+class Constant:
+    """One number: its place ("room/module.NAME"), its value as written, and what its source says of it."""
+
+    place: str
+    value: str
+    words: str
+
+    @property
+    def kind(self) -> str:
+        """One of KINDS."""
+        if self.place in DERIVED:
+            return "derived"
+        if self.place in CALIBRATED:
+            return "calibrated"
+        return "budget" if self.place in BUDGET else "chosen"
+
+
+def constants() -> list[Constant]:
+    """Return all numbers of the rooms, in their order."""
+    found: list[Constant] = []
+    for room in ROOMS:
+        for path in sorted((SOURCE / room).glob("*.py")):
+            if path.name not in WORDS_ONLY:
+                found += _of_module(f"{room}/{path.stem}", path)
+    return found
+
+
+def _of_module(module: str, path: Path) -> Iterator[Constant]:
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    for number, statement in enumerate(body):
+        if not isinstance(statement, ast.Assign):
+            continue
+        for name, value in _named(statement):
+            if name.isupper() and _is_number(value):
+                yield Constant(f"{module}.{name}", ast.unparse(value), _words(body, number))
+
+
+def _named(statement: ast.Assign) -> list[tuple[str, ast.expr]]:
+    target, value = statement.targets[0], statement.value
+    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        return [(t.id, v) for t, v in zip(target.elts, value.elts, strict=True) if isinstance(t, ast.Name)]
+    return [(target.id, value)] if isinstance(target, ast.Name) else []
+
+
+def _is_number(value: ast.expr) -> bool:
+    numbers = [n for n in ast.walk(value) if isinstance(n, ast.Constant)]
+    return bool(numbers) and all(isinstance(n.value, (int, float)) for n in numbers)
+
+
+def _words(body: list[ast.stmt], number: int) -> str:
+    """Return the text after a statement, also where more statements stand between."""
+    for statement in body[number + 1 :]:
+        if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
+            return " ".join(str(statement.value.value).split())
+        if not isinstance(statement, ast.Assign):
+            break
+    return ""
+
+
+def page() -> str:
+    """Return the page."""
+    every = constants()
+    counts = {kind: sum(c.kind == kind for c in every) for kind in KINDS}
+    lines = [
+        "# The numbers that can change a verdict",
+        "",
+        "For the colleague who asks why a verdict fell as it did, or who wants to change a number. Written by",
+        "`python tests/constants.py`; a test holds that it is complete.",
+        "",
+        *(f"- **{kind}** ({counts[kind]}): {text}" for kind, text in KINDS.items()),
+        "",
+        "Beside these, `fmu_src/tirelab/diagnosis/calibration.json` holds the weights of the confidence with the",
+        "command that made them, and each effect's file its priors and its form error.",
+        "",
+        "| number | value | kind | what it is |",
+        "|---|---|---|---|",
+    ]
+    for c in sorted(every, key=lambda c: list(KINDS).index(c.kind)):
+        made = f" (`{CALIBRATED[c.place]}`)" if c.place in CALIBRATED else ""
+        words = c.words.replace("|", "\\|")
+        lines.append(f"| `{c.place}` | {c.value} | {c.kind}{made} | {words} |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(page(), end="")

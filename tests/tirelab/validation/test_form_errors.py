@@ -1,0 +1,37 @@
+"""The measured form errors: the formula, and that the declared ones are those that the command measures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from radialtire import CATALOGUE
+from tirelab.validation.form_errors import form_error_of, form_errors_of
+
+
+def test_error_of_normal_errors_is_their_standard_deviation_and_one_stuck_fit_does_not_move_it() -> None:
+    """|N(0, s)| has the median 0.6745 s; with 2001 values its standard error is 2.6 percent."""
+    errors = np.abs(np.random.default_rng(2).normal(0.0, 0.02, 2000))
+    found = form_errors_of({"inertia": [*errors.tolist(), 5.0]})
+    assert found["inertia"] == pytest.approx(0.02, rel=0.08)
+
+
+def test_every_effect_declares_a_form_error_between_a_hundredth_of_a_percent_and_a_tenth() -> None:
+    for name, effect in CATALOGUE.items():
+        assert 1e-4 <= effect.form_error <= 0.1, name
+
+
+@pytest.mark.slow
+def test_declared_form_errors_are_of_the_measured_size(tmp_path: Path) -> None:
+    """Another seed, few draws each: most effects within a factor of three of what they declare."""
+    errors: dict[str, list[float]] = {}
+    for number in range(80):
+        found = form_error_of(tmp_path, 99, number, None)
+        if found:
+            errors.setdefault(found["name"], []).append(found["error"])
+    measured = form_errors_of({n: e for n, e in errors.items() if len(e) >= 3 and n in CATALOGUE})
+    assert len(measured) >= 4
+    # An error far below the declared one is no fault: small ones are drowned by the noise.
+    within = [measured[n] <= 3.0 * CATALOGUE[n].form_error for n in measured]
+    assert np.mean(within) >= 0.75
