@@ -49,9 +49,9 @@ typedef struct { double time; double interval; bool first; double deflection; do
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
-typedef struct { double a; Vector3 b; } Tuple12;
-typedef struct { double v[7]; } Vector7;
 typedef struct { double v[8]; } Vector8;
+typedef struct { double a; Vector3 b; } Tuple13;
+typedef struct { double v[7]; } Vector7;
 typedef struct { double a; Vector8 b; } Tuple15;
 typedef struct { double v[6]; } Vector6;
 typedef struct { double a; Vector6 b; } Tuple17;
@@ -621,16 +621,36 @@ static void store_compression(double *n, Tuple3 track)
     n[179] = last;
 }
 
-/* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3). */
-static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector3 values)
+/* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x)). */
+static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector8 values)
 {
-    double bend = values.v[0], twist = values.v[1], reference = values.v[2];
+    double log_ratio;
+    double bend = values.v[0], twist = values.v[1], reference = values.v[2], first = values.v[3], second =
+        values.v[4], third = values.v[5], fourth = values.v[6], fifth = values.v[7];
     double x = instant.deflection;
-    if (x <= 0.0 || (bend == 0.0 && twist == 0.0)) {
+    if (x <= 0.0) {
         return (Tuple8){signal, state};
     }
-    double log_ratio = log(greater(x / reference, 0.01));
-    return (Tuple8){signal * exp(log_ratio * log_ratio * (bend + twist * log_ratio)), state};
+    double exponent = 0.0;
+    if (bend != 0.0 || twist != 0.0) {
+        log_ratio = log(greater(x / reference, 0.01));
+        exponent = log_ratio * log_ratio * (bend + twist * log_ratio);
+    }
+    double place = 2.5 * x / reference;
+    if (place <= 1.0) {
+        exponent = exponent + first;
+    } else if (place < 2.0) {
+        exponent = exponent + first + (place - 1.0) * (second - first);
+    } else if (place < 3.0) {
+        exponent = exponent + second + (place - 2.0) * (third - second);
+    } else if (place < 4.0) {
+        exponent = exponent + third + (place - 3.0) * (fourth - third);
+    } else if (place < 5.0) {
+        exponent = exponent + fourth + (place - 4.0) * (fifth - fourth);
+    } else {
+        exponent = exponent + fifth;
+    }
+    return (Tuple8){signal * exp(exponent), state};
 }
 
 /* effects.gas_compression.py: Multiply the factor by p / p0. */
@@ -650,7 +670,7 @@ static Tuple8 gas_compression_respond(double signal, Instant instant, Nothing st
 
 /* effects.mullins_softening.py: Multiply the factor by the softening; the state: largest measure, last counted
    position [m], path length [m]. */
-static Tuple12 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
+static Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
 {
     double share = values.v[0], ratio = values.v[1], width = values.v[2], sharpness = values.v[3], history =
         values.v[4], gathering = values.v[5], load = values.v[6];
@@ -674,7 +694,7 @@ static Tuple12 mullins_softening_respond(double signal, Instant instant, Vector3
         uncounted = 0.0;
     }
     if (share == 0.0 || x <= 0.0 || measure >= largest) {
-        return (Tuple12){signal, (Vector3){{largest, counted, path}}};
+        return (Tuple13){signal, (Vector3){{largest, counted, path}}};
     }
     double fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
     double below = (largest - measure) / (ratio * largest + fixed);
@@ -684,7 +704,7 @@ static Tuple12 mullins_softening_respond(double signal, Instant instant, Vector3
     if (gathering > 0.0) {
         share *= -expm1(-(path + uncounted) / gathering);
     }
-    return (Tuple12){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
+    return (Tuple13){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
 }
 
 /* effects.pressure_leak.py: Multiply the factor by the remaining pressure. */
@@ -713,29 +733,30 @@ static Tuple8 warm_up_respond(double signal, Instant instant, Nothing state, Vec
 static double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[12] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector3){{p[13], p[14], p[15]}});
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector8){{p[13], p[14], p[15], p[16],
+            p[17], p[18], p[19], p[20]}});
         signal = t1.a;
     }
-    if (p[16] != 0.0) {
-        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[17], p[18], p[19], p[20],
-            p[21]}});
+    if (p[21] != 0.0) {
+        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[22], p[23], p[24], p[25],
+            p[26]}});
         signal = t2.a;
     }
-    if (p[22] != 0.0) {
-        const Tuple12 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[23],
-            p[24], p[25], p[26], p[27], p[28], p[29]}});
+    if (p[27] != 0.0) {
+        const Tuple13 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[28],
+            p[29], p[30], p[31], p[32], p[33], p[34]}});
         signal = t3.a;
         Vector3 after = t3.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
-    if (p[30] != 0.0) {
-        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[31], p[32], p[33]}});
+    if (p[35] != 0.0) {
+        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[36], p[37], p[38]}});
         signal = t4.a;
     }
-    if (p[34] != 0.0) {
-        const Tuple8 t5 = warm_up_respond(signal, at, (Nothing){0}, (Vector3){{p[35], p[36], p[37]}});
+    if (p[39] != 0.0) {
+        const Tuple8 t5 = warm_up_respond(signal, at, (Nothing){0}, (Vector3){{p[40], p[41], p[42]}});
         signal = t5.a;
     }
     return signal;
@@ -917,9 +938,9 @@ static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, V
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[38] != 0.0) {
+    if (p[43] != 0.0) {
         const Tuple15 t1 = rate_independent_hysteresis_respond(signal, at, (Vector8){{s[9], s[10], s[11], s[12],
-            s[13], s[14], s[15], s[16]}}, (Vector7){{p[39], p[40], p[41], p[42], p[43], p[44], p[45]}});
+            s[13], s[14], s[15], s[16]}}, (Vector7){{p[44], p[45], p[46], p[47], p[48], p[49], p[50]}});
         signal = t1.a;
         Vector8 after = t1.b;
         n[9] = after.v[0];
@@ -931,14 +952,14 @@ static double through_parallel(double signal, Instant at, const double *p, const
         n[15] = after.v[6];
         n[16] = after.v[7];
     }
-    if (p[46] != 0.0) {
-        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[47], p[48], p[49],
-            p[50]}});
+    if (p[51] != 0.0) {
+        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[52], p[53], p[54],
+            p[55]}});
         signal = t2.a;
     }
-    if (p[51] != 0.0 && p[3] != 0.0) {
+    if (p[56] != 0.0 && p[3] != 0.0) {
         const Tuple17 t3 = viscoelastic_relaxation_flow(signal, at, (Vector6){{s[17], s[18], s[19], s[20], s[21],
-            s[22]}}, (Vector11){{p[52], p[53], p[54], p[55], p[56], p[57], p[58], p[59], p[60], p[61], p[62]}});
+            s[22]}}, (Vector11){{p[57], p[58], p[59], p[60], p[61], p[62], p[63], p[64], p[65], p[66], p[67]}});
         signal = t3.a;
         Vector6 flowed = t3.b;
         n[17] = flowed.v[0];
@@ -947,9 +968,9 @@ static double through_parallel(double signal, Instant at, const double *p, const
         n[20] = flowed.v[3];
         n[21] = flowed.v[4];
         n[22] = flowed.v[5];
-    } else if (p[51] != 0.0) {
+    } else if (p[56] != 0.0) {
         const Tuple17 t4 = viscoelastic_relaxation_respond(signal, at, (Vector6){{s[17], s[18], s[19], s[20], s[21],
-            s[22]}}, (Vector11){{p[52], p[53], p[54], p[55], p[56], p[57], p[58], p[59], p[60], p[61], p[62]}});
+            s[22]}}, (Vector11){{p[57], p[58], p[59], p[60], p[61], p[62], p[63], p[64], p[65], p[66], p[67]}});
         signal = t4.a;
         Vector6 after = t4.b;
         n[17] = after.v[0];
@@ -959,8 +980,8 @@ static double through_parallel(double signal, Instant at, const double *p, const
         n[21] = after.v[4];
         n[22] = after.v[5];
     }
-    if (p[63] != 0.0) {
-        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[64], p[65], p[66], p[67]}});
+    if (p[68] != 0.0) {
+        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[69], p[70], p[71], p[72]}});
         signal = t5.a;
     }
     return signal;
@@ -975,8 +996,8 @@ static Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vec
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[68] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[69]}});
+    if (p[73] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[74]}});
         signal = t1.a;
     }
     return signal;
@@ -1195,11 +1216,11 @@ static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[70] != 0.0 && p[3] != 0.0) {
+    if (p[75] != 0.0 && p[3] != 0.0) {
         const Tuple23 t1 = force_lag_flow(signal, at, (Vector35){{s[23], s[24], s[25], s[26], s[27], s[28], s[29],
             s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44],
             s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57]}},
-            (Vector3){{p[71], p[72], p[73]}});
+            (Vector3){{p[76], p[77], p[78]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         n[23] = flowed.v[0];
@@ -1237,11 +1258,11 @@ static double through_reading(double signal, Instant at, const double *p, const 
         n[55] = flowed.v[32];
         n[56] = flowed.v[33];
         n[57] = flowed.v[34];
-    } else if (p[70] != 0.0) {
+    } else if (p[75] != 0.0) {
         const Tuple23 t2 = force_lag_respond(signal, at, (Vector35){{s[23], s[24], s[25], s[26], s[27], s[28],
             s[29], s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43],
             s[44], s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57]}},
-            (Vector3){{p[71], p[72], p[73]}});
+            (Vector3){{p[76], p[77], p[78]}});
         signal = t2.a;
         Vector35 after = t2.b;
         n[23] = after.v[0];
@@ -1280,16 +1301,16 @@ static double through_reading(double signal, Instant at, const double *p, const 
         n[56] = after.v[33];
         n[57] = after.v[34];
     }
-    if (p[74] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[75]}});
+    if (p[79] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[80]}});
         signal = t3.a;
     }
-    if (p[76] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[77]}});
+    if (p[81] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[82]}});
         signal = t4.a;
     }
-    if (p[78] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[79], p[80]}});
+    if (p[83] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[84], p[85]}});
         signal = t5.a;
     }
     return signal;

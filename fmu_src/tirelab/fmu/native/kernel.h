@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "681c69c9864170a5" /* what stands where in p and s */
+#define LAYOUT "92c65f2033152fd9" /* what stands where in p and s */
 enum {
-    PARAMETERS = 81,
+    PARAMETERS = 86,
     STATES = 180,
     S_TIME = 0,
     S_STARTED = 4,
