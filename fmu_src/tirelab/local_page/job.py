@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..errors import TirelabError
+from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from .store import Upload
 
@@ -51,7 +52,9 @@ class Named(Reading):
     def __call__(self, file: Path | str) -> Any:
         """Return the recording in a file under its name."""
         recording = super().__call__(file)
-        return replace(recording, name=self.names.get(str(file), recording.name))
+        path, piece = split_piece(file)
+        name = self.names.get(str(path))
+        return recording if name is None else replace(recording, name=name + piece.suffix)
 
 
 class Job:

@@ -44,6 +44,7 @@
     box.append(title);
     if (r.problem) box.append(make("p", r.problem, { class: "alarm" }));
     if (r.facts.length) box.append(make("p", r.facts.map(([what, text]) => `${what} ${text}`).join(", "), { class: "facts" }));
+    for (const doubt of r.doubts) box.append(make("p", `doubtful: ${doubt}`, { class: "alarm" }));
     for (const note of r.notes) box.append(make("p", note, { class: "caption" }));
 
     const row = make("div", undefined, { class: "row" });
@@ -64,7 +65,8 @@
     details.open = Boolean(r.problem);
     details.append(make("summary", "Columns, units and surface"));
     const form = make("form"), table = make("table"), head = make("tr");
-    for (const text of ["Quantity", "Column", "Unit", "Sign"]) head.append(make("th", text, { scope: "col" }));
+    const given = (table, channel) => r.settings[table][channel] || (r.guess[table] || {})[channel] || "";
+    for (const text of ["Quantity", "Column", "Unit", "Sign", "Values", "Remark"]) head.append(make("th", text, { scope: "col" }));
     table.append(head);
     const fields = [];
     const channels = r.channels.length ? r.channels : [];
@@ -73,10 +75,10 @@
       line.append(make("th", c.required ? c.channel : `${c.channel} (optional)`, { scope: "row" }));
       const column = make("select", undefined, { "aria-label": `column of ${c.channel}` });
       column.append(make("option", c.column ? `as read: ${c.column}` : "none", { value: "" }));
-      const set = r.settings.columns[c.channel] || "", given = set.replace(/^[+-]/, "");
+      const set = given("columns", c.channel), number = set.replace(/^[+-]/, "");
       r.headers.forEach((text, i) => {
         const option = make("option", text, { value: `#${i + 1}` });
-        option.selected = given === `#${i + 1}`;
+        option.selected = number === `#${i + 1}`;
         column.append(option);
       });
       const sign = make("select", undefined, { "aria-label": `sign of ${c.channel}` });
@@ -85,16 +87,16 @@
         option.selected = value !== "" && set.startsWith(value);
         sign.append(option);
       }
-      const unit = make("input", undefined, { "aria-label": `unit of ${c.channel}`, size: 8, placeholder: c.unit, value: r.settings.units[c.channel] || "" });
+      const unit = make("input", undefined, { "aria-label": `unit of ${c.channel}`, size: 8, placeholder: c.unit, value: given("units", c.channel) });
       const cells = [make("td"), make("td"), make("td")];
       cells[0].append(column);
       cells[1].append(unit);
       if (c.channel === "deflection" || c.channel === "force") cells[2].append(sign);
-      line.append(...cells);
+      line.append(...cells, make("td", c.values), make("td", c.remark));
       table.append(line);
       fields.push([c.channel, column, unit, sign, `#${r.headers.indexOf(c.column) + 1}`]);
     });
-    const surface = make("label", "Surface, where no column has its radius: "), radius = make("input", undefined, { size: 12, placeholder: "flat, 25.4 cm", value: r.settings.radius });
+    const surface = make("label", "Surface, where no column has its radius: "), radius = make("input", undefined, { size: 12, placeholder: "flat, 25.4 cm", value: r.settings.radius || r.guess.radius || "" });
     surface.append(radius);
     const scroll = make("div", undefined, { class: "scroll" });
     scroll.append(table);

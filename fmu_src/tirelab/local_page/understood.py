@@ -1,47 +1,58 @@
-"""What a dropped file was understood to be: which column is which, in which unit, and what was done to the numbers."""
+"""What a dropped file was understood to be, as `tirelab inspect` says it, and what is guessed where it does not say."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ..errors import TirelabError
+from ..recordings.asking import IncompleteRecording
 from ..recordings.channels import CHANNELS
-from ..recordings.description import facts
-from ..recordings.files import why_no_recording
-from ..recordings.formats import open_table
+from ..recordings.choices import Choices
+from ..recordings.files import recording_files, why_no_recording
+from ..recordings.formats import Table, open_table
+from ..recordings.inspection import Inspection, inspect_recording
 from ..recordings.interpretation import plan_reading
 from ..recordings.metadata import read_sidecar
 from ..recordings.origin import Origin
-from ..recordings.recording import read_recording
+from ..recordings.pieces import split_piece
 
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 
 
 @dataclass(frozen=True)
 class Channel:
-    """A channel with the column that it was read from, and that column's unit; both empty where there is none."""
+    """A channel with the column that it was read from, and that column's unit; both empty where there is none.
+
+    values: from the least to the greatest; remark: of its step and its sign
+    """
 
     channel: str
     required: bool
     column: str = ""
     unit: str = ""
+    values: str = ""
+    remark: str = ""
 
 
 @dataclass(frozen=True)
 class Understood:
     """A file as it was read.
 
-    headers: of all its columns; channels: with the columns chosen; facts: samples, duration, ... as texts; notes: what
-    reading did to the numbers; problem: why it cannot be read, empty where it can
+    headers: of all its columns; channels: with the columns chosen; facts: table, samples, sampling, ... as texts
+    notes: what reading did to the numbers, and what the file says above its table; doubts: what is doubtful of them
+    problem: why it cannot be read, empty where it can; guess: columns, units and radius that may solve it
     """
 
     headers: tuple[str, ...]
     channels: tuple[Channel, ...]
     facts: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
     problem: str = ""
+    guess: Mapping[str, Any] = field(default_factory=dict)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it for JSON."""
@@ -61,21 +72,50 @@ def understood(file: Path, name: str) -> Understood:
     if (reason := why_no_recording(file)) is not None:
         raise TirelabError(f"{name} is no recording: {reason}")
     headers = tuple(header.text for header in table.headers)
-    nothing = tuple(Channel(c.name, c.required) for c in CHANNELS)
+    (first, *others), _ = recording_files([file])
     try:
-        plan = plan_reading(Origin(name), table, read_sidecar(file).overruled(None, None, None))
-        chosen = {
-            channel: (header.text, plan.conversions[channel].unit) for channel, header in plan.headers.items()
-        }
-        channels = tuple(Channel(c.name, c.required, *chosen.get(c.name, ())) for c in CHANNELS)
+        found = inspect_recording(first, Choices())
+    except IncompleteRecording as error:
+        asked = error.settings
+        guess = {"columns": dict(asked.columns), "units": dict(asked.units), "radius": asked.radius or ""}
+        problem = f"{_by_name(error.what, file, name)}; what may be meant is filled in below, check it"
+        return Understood(headers, _planned(first, table), problem=problem, guess=guess)
     except TirelabError as error:
-        return Understood(headers, nothing, problem=_by_name(str(error), file, name))
+        return Understood(headers, _planned(first, table), problem=_by_name(str(error), file, name))
+    more = (("tests", f"{1 + len(others)} side by side, each a recording; of the first:"),) if others else ()
+    notes = (*found.remarks, *(f"it says: {text}" for text in found.recording.provenance))
+    return Understood(
+        headers, _channels(found, headers), (*more, *found.facts), notes, found.recording.doubts
+    )
+
+
+def _channels(found: Inspection, headers: tuple[str, ...]) -> tuple[Channel, ...]:
+    rows = {row.channel: row for row in found.channels}
+    listed = []
+    for channel in CHANNELS:
+        row = rows.get(channel.name)
+        if row is None:
+            listed.append(Channel(channel.name, channel.required))
+            continue
+        # the column is told with its number, which the page's list of headers has by its order
+        column = next((h for i, h in enumerate(headers, 1) if row.column == f"{h} (#{i})"), "")
+        remark = ", ".join(filter(None, (f"step {row.step}" if row.step else "", row.remark)))
+        listed.append(Channel(channel.name, channel.required, column, row.unit, row.span, remark))
+    return tuple(listed)
+
+
+def _planned(file: Path, table: Table) -> tuple[Channel, ...]:
+    """Return the channels of a table that cannot be read yet, as far as its columns tell."""
+    path, piece = split_piece(file)
     try:
-        recording = read_recording(file)
-    except TirelabError as error:
-        return Understood(headers, channels, problem=_by_name(str(error), file, name))
-    told = facts(recording.time, recording.deflection, recording.surface_radius, recording.force)
-    return Understood(headers, channels, told, recording.notes)
+        settings = read_sidecar(path, trial=piece.trial).overruled(None, None, None)
+        plan = plan_reading(Origin(path.name), table, settings, piece.trial)
+    except TirelabError:
+        return tuple(Channel(c.name, c.required) for c in CHANNELS)
+    chosen = {
+        channel: (header.text, plan.conversions[channel].unit) for channel, header in plan.headers.items()
+    }
+    return tuple(Channel(c.name, c.required, *chosen.get(c.name, ())) for c in CHANNELS)
 
 
 def _by_name(sentence: str, file: Path, name: str) -> str:

@@ -67,11 +67,13 @@ def check_contract(content: Any) -> None:
 
     verdict = content["verdict"]
     keys = {"effects", "confidence", "alternatives", "unexplained", "summary", "separating_test"}
-    assert verdict.keys() - {"corrections"} == keys | {"remainder", "alternative_details"}
+    assert verdict.keys() - {"corrections"} == keys | {"remainder", "grounds", "alternative_details"}
+    assert all(map(math.isfinite, verdict["grounds"].values()))
     assert len(verdict["alternative_details"]) == len(verdict["alternatives"])
     assert ("corrections" in verdict) == verdict["unexplained"]
     for effect in verdict["effects"]:
-        assert effect.keys() - {"law"} == {"name", "parameters", "share", "probability", "size"}
+        assert effect.keys() - {"law"} == {"name", "parameters", "share", "probability", "grounds", "size"}
+        assert all(map(math.isfinite, effect["grounds"].values()))
         assert 0.0 < effect["size"] < content["fit"]["load"]
         assert 0.0 <= effect["probability"] <= 1.0
         assert effect["name"] in {*CATALOGUE, "recalibration"}

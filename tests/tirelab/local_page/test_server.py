@@ -150,6 +150,10 @@ def test_columns_and_units_are_corrected(served: Server, ride: bytes) -> None:
     assert status == 201
     assert "odd.csv" in told["problem"]
     assert told["headers"] == ["time [s]", "Kanal 2", "radius [cm]", "Kanal 4"]
+    # of two unknown columns the one of the larger numbers is guessed to be the force
+    assert told["guess"]["columns"] == {"deflection": "#2", "force": "#4"}
+    assert "--columns" not in told["problem"]
+    assert told["guess"]["units"]["force"] == "N"
     assert ask(served, "POST", "diagnose", b"")[0] == 422
     settings = {"columns": {"deflection": "#2", "force": "#4"}, "units": {"deflection": "cm", "force": "N"}}
     status, told, _ = ask(served, "POST", "recordings/1", json.dumps(settings).encode())
@@ -160,8 +164,30 @@ def test_columns_and_units_are_corrected(served: Server, ride: bytes) -> None:
     # millimetres instead of centimetres: a tenth as deep
     settings["units"]["deflection"] = "mm"
     told = ask(served, "POST", "recordings/1", json.dumps(settings).encode())[1]
-    depths = [float(dict(t["facts"])["deflection"].split(" to ")[1].split()[0]) for t in (plain, told)]
+    spans = [{c["channel"]: c["values"] for c in t["channels"]}["deflection"] for t in (plain, told)]
+    depths = [float(span.split(" to ")[1].split()[0]) for span in spans]
     assert depths[1] == pytest.approx(0.1 * depths[0], rel=0.02)
+
+
+def test_doubts_and_what_the_file_says_are_told(served: Server, ride: bytes) -> None:
+    """A force that is a thousand times too small for a tire, below a line about the test."""
+    head, *rows = ride.decode().splitlines()
+    small = [",".join([*row.split(",")[:3], f"{float(row.split(',')[3]) / 1e3:.6f}"]) for row in rows]
+    text = "\n".join(["Tyre: 27.5 x 2.4", "", head, *small]).encode()
+    told = ask(served, "POST", "recordings?name=small.csv", text)[1]
+    assert told["problem"] == ""
+    assert told["doubts"]
+    assert "it says: Tyre: 27.5 x 2.4" in told["notes"]
+    assert not any(note.startswith("doubtful") for note in told["notes"])
+    assert dict(told["facts"])["table"].startswith("names in row 3")
+
+
+def test_tests_side_by_side_are_recordings_each(served: Server, ride: bytes) -> None:
+    head, *rows = ride.decode().splitlines()
+    text = "\n".join([f"{head},{head}", *(f"{row},{row}" for row in rows)]).encode()
+    told = ask(served, "POST", "recordings?name=both.csv", text)[1]
+    assert told["problem"] == ""
+    assert dict(told["facts"])["tests"].startswith("2 side by side")
 
 
 @pytest.mark.parametrize(
