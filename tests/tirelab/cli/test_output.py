@@ -94,6 +94,32 @@ def test_a_tire_an_fmu_and_a_comparison_in_json(pressed: Path, tmp_path: Path) -
     assert Path(told["plot"]).is_file()
 
 
+def test_what_is_understood_and_the_laws_of_a_part_in_json(pressed: Path, tmp_path: Path) -> None:
+    recording = sorted(pressed.glob("*.csv"))[0]
+    target = tmp_path / "settings.toml"
+    shown = run("inspect", recording, "--out", target, "--json", "--quiet")
+    told = json.loads(shown.stdout)
+    assert (shown.stderr, told["settings"], told["picture"], told["refused"]) == ("", [str(target)], None, 0)
+    (one,) = told["recordings"]
+    assert one["file"] == str(recording)
+    assert {c["channel"] for c in one["channels"]} == {"time", "deflection", "radius", "force"}
+    assert not recording.with_name("recording.toml").exists()
+
+    out = tmp_path / "part.json"
+    laws = run("identify", recording, "--part", "power_gap", "--out", out, "--json", "--quiet")
+    told = json.loads(laws.stdout)
+    assert told["tire"] == str(out)
+    assert out.is_file()
+    assert {"linear", "power", "mf_tyre"} <= {law["name"] for law in told["laws"]}
+    assert min(law["rmse"] for law in told["laws"]) < 20.0  # 10 N of noise
+
+
+def test_a_native_fmu_in_json(tmp_path: Path) -> None:
+    told = json.loads(run("build", "--native", "--out", tmp_path, "--json", "--quiet").stdout)
+    assert Path(told["fmu"]).is_file()
+    assert {"linux64", "win64", "darwin64"} <= set(told["binaries"])
+
+
 def test_a_ride_and_the_article_in_json(tmp_path: Path) -> None:
     ride = run("ride", "--length", "5", "--obstacle", "log", "--out", tmp_path / "ride", "--json", "--quiet")
     told = json.loads(ride.stdout)

@@ -50,7 +50,7 @@ class TestCompare:
         time, deflection, force = loading()
         file = write_rows(tmp_path / "a.csv", "time [s],x [cm],F [N]", time, deflection, force / 1e3)
         for command in (["compare"], ["identify"]):
-            done = run(*command, file, "--radius", "flat", "--out", tmp_path / "out")
+            done = run(*command, file, "--radius", "flat", "--out", tmp_path / command[0])
             assert "about 1000 times too small for a tire at 25 mm of deflection: kN?" in " ".join(
                 done.output.split()
             )
@@ -66,9 +66,7 @@ class TestDiagnose:
     def test_parts_of_one_file_are_fitted_and_held_out(self, ride: Path, tmp_path: Path) -> None:
         end = float(ride.read_text(encoding="utf-8").splitlines()[-1].split(",")[0])
         half = f"{end / 2:g}s"
-        done = run(
-            *("diagnose", ride, "--fit", f"0s:{half}", "--held-out", f"{half}:", "--out", tmp_path, "--quiet")
-        )
+        done = run("diagnose", ride, "--fit", f"0s:{half}", "--held-out", f"{half}:", "--out", tmp_path)
         assert done.exit_code == 0, done.output
         content = json.loads((tmp_path / "diagnosis.json").read_text(encoding="utf-8"))
         assert {e["name"] for e in content["verdict"]["effects"]} == {"viscous_damping"}
