@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from radialtire import CATALOGUE
 
 
 def commands(repository: Path) -> tuple[str, str]:
@@ -20,14 +21,32 @@ def test_sections_stand_in_their_order(repository: Path) -> None:
     headings = re.findall(r"^## (.*)$", (repository / "README.md").read_text(), flags=re.MULTILINE)
     assert headings == [
         "Two commands",
-        "What comes out",
-        "How far it can be trusted",
-        "The FMU's interface",
+        "Your own tire in five minutes",
+        "The effects it can name",
+        "Which FMU",
         "The Python API",
-        "What it cannot do",
-        "Where is what",
+        "How far it can be trusted",
+        "Where the rest stands",
         "Contributing",
     ]
+
+
+def test_the_readme_is_short(repository: Path) -> None:
+    assert len((repository / "README.md").read_text().splitlines()) <= 150
+
+
+def test_every_effect_is_in_the_table_of_effects(repository: Path) -> None:
+    text = (repository / "README.md").read_text().lower()
+    names = [name for name, effect in CATALOGUE.items() if "law" not in effect.traits]
+    assert [n for n in names if f"| {n.replace('_', ' ')} |" not in text] == []
+
+
+def test_pages_lead_to_files(repository: Path) -> None:
+    pages = (repository / "examples" / "docs").glob("*.md")
+    links = [(p, t) for p in pages for t in re.findall(r"\]\(([^)#]+)\)", p.read_text())]
+    assert [
+        (p.name, t) for p, t in links if not t.startswith("https://") and not (p.parent / t).exists()
+    ] == []
 
 
 def test_links_lead_to_files(repository: Path) -> None:
