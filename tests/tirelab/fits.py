@@ -29,7 +29,9 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     problem = problem_of(dataset, values, plain=True)
     positions = problem.positions(values)
     slopes = np.ones((dataset.misfit.size, positions.size))
-    return Fit(problem, positions, 0.0, 1.0, problem.residual(positions), slopes, {}, True, 1)
+    residual = problem.residual(positions)
+    forms = np.zeros((residual.size, 0))
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, forms, float(residual @ residual), {}, True, 1)
 
 
 def model_of(effects: Mapping[str, Mapping[str, float]], radius: float = np.inf) -> FittedModel:

@@ -31,7 +31,7 @@ def explained(*sets: tuple[str, float, float], **more: Any) -> Any:
         model=SimpleNamespace(names=names),
         confounded=more.get("confounded", ()),
         hidden=more.get("hidden", ()),
-        excitation=SimpleNamespace(one_speed=more.get("one_speed", False)),
+        excitation=SimpleNamespace(timed=True, one_speed=more.get("one_speed", False)),
     )
 
 

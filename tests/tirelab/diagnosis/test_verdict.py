@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -94,7 +95,7 @@ def test_the_page_of_a_verdict_is_that_of_the_command(damped_run, tmp_path: Path
     damped_run.verdict.report(tmp_path / "page.html")
     own, other = (
         [
-            line
+            re.sub(r' Drive <a href="separating_test.csv".*?</a>[.]', "", line)
             for line in path.read_text(encoding="utf-8").splitlines()
             if line.startswith(("<h", "<tr", "<p")) and "explore-keys" not in line
         ]
@@ -104,6 +105,7 @@ def test_the_page_of_a_verdict_is_that_of_the_command(damped_run, tmp_path: Path
     assert own == other
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert "BicycleTire.fmu" not in page
+    assert "separating_test.csv" not in page
     assert "None" not in page
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import textwrap
@@ -199,7 +200,8 @@ def test_the_first_instance_starts_no_other_program(bench: Bench, tire: Path, tm
     alone = {"PATH": str(tmp_path), "VIRTUAL_ENV": "", "TIRELAB_LIBPYTHON": ""}
     seconds = min(float(bench.run("first", fmu=tire, environment=alone)) for _ in range(7))
     assert not (tmp_path / "started").exists()
-    assert seconds < 0.15
+    if os.getloadavg()[0] < (os.cpu_count() or 1):  # a busy machine says nothing of the time
+        assert seconds < 0.15
     print(f"first instance: {seconds:.3f} s")
 
 

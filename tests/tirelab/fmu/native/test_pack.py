@@ -1,0 +1,86 @@
+"""The native FMU as an archive, from the command, and in fmpy with its own solver."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from radialtire import CATALOGUE, TireModel
+from tirelab.fmu.native.pack import build_native_fmu
+
+DAMPED = TireModel(
+    effects=tuple(
+        (CATALOGUE[n], CATALOGUE[n].nominal) for n in ("viscous_damping", "viscoelastic_relaxation")
+    )
+)
+
+
+def test_the_same_tire_gives_the_same_bytes_in_any_folder(tmp_path: Path) -> None:
+    one, other = (build_native_fmu(DAMPED, tmp_path / name).path for name in ("one", "other"))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_corrected_tire_differs_by_data_only(tmp_path: Path) -> None:
+    one, other = (
+        build_native_fmu(TireModel(), tmp_path / "a").path,
+        build_native_fmu(DAMPED, tmp_path / "b").path,
+    )
+    with zipfile.ZipFile(one) as a, zipfile.ZipFile(other) as b:
+        assert a.namelist() == b.namelist()
+        changed = {name for name in a.namelist() if a.read(name) != b.read(name)}
+    assert changed == {"modelDescription.xml", "documentation/index.html", "resources/tire.dat"}
+
+
+def test_five_platforms_and_sources_in_200_kilobytes(repository: Path, tmp_path: Path) -> None:
+    command = [sys.executable, repository / "build_fmu.py", "--native", "--out", tmp_path]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "Co-Simulation and Model Exchange, valid" in done.stdout
+    fmu = tmp_path / "BicycleTire.fmu"
+    with zipfile.ZipFile(fmu) as archive:
+        names = set(archive.namelist())
+    assert {
+        "binaries/linux64/BicycleTire.so",
+        "binaries/aarch64-linux/BicycleTire.so",
+        "binaries/win64/BicycleTire.dll",
+        "binaries/darwin64/BicycleTire.dylib",
+        "binaries/aarch64-darwin/BicycleTire.dylib",
+        "sources/kernel.c",
+        "sources/buildDescription.xml",
+    } <= names
+    assert not any(name.endswith(".py") for name in names)
+    assert fmu.stat().st_size < 200_000
+
+
+def test_fmpys_cvode_finds_where_the_contact_begins(tmp_path: Path) -> None:
+    """The deflection passes 0 at 0.1 s and 0.3 s: two events, and the law's force on either side."""
+    fmu = build_native_fmu(TireModel(), tmp_path).path
+    time = np.linspace(0.0, 0.4, 401)
+    columns = [("time", float), ("deflection", float), ("surface_radius", float)]
+    rows = zip(time, 1e-3 * np.cos(5.0 * np.pi * time), np.full(time.size, 1e5), strict=True)
+    found = simulate_fmu(
+        str(fmu),
+        fmi_type="ModelExchange",
+        solver="CVode",
+        input=np.array(list(rows), dtype=columns),
+        output=["deflection", "radial_force"],
+        stop_time=0.4,
+        output_interval=0.01,
+        relative_tolerance=1e-6,
+    )
+    x = 100.0 * np.maximum(found["deflection"], 0.0)
+    np.testing.assert_allclose(found["radial_force"], 550.9 * x**1.422, rtol=1e-9, atol=1e-9)
+    assert len(found) > 41
+    for crossing in (0.1, 0.3):
+        assert np.min(np.abs(found["time"] - crossing)) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["deflection_rate", "deflection_acceleration", "motion_given"])
+def test_only_a_tire_that_needs_its_motion_has_inputs_for_it(tmp_path: Path, name: str) -> None:
+    for tire, expected in ((TireModel(), False), (DAMPED, True)):
+        with zipfile.ZipFile(build_native_fmu(tire, tmp_path).path) as archive:
+            assert (f'name="{name}"' in archive.read("modelDescription.xml").decode()) == expected
