@@ -105,6 +105,7 @@ def test_a_verdict_is_json(alike_verdict):
     assert set(content["verdict"]) == {
         "effects",
         "confidence",
+        "grounds",
         "alternatives",
         "alternative_details",
         "unexplained",

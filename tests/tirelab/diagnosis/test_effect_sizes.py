@@ -50,7 +50,7 @@ def test_what_the_baseline_has_stays() -> None:
 
 
 def test_a_refitted_law_takes_its_shape_with_it() -> None:
-    bent = tire(elastic_shape=(0.05, 0.0, 0.0125))
+    bent = tire(elastic_shape=(0.05, 0.0, 0.0125, *[0.0] * 5))
     assert without(REFITTED_LAW, bent, TireModel()).effects == ()
 
 

@@ -53,7 +53,7 @@ def test_the_bend_belongs_to_the_law_and_friction_does_not() -> None:
     def with_effects(**values: tuple[float, ...]) -> TireModel:
         return replace(CORRECTED, effects=tuple((CATALOGUE[n], v) for n, v in values.items()))
 
-    bent = with_effects(elastic_shape=(0.05, 0.0, 0.0125), force_offset=(40.0,))
+    bent = with_effects(elastic_shape=(0.05, 0.0, 0.0125, *[0.0] * 5), force_offset=(40.0,))
     (plain,) = law_changes(BASELINE, CORRECTED, {}, [pressed(math.inf)])
     (curved,) = law_changes(BASELINE, bent, {}, [pressed(math.inf)])
     x = curved.deflection[1:]
