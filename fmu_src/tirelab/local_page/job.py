@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..errors import TirelabError
-from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from .store import Upload
 
@@ -51,6 +50,8 @@ class Named(Reading):
 
     def __call__(self, file: Path | str) -> Any:
         """Return the recording in a file under its name."""
+        from ..recordings.pieces import split_piece  # its libraries take long to import
+
         recording = super().__call__(file)
         path, piece = split_piece(file)
         name = self.names.get(str(path))
