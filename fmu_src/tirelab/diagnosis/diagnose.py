@@ -67,7 +67,8 @@ def diagnose(
     before = [r.force - simulate(baseline, r) for r in fitted]
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
     grounds = grounds_of_verdict(explanation, validation)
-    confidence = probability("verdict", grounds)
+    # Sets that this motion cannot tell from the verdict have the same claim to its probability.
+    confidence = probability("verdict", grounds) / (1.0 + len(explanation.confounded))
     alternatives = alternatives_of(explanation, dataset, confidence)
     effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
     left = remainder_told(explanation.remainder, timed)
@@ -112,7 +113,8 @@ def _said(summary: str, contradiction: Contradiction | None) -> str:
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
     grounds = grounds_of_effect(effect, explanation, validation)
-    return replace(effect, probability=probability("effect", grounds), grounds=grounds)
+    without = sum(effect.name not in names for names in explanation.confounded)
+    return replace(effect, probability=probability("effect", grounds) / (1.0 + without), grounds=grounds)
 
 
 def _named(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:

@@ -123,7 +123,7 @@ def test_a_verdict_is_json(alike_verdict):
     }
     assert content["verdict"]["effects"][0]["parameters"]["damping"]["unit"] == "N.s/m"
     # 500 N s/m at 0.03 m/s RMS are several noises in each of 12 000 samples: there is no doubt of it.
-    assert content["verdict"]["effects"][0]["probability"] > 0.99
+    assert content["verdict"]["effects"][0]["probability"] > 0.95
     assert content["verdict"]["remainder"]["size"] < 0.75
 
 
