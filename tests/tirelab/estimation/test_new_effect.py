@@ -42,6 +42,7 @@ TREAD = Effect(
     imitators=(),
     source="made up",
     traits=("static", "localized"),
+    form_error=0.001,  # the recording below is made by this very form
 )
 
 
