@@ -92,6 +92,11 @@ class Job:
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGTERM if sys.platform == "win32" else signal.SIGINT)
 
+    def kill(self) -> None:
+        """End it at once where it does not listen."""
+        if self._process.poll() is None:
+            self._process.kill()
+
     def wait(self, seconds: float) -> None:
         """Wait until it has ended, so many seconds at most."""
         self._thread.join(seconds)
@@ -128,6 +133,8 @@ def main() -> None:
     def say(**what: str | bool) -> None:
         print(json.dumps(what), flush=True)
 
+    # A shell starts what runs in the background deaf to Ctrl-C, and its children too.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     order = Order(**json.loads(sys.stdin.read()))
     try:
         from ..diagnosis.diagnosis_run import run_diagnosis

@@ -32,6 +32,9 @@ LARGEST_TEXT = 20_000
 SILENT = 60.0
 """Seconds after which a connection that says nothing is closed."""
 
+PATIENCE = 20.0
+"""Seconds that a diagnosis gets to take away what it had begun, when the page ends."""
+
 PAGE = "page.html"
 
 _TYPES = {
@@ -145,7 +148,8 @@ class Workbench:
         """Stop what runs, and wait until it has cleaned up."""
         self.stop()
         if self.job is not None:
-            self.job.wait(10.0)
+            self.job.wait(PATIENCE)
+            self.job.kill()
 
     def _told(self, upload: Upload) -> dict[str, Any]:
         """Return what a recording was understood to be; read again where its file or settings changed."""

@@ -28,6 +28,11 @@ def run(*arguments: str | Path) -> Result:
     return result
 
 
+def hears_ctrl_c() -> None:
+    """Undo what a shell does to programs in its background."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def command(name: str) -> click.Command:
     found = main.get_command(click.Context(main), name)
     assert found is not None
@@ -182,7 +187,9 @@ def test_ctrl_c_ends_the_program_with_one_line_and_no_files(damped_run: Any, tmp
         "--out",
         tmp_path / "out",
     ]
-    with subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as program:
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=hears_ctrl_c
+    ) as program:
         assert program.stderr is not None
         for line in program.stderr:
             if line.startswith("fitting"):

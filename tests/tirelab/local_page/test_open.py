@@ -26,12 +26,19 @@ def chromium() -> Iterator[Any]:
         yield opened
 
 
+def hears_ctrl_c() -> None:
+    """Undo what a shell does to programs in its background."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.fixture
 def opened(tmp_path: Path) -> Iterator[tuple[str, Path]]:
     """The program as a user starts it: the address that it prints, and its folder."""
     folder = tmp_path / "desk"
     words = [sys.executable, "-m", "tirelab", "open", str(folder), "--no-browser"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=hears_ctrl_c
+    ) as program:
         assert program.stdout is not None
         address = program.stdout.readline().strip()
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{20,}/", address)
