@@ -113,8 +113,7 @@ def _said(summary: str, contradiction: Contradiction | None) -> str:
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
     grounds = grounds_of_effect(effect, explanation, validation)
-    without = sum(effect.name not in names for names in explanation.confounded)
-    return replace(effect, probability=probability("effect", grounds) / (1.0 + without), grounds=grounds)
+    return replace(effect, probability=probability("effect", grounds), grounds=grounds)
 
 
 def _named(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:

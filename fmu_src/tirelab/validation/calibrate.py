@@ -31,6 +31,7 @@ from ..diagnosis.diagnosis_file import NOTHING
 from ..diagnosis.verdict import Verdict
 from ..recordings.recording import read_recording
 from .blind_trials import ALL_KINDS, BlindTrials
+from .calibration import skill as brier_skill
 from .commitment import draw_and_commit
 from .folders import Folders, read_json
 from .score import Score, right_sets, sizes_over_noise
@@ -92,9 +93,9 @@ def probabilities(rows: Sequence[Row], weights: Mapping[str, float]) -> FloatArr
 
 
 def skill(stated: FloatArray, right: FloatArray) -> float:
-    """Return 1 - sum (p - hit)^2 / sum (rate - hit)^2 (Brier skill over the constant rate)."""
-    constant = float(np.sum((right.mean() - right) ** 2))
-    return 1.0 - float(np.sum((stated - right) ** 2)) / constant if constant > 0.0 else float("nan")
+    """Return the Brier skill over the constant rate (`calibration.skill`)."""
+    pairs = zip(stated.tolist(), right.astype(bool).tolist(), strict=True)
+    return brier_skill([[pair] for pair in pairs]).value
 
 
 def skill_left_out(rows: Sequence[Row], names: Sequence[str]) -> float:
