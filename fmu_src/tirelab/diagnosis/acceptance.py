@@ -2,7 +2,8 @@
 
 Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so it may leave more. What is
 ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of no
-more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted.
+more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted. An effect
+of the deflection alone is not named beside a refitted law on one surface, where that law alone leaves as little.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from scipy.stats import ttest_1samp
 
 from ..estimation.explanation import Explanation
+from ..names import REFITTED_LAW
 from ..preprocessing.dataset import Dataset, Recorded
 from ..preprocessing.kinematics import FloatArray
 from .held_out import HeldOut, given, rmse, split
@@ -40,7 +42,7 @@ def accept(
     before [N]: what the baseline leaves of each recording
     """
     order = explanation.in_order(CONSIDERED)
-    likely = [explanation.of(names) for names in (order if () in order else (*order, ()))]
+    likely = [_plainer(explanation.of(names)) for names in (order if () in order else (*order, ()))]
     left = [rmse(e.residuals) for e in likely]
     for chosen, own in zip(likely, left, strict=True):
         smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))
@@ -51,6 +53,18 @@ def accept(
             return chosen, validation
     nothing = explanation.of(())
     return nothing, _validated(nothing, recordings, held_out, dataset, before)
+
+
+def _plainer(chosen: Explanation) -> Explanation:
+    """Return the explanation without the effects that the refitted law beside them could be, if that leaves as little."""
+    names = chosen.model.names
+    if REFITTED_LAW not in names:
+        return chosen
+    less = [n for n in names if n == REFITTED_LAW or not chosen.excitation.within_law(n)]
+    if set(less) == set(names) or not chosen.compared(less):
+        return chosen
+    plainer = chosen.of(less)
+    return plainer if rmse(plainer.residuals) * NO_WORSE <= rmse(chosen.residuals) else chosen
 
 
 def is_worse(validation: HeldOut) -> bool:

@@ -20,12 +20,13 @@ from ..regressors.excitation import Excitation, excitation_of
 from ..regressors.law import LAW, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.signature import in_other_noise, signatures_of
-from ..selection.discrepancy import FLOOR_OF_FORMS, discrepancy_of
+from ..selection.discrepancy import discrepancy_of
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import search
 from ..simulation.simulate import simulate
 from .findings import Estimate, Evidence, FittedModel, NamedEffect, Refitted
 from .fit import Fit, fitted
+from .form_error import usual_form_error
 from .noise import with_saturated_noise
 from .ranking import BEGUN, Ranking, ranked
 from .remainder import Remainder, remainder_of
@@ -71,6 +72,10 @@ class Explanation:
     def evaluations(self) -> int:
         """Simulations of the final fit."""
         return self.model.fit.evaluations
+
+    def compared(self, names: Sequence[str]) -> bool:
+        """Whether a set was fitted."""
+        return self._ranking.of(frozenset(names)) is not None
 
     def of(self, names: Sequence[str]) -> Explanation:
         """Return the explanation by another set that was fitted; raises ValueError where it was not."""
@@ -132,7 +137,7 @@ def explain_misfit(
     raw = (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
     quiet = with_saturated_noise(dataset, raw)
     signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
-    rough = discrepancy_of(quiet.misfit, FLOOR_OF_FORMS)
+    rough = discrepancy_of(quiet.misfit, usual_form_error())
     equations = normal_equations(signatures, quiet.misfit)
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
     progress("fitting the sets that can win")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -12,7 +13,7 @@ from radialtire import TireModel
 from ..regressors.dataset import Dataset
 from ..regressors.signature import size_of
 from ..selection.discrepancy import Discrepancy
-from .form_error import form_errors, smooth_functions
+from .form_error import form_error, form_errors, smooth_functions
 from .laplace import Linearised, laplace_evidence
 from .least_squares import Minimum, Objective, begun, minimised
 from .problem import EstimationProblem, Values, problem_of
@@ -38,7 +39,8 @@ class Fit:
     """A fitted set.
 
     values: of every effect; log_likelihood: marginal (Laplace); variance: V of the discrepancy
-    residual (m,), jacobian (m, k): in units of the noise; forms (m, f): columns of the form errors, scaled
+    residual (m,), jacobian (m, k): in units of the noise; near: what the evidence is made of
+    forms (m, f): columns of the form errors, scaled
     unformed: sum of squares that the form errors leave, the parameters giving way
     sizes: root mean squares of what each effect adds to the others; settled: whether the fit came to rest
     """
@@ -49,6 +51,7 @@ class Fit:
     variance: float
     residual: FloatArray
     jacobian: FloatArray
+    near: Linearised
     forms: FloatArray
     unformed: float
     sizes: Mapping[str, float]
@@ -79,6 +82,22 @@ class Fit:
     def power(self) -> float:
         """Sum of squares left, in units of the noise."""
         return float(self.residual @ self.residual)
+
+    @property
+    def form_error(self) -> float:
+        """Root mean square of what the forms of its effects may miss, in units of the noise."""
+        return math.sqrt(sum((form_error(name) * size) ** 2 for name, size in self.sizes.items()))
+
+    def judged(self, discrepancy: Discrepancy) -> Fit:
+        """Return the fit as it is judged under another discrepancy."""
+        evidence = laplace_evidence(self.near, discrepancy.above(self.problem.dataset.gauge_error))
+        return replace(
+            self,
+            log_likelihood=evidence.log_likelihood,
+            variance=evidence.variance,
+            forms=self.near.forms * evidence.scale,
+            unformed=float(evidence.unformed @ evidence.unformed),
+        )
 
 
 def fitted(
@@ -124,20 +143,22 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
     near = Linearised(
         found.residual, found.jacobian[:, ~held], found.positions[~held], forms, problem.groups[~held]
     )
-    evidence = laplace_evidence(near, discrepancy.above(problem.dataset.gauge_error))
-    return Fit(
+    nothing = np.zeros((found.residual.size, 0))
+    fit = Fit(
         problem,
         found.positions,
-        evidence.log_likelihood,
-        evidence.variance,
+        -np.inf,
+        1.0,
         found.residual,
         found.jacobian,
-        forms * evidence.scale,
-        float(evidence.unformed @ evidence.unformed),
+        near,
+        nothing,
+        np.inf,
         {name: size_of(curve) for name, curve in curves.items()},
         found.settled,
         found.evaluations,
     )
+    return fit.judged(discrepancy)
 
 
 def _held(problem: EstimationProblem, found: Minimum) -> NDArray[np.bool_]:

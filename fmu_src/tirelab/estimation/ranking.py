@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..regressors.dataset import Dataset
 from ..regressors.law import LAW
 from ..regressors.signature import Signature
-from ..selection.discrepancy import Discrepancy
+from ..selection.discrepancy import Discrepancy, discrepancy_of
 from ..selection.search import PRIOR_ODDS
 from .fit import Fit, fitted
 from .initial_values import additions, promises
@@ -44,6 +44,9 @@ MOST_EFFECTS = 6
 
 PROMISING, SWAPPED = 5, 2
 """Candidates put in beside a fitted set, and in the place of one of its own, the most promising first."""
+
+FLOOR_MOVED = 1.2
+"""Factor to another floor from which on the sets are judged again."""
 
 HOPE = 8.0
 """A promise may err by this much in log posterior before it is not followed."""
@@ -89,10 +92,28 @@ class _Board:
 
     dataset: Dataset
     signatures: Mapping[str, Signature]
+    noise: Discrepancy
     discrepancy: Discrepancy
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
+    floor: float = 0.0
+    judged: int = 0
+
+    def floored(self) -> bool:
+        """Judge all sets under what the forms of the best one may miss; return whether that is another floor.
+
+        One floor for all sets: one of their own would favour those whose forms are thought to be good.
+        """
+        floor = self.fits[self.best()].form_error
+        if self.judged == self.count or (
+            self.judged and 1.0 / FLOOR_MOVED < floor / self.floor < FLOOR_MOVED
+        ):
+            return False
+        self.floor, self.judged = floor, self.count
+        self.discrepancy = self.noise.above(floor)
+        self.fits = {names: fit.judged(self.discrepancy) for names, fit in self.fits.items()}
+        return True
 
     def posterior(self, names: frozenset[str]) -> float:
         return self.fits[names].log_likelihood - PRIOR_ODDS * len(names)
@@ -136,11 +157,13 @@ def ranked(
     starts: sets to begin with, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
     alike: effects that the motion cannot tell from one; the best set is fitted with each of them in its place
     """
-    board = _Board(dataset, {s.name: s for s in signatures}, discrepancy)
+    noise = discrepancy_of(dataset.misfit, 0.0)
+    board = _Board(dataset, {s.name: s for s in signatures}, noise, discrepancy)
     board.fit([{}], discrepancy.highest)
     for variance, parts in starts:
         if parts and len(parts) <= MOST_EFFECTS:
             board.fit([_start(parts, board)], variance)
+    board.floored()
     followed: set[frozenset[str]] = set()
     while board.count < MOST_FITS:
         best = board.posterior(board.best())
@@ -150,6 +173,8 @@ def ranked(
         names = max(open_sets, key=board.posterior)
         followed.add(names)
         _follow(board, names)
+        if board.floored():
+            followed.clear()
     _nested(board)
     best_names = board.best()
     for name in sorted(best_names - {LAW}):

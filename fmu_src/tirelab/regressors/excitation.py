@@ -29,12 +29,13 @@ STILL = 0.02
 @dataclass(frozen=True)
 class Excitation:
     """returns: part of the variance of time between visits of the same deflection in the same direction; speeds: spread
-    of the speed there; timed: whether the samples' times are known.
+    of the speed there; timed: whether the samples' times are known; surfaces: how many were pressed on.
     """
 
     returns: float
     speeds: float
     timed: bool = True
+    surfaces: int = 1
 
     @property
     def one_speed(self) -> bool:
@@ -63,6 +64,12 @@ class Excitation:
         loops = (n for n, effect in CATALOGUE.items() if "loop" in effect.traits and n != name)
         return tuple(n for n in loops if not self.hidden(n))
 
+    def within_law(self, name: str) -> bool:
+        """Whether a law of another shape could be all that an effect of this name is: it depends on the deflection
+        alone, which on one surface is all that a law can be.
+        """
+        return self.surfaces == 1 and "static" in CATALOGUE[name].traits
+
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
     """Return what the motion of all recordings can show; on one surface they show their speeds together."""
@@ -75,7 +82,7 @@ def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
         _spread_within(np.concatenate([v.speed for v in same]), np.concatenate([v.cell for v in same]))
         for same in together.values()
     ]
-    return Excitation(max(returns), max(speeds), timed)
+    return Excitation(max(returns), max(speeds), timed, len(dataset.radii))
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,6 @@ FloatArray = NDArray[np.float64]
 EFFECTIVE = 30.0
 """Effective samples of a discrepancy."""
 
-FLOOR_OF_FORMS = 0.018
-"""Part of the misfit that a right set may leave without a shape: the form errors of all effects together, measured."""
-
 GRID = 40
 """Variances that are tried."""
 
