@@ -106,9 +106,8 @@ class _Board:
         One floor for all sets: one of their own would favour those whose forms are thought to be good.
         """
         floor = self.fits[self.best()].form_error
-        if self.judged == self.count or (
-            self.judged and 1.0 / FLOOR_MOVED < floor / self.floor < FLOOR_MOVED
-        ):
+        near = self.floor / FLOOR_MOVED <= floor <= self.floor * FLOOR_MOVED
+        if self.judged == self.count or (self.judged and near):
             return False
         self.floor, self.judged = floor, self.count
         self.discrepancy = self.noise.above(floor)
