@@ -56,7 +56,7 @@ def accept(
 
 
 def _plainer(chosen: Explanation) -> Explanation:
-    """Return the explanation without the effects that the refitted law beside them could be, if that leaves as little."""
+    """Return the explanation without effects that the refitted law beside them could be, if it leaves as little."""
     names = chosen.model.names
     if REFITTED_LAW not in names:
         return chosen

@@ -18,7 +18,6 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect
@@ -55,7 +54,7 @@ def grounds_of_verdict(explanation: Explanation, validation: HeldOut) -> dict[st
 
     odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
     the noise); transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion
-    cannot tell from it); imitated: effects of the deflection alone (the law too) beside others on one surface
+    cannot tell from it); imitated: effects beside a refitted law that could be a part of it
     effects: their number; loudness: ln of the misfit over the noise
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
@@ -112,13 +111,8 @@ def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
 
 
 def _imitated(name: str, names: list[str], explanation: Explanation) -> bool:
-    """Whether an effect of the deflection alone stands beside others on one surface: forms that they share."""
-    others = [n for n in names if n != name and _static(n)]
-    return _static(name) and bool(others) and len(explanation.model.radii) == 1
-
-
-def _static(name: str) -> bool:
-    return name == REFITTED_LAW or "static" in CATALOGUE[name].traits
+    """Whether a law of another shape could be what an effect is, and stands beside it."""
+    return name != REFITTED_LAW and REFITTED_LAW in names and explanation.excitation.within_law(name)
 
 
 def _limited(odds: float) -> float:

@@ -67,8 +67,7 @@ def diagnose(
     before = [r.force - simulate(baseline, r) for r in fitted]
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
     grounds = grounds_of_verdict(explanation, validation)
-    # Sets that this motion cannot tell from the verdict have the same claim to its probability.
-    confidence = probability("verdict", grounds) / (1.0 + len(explanation.confounded))
+    confidence = probability("verdict", grounds)
     alternatives = alternatives_of(explanation, dataset, confidence)
     effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
     left = remainder_told(explanation.remainder, timed)
