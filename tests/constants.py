@@ -2,14 +2,17 @@
 
 Read from the source of the rooms between a recording and its verdict: every upper-case number there, its value and its
 own words. Where it comes from stands in KINDS below; tests/test_constants.py holds that none is missing and that the
-page is what this prints.
+page is what this prints. What happens to verdicts when a number is halved or doubled is in sensitivity.json, which
+tests/sensitivity.py wrote.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 SOURCE = Path(__file__).parents[1] / "fmu_src" / "tirelab"
@@ -25,6 +28,23 @@ WORDS_ONLY = (
     "verdict.py",
 )
 """Modules of these rooms whose numbers cannot change a verdict."""
+
+BESIDE = (
+    "diagnosis/alternatives.FASTER",
+    "diagnosis/alternatives.LONG_ENOUGH",
+    "diagnosis/alternatives.REACHED",
+    "diagnosis/alternatives.STILL",
+    "diagnosis/binning",
+    "diagnosis/contradiction",
+    "diagnosis/diagnose",
+    "diagnosis/discriminating_test",
+    "diagnosis/localization",
+    "diagnosis/residual_model",
+    "preprocessing/dataset",
+)
+"""Modules or numbers of these rooms that make what is shown beside a verdict: places, the next test, reasons."""
+
+SENSITIVITY = Path(__file__).parent / "sensitivity.json"
 
 KINDS: dict[str, str] = {
     "derived": "from a definition, a theorem, a cited source or the numbers' own precision",
@@ -65,9 +85,7 @@ DERIVED = (
     "diagnosis/alternatives.CREDIBLE",
 )
 
-CALIBRATED = {
-    "selection/discrepancy.FLOOR_OF_FORMS": "python -m tirelab.validation.form_errors --seed 424242 --draws 260",
-}
+CALIBRATED: dict[str, str] = {}
 
 BUDGET = (
     "preprocessing/dataset.ROWS",
@@ -138,6 +156,26 @@ class Constant:
             return "calibrated"
         return "budget" if self.place in BUDGET else "chosen"
 
+    @property
+    def beside(self) -> bool:
+        """Whether it makes what is shown beside a verdict, and no verdict."""
+        return any(self.place == b or self.place.startswith(b + ".") for b in BESIDE)
+
+    @property
+    def tried(self) -> Mapping[str, tuple[int, int]]:
+        """Of the factors 0.5 and 2.0: verdicts that became others, and trials; empty where it was not tried."""
+        return _sensitivity().get(self.place, {})
+
+
+@cache
+def _sensitivity() -> Mapping[str, Mapping[str, tuple[int, int]]]:
+    if not SENSITIVITY.exists():
+        return {}
+    found: dict[str, dict[str, tuple[int, int]]] = {}
+    for row in json.loads(SENSITIVITY.read_text(encoding="utf-8"))["numbers"]:
+        found.setdefault(row["number"], {})[str(row["factor"])] = (row["other"], row["trials"])
+    return found
+
 
 def constants() -> list[Constant]:
     """Return all numbers of the rooms, in their order."""
@@ -184,26 +222,63 @@ def _words(body: list[ast.stmt], number: int) -> str:
 def page() -> str:
     """Return the page."""
     every = constants()
-    counts = {kind: sum(c.kind == kind for c in every) for kind in KINDS}
+    own = [c for c in every if not c.beside]
+    counts = {kind: sum(c.kind == kind for c in own) for kind in KINDS}
+    open_ones = [c for c in own if c.kind != "derived"]
+    moved = [c for c in open_ones if any(other for other, _ in c.tried.values())]
     lines = [
         "# The numbers that can change a verdict",
         "",
         "For the colleague who asks why a verdict fell as it did, or who wants to change a number. Written by",
         "`python tests/constants.py`; a test holds that it is complete.",
         "",
-        *(f"- **{kind}** ({counts[kind]}): {text}" for kind, text in KINDS.items()),
+        *(f"- **{kind}** ({counts[kind]}): {text}" for kind, text in KINDS.items() if counts[kind]),
         "",
+        *_told(len(open_ones), moved),
         "Beside these, `fmu_src/tirelab/diagnosis/calibration.json` holds the weights of the confidence with the",
         "command that made them, and each effect's file its priors and its form error.",
         "",
+        "| number | value | kind | halved | doubled | what it is |",
+        "|---|---|---|---|---|---|",
+    ]
+    for c in sorted(own, key=lambda c: (list(KINDS).index(c.kind), -sum(o for o, _ in c.tried.values()))):
+        made = f" (`{CALIBRATED[c.place]}`)" if c.place in CALIBRATED else ""
+        halved, doubled = (_counted(c, factor) for factor in ("0.5", "2.0"))
+        lines.append(f"| `{c.place}` | {c.value} | {c.kind}{made} | {halved} | {doubled} | {_plain(c)} |")
+    lines += [
+        "",
+        "## Numbers that make what is shown beside a verdict",
+        "",
+        "Places of the misfit, the next test, reasons and regressions of a remainder; no verdict depends on them.",
+        "",
         "| number | value | kind | what it is |",
         "|---|---|---|---|",
+        *(f"| `{c.place}` | {c.value} | {c.kind} | {_plain(c)} |" for c in every if c.beside),
     ]
-    for c in sorted(every, key=lambda c: list(KINDS).index(c.kind)):
-        made = f" (`{CALIBRATED[c.place]}`)" if c.place in CALIBRATED else ""
-        words = c.words.replace("|", "\\|")
-        lines.append(f"| `{c.place}` | {c.value} | {c.kind}{made} | {words} |")
     return "\n".join(lines) + "\n"
+
+
+def _told(count: int, moved: list[Constant]) -> list[str]:
+    if not SENSITIVITY.exists():
+        return []
+    run = json.loads(SENSITIVITY.read_text(encoding="utf-8"))
+    return [
+        f"Each of the {count} that are not derived was halved and doubled, and {run['each']} of {run['trials']} blind",
+        f"trials diagnosed again (`python tests/sensitivity.py --seed {run['seed']} --trials {run['trials']} --each",
+        f"{run['each']}`): {len(moved)} of them changed a verdict at all. The columns tell how many.",
+        "",
+    ]
+
+
+def _counted(c: Constant, factor: str) -> str:
+    if factor not in c.tried:
+        return ""
+    other, trials = c.tried[factor]
+    return f"{other} of {trials}"
+
+
+def _plain(c: Constant) -> str:
+    return c.words.replace("|", "\\|")
 
 
 if __name__ == "__main__":

@@ -177,7 +177,7 @@ def main(seed: int, trials: int, each: int, out: Path, jobs: int, child: bool) -
     if child:
         _child()
         return
-    numbers = [c for c in constants() if c.kind != "derived"]
+    numbers = [c for c in constants() if c.kind != "derived" and not c.beside]
     content: dict[str, Any] = {"seed": seed, "trials": trials, "each": each, "numbers": []}
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(jobs) as workers:
         folder = Path(name)
