@@ -42,7 +42,7 @@ def accept(
     before [N]: what the baseline leaves of each recording
     """
     order = explanation.in_order(CONSIDERED)
-    likely = [_plainer(explanation.of(names)) for names in (order if () in order else (*order, ()))]
+    likely = [_plainer(explanation, names) for names in (order if () in order else (*order, ()))]
     left = [rmse(e.residuals) for e in likely]
     for chosen, own in zip(likely, left, strict=True):
         smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))
@@ -55,15 +55,13 @@ def accept(
     return nothing, _validated(nothing, recordings, held_out, dataset, before)
 
 
-def _plainer(chosen: Explanation) -> Explanation:
-    """Return the explanation without effects that the refitted law beside them could be, if it leaves as little."""
-    names = chosen.model.names
-    if REFITTED_LAW not in names:
+def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
+    """Return a set without effects that the refitted law beside them could be, if it leaves as little; else the set."""
+    chosen, static = explanation.of(names), explanation.excitation.within_law
+    less = [n for n in names if n == REFITTED_LAW or not static(n)]
+    if REFITTED_LAW not in names or len(less) == len(names) or not explanation.compared(less):
         return chosen
-    less = [n for n in names if n == REFITTED_LAW or not chosen.excitation.within_law(n)]
-    if set(less) == set(names) or not chosen.compared(less):
-        return chosen
-    plainer = chosen.of(less)
+    plainer = explanation.of(less)
     return plainer if rmse(plainer.residuals) * NO_WORSE <= rmse(chosen.residuals) else chosen
 
 

@@ -12,7 +12,9 @@ import pytest
 from drives import Drive, damped, flat_force
 from radialtire import CATALOGUE, TireModel
 from tirelab.diagnosis.acceptance import CONSIDERED, accept
+from tirelab.names import REFITTED_LAW
 from tirelab.preprocessing.dataset import dataset_of
+from tirelab.regressors.excitation import Excitation
 
 FITTED, KEPT = damped(1, samples=2000), damped(2, samples=2000)
 BARE = damped(3, damping=0.0, samples=2000)
@@ -46,9 +48,17 @@ class Made:
 
 @dataclass(frozen=True)
 class Ranked:
-    """Explanations, the likeliest first."""
+    """Explanations, the likeliest first, of recordings on so many surfaces."""
 
     sets: tuple[Made, ...]
+    surfaces: int = 1
+
+    @property
+    def excitation(self) -> Excitation:
+        return Excitation(0.0, 1.0, surfaces=self.surfaces)
+
+    def compared(self, names: Sequence[str]) -> bool:
+        return any(set(s.names) == set(names) for s in self.sets)
 
     def in_order(self, most: int) -> list[tuple[str, ...]]:
         return [s.names for s in self.sets[:most]]
@@ -61,9 +71,9 @@ def made(names: str, left: float, damping: float = 0.0) -> Made:
     return Made(tuple(names.split()), left, damper(damping) if damping else TireModel())
 
 
-def delivered(*sets: Made, held_out: Drive = KEPT) -> Any:
+def delivered(*sets: Made, held_out: Drive = KEPT, surfaces: int = 1) -> Any:
     before = [FITTED.force - flat_force(FITTED.deflection)]
-    ranked: Any = Ranked(sets)
+    ranked: Any = Ranked(sets, surfaces)
     return accept(ranked, [FITTED], [held_out], dataset_of([FITTED], TireModel()), before)
 
 
@@ -105,6 +115,31 @@ def test_in_the_place_of_a_refused_set_comes_the_next_one() -> None:
         made("viscous_damping", 5.0, 5000.0), made("inertia", 5.0, 500.0), made("", 15.0), held_out=KEPT
     )
     assert chosen.names == ("inertia",)
+
+
+@pytest.mark.parametrize(
+    ("alone", "surfaces", "names"),
+    [
+        (5.2, 1, {REFITTED_LAW, "viscous_damping"}),  # the law leaves as little without the spring
+        (
+            9.0,
+            1,
+            {REFITTED_LAW, "viscous_damping", "series_compliance"},
+        ),  # no law follows what the spring does
+        (
+            5.2,
+            2,
+            {REFITTED_LAW, "viscous_damping", "series_compliance"},
+        ),  # two surfaces tell a spring from a law
+    ],
+)
+def test_on_one_surface_a_static_effect_stands_beside_a_refitted_law_only_where_no_law_does_it(
+    alone: float, surfaces: int, names: set[str]
+) -> None:
+    together = made(f"{REFITTED_LAW} series_compliance viscous_damping", 5.0, 500.0)
+    plain = made(f"{REFITTED_LAW} viscous_damping", alone, 500.0)
+    chosen, _ = delivered(together, plain, made("", 15.0), surfaces=surfaces)
+    assert set(chosen.names) == names
 
 
 def test_nothing_is_always_accepted() -> None:
