@@ -52,13 +52,14 @@ def at_reading(parameter: Parameter, scales: Scales) -> float:
 def drawn(effect: Effect, scales: Scales, count: int) -> tuple[list[list[float]], FloatArray]:
     """Return `count` quasi-random sets of values (Sobol), and a number of 0 to 1 for each that sizes it.
 
-    Every other set is of the plain form: what it does without stays at its start.
+    The first half is of the plain form: what it does without stays at its start. Halves of a Sobol sequence fill the
+    priors evenly; every other one of its sets would not.
     """
     names = effect.parameters
     shares = qmc.Sobol(len(names) + 1, seed=1).random(count)
     shares = np.clip(shares, 1e-3, 1.0 - 1e-3)
     sets = [
-        [_one(p, float(row[i]), scales, plain=bool(k % 2 == 0)) for i, p in enumerate(names)]
+        [_one(p, float(row[i]), scales, plain=k < count // 2) for i, p in enumerate(names)]
         for k, row in enumerate(shares)
     ]
     return sets, shares[:, -1]
