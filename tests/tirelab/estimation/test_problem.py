@@ -1,0 +1,91 @@
+"""Free parameters and the problem that they make: positions on the priors' axes and back, tires, responses."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from drives import damped
+from radialtire import CATALOGUE, TireModel
+from tirelab.estimation.free_parameter import FreeParameter, parameters_of_effect, parameters_of_law
+from tirelab.estimation.problem import law_start, law_surfaces, problem_of, tire_of, with_readings
+from tirelab.names import REFITTED_LAW
+from tirelab.regressors.dataset import Dataset, dataset_of
+from tirelab.simulation.simulate import simulate
+
+DATASET: Dataset = dataset_of([damped(4, samples=2000)], TireModel())
+DAMPED = with_readings("viscous_damping", (300.0, 1.0, 0.0, 0.0), DATASET)
+
+
+def free(**more: object) -> FreeParameter:
+    given = {"centre": 2.0, "spread": 0.5, "logarithm": False, "low": -4.0, "high": 4.0, "minimum": 0.0}
+    return FreeParameter("made", 0, "k", "N", **{**given, "maximum": 10.0, **more})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("value", [0.5, 2.0, 3.9])
+@pytest.mark.parametrize("logarithm", [False, True])
+def test_a_value_comes_back_from_its_position(value: float, logarithm: bool) -> None:
+    one = free(logarithm=logarithm, centre=math.log(2.0) if logarithm else 2.0, high=8.0, low=-8.0)
+    assert one.value(one.position(value)) == pytest.approx(value)
+    assert one.position(2.0) == pytest.approx(0.0)
+
+
+def test_positions_and_values_stay_within_their_bounds() -> None:
+    one = free()
+    assert one.position(1e6) == 4.0
+    assert one.value(100.0) == 4.0
+    assert one.value(-100.0) == 0.0
+
+
+def test_an_optional_form_that_is_off_at_its_bound_begins_inside() -> None:
+    at_bound = free(plain=0.0, optional=True)
+    assert at_bound.low < at_bound.awake < at_bound.position(1.0)
+    inside = free(plain=2.0, optional=True)
+    assert inside.awake == inside.position(2.0)
+
+
+def test_every_parameter_of_an_effect_with_a_prior_is_free_but_readings() -> None:
+    for name, effect in CATALOGUE.items():
+        expected = [p.name for p in effect.parameters if p.prior is not None and p.role != "reading"]
+        assert [p.label for p in parameters_of_effect(name, DATASET.scales)] == expected
+
+
+def test_a_law_on_one_surface_has_no_parameters_of_a_surface_of_its_own() -> None:
+    one, two = parameters_of_law(1), parameters_of_law(2)
+    # Of two surfaces the common part and a surface's own together spread as one part does alone.
+    assert len(two) == len(one) + 4
+    assert math.hypot(two[0].spread, two[len(one)].spread) == pytest.approx(one[0].spread)
+
+
+def test_positions_lead_back_to_the_values() -> None:
+    problem = problem_of(DATASET, {"viscous_damping": DAMPED}, plain=False)
+    values = problem.values(problem.positions({"viscous_damping": DAMPED}))
+    np.testing.assert_allclose(values["viscous_damping"], DAMPED)
+
+
+def test_in_the_plain_form_optional_parameters_stay() -> None:
+    plain = problem_of(DATASET, {"viscous_damping": DAMPED}, plain=True)
+    whole = problem_of(DATASET, {"viscous_damping": DAMPED}, plain=False)
+    assert {p.label for p in plain.parameters} < {p.label for p in whole.parameters}
+    assert not any(p.optional for p in plain.parameters)
+
+
+def test_the_residual_is_the_misfit_less_the_tires_response() -> None:
+    problem = problem_of(DATASET, {"viscous_damping": DAMPED}, plain=True)
+    at = problem.positions({"viscous_damping": DAMPED})
+    (e,) = DATASET.experiments
+    by_hand = (e.misfit - (simulate(problem.tire(at), e, e) - e.baseline))[e.counts] / e.noise
+    np.testing.assert_allclose(problem.residual(at), by_hand)
+
+
+def test_the_curve_of_an_effect_alone_is_its_whole_response() -> None:
+    problem = problem_of(DATASET, {"viscous_damping": DAMPED}, plain=True)
+    at = problem.positions({"viscous_damping": DAMPED})
+    np.testing.assert_allclose(problem.curves(at)["viscous_damping"], DATASET.response(problem.tire(at)))
+
+
+def test_the_baselines_law_is_where_a_refit_begins() -> None:
+    tire = tire_of(DATASET, {REFITTED_LAW: law_start(DATASET)})
+    assert law_surfaces(DATASET) == 1
+    np.testing.assert_allclose(DATASET.response(tire), 0.0, atol=1e-9)

@@ -1,0 +1,50 @@
+"""What is left beyond the noise: its size and share by definition, and what it depends on."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from drives import damped
+from radialtire import TireModel
+from tirelab.estimation.remainder import remainder_of
+from tirelab.regressors.dataset import dataset_of
+
+DATASET = dataset_of([damped(6, samples=4000)], TireModel())
+SIZE = DATASET.misfit.size
+WHITE = np.random.default_rng(8).normal(size=SIZE)
+
+
+def left(values: np.ndarray) -> Any:
+    problem = SimpleNamespace(dataset=DATASET)
+    return SimpleNamespace(problem=problem, residual=values, power=float(values @ values))
+
+
+def test_noise_alone_is_no_remainder() -> None:
+    found = remainder_of(left(WHITE / np.sqrt(np.mean(WHITE**2))))
+    assert found.size == 0.0
+    assert found.depends == ()
+    assert not found.unexplained
+
+
+def test_share_and_size_are_those_of_what_is_beyond_the_noise() -> None:
+    found = remainder_of(left(np.full(SIZE, 3.0)))
+    missed = float(DATASET.misfit @ DATASET.misfit) - SIZE
+    assert found.share == pytest.approx(min(8.0 * SIZE / missed, 1.0))
+    (e,) = DATASET.experiments
+    assert found.force == pytest.approx(np.sqrt(8.0) * e.noise)
+    assert found.size == pytest.approx(np.sqrt(8.0) * e.noise / e.floor.level)
+
+
+def test_a_remainder_that_follows_the_deflection_is_said_to_depend_on_it_where_it_is() -> None:
+    (e,) = DATASET.experiments
+    x = e.deflection[e.counts]
+    low, high = np.quantile(x, [0.6, 0.8])
+    found = remainder_of(left(WHITE + 8.0 * ((x > low) & (x < high))))
+    # The force is the deflection's: both may be first.
+    by = {d.coordinate: d for d in found.depends}
+    assert found.depends[0].coordinate in ("deflection", "force")
+    assert low - 1e-3 < by["deflection"].begin < by["deflection"].end < high + 1e-3
+    assert by["deflection"].share > 2.0 * by["time"].share if "time" in by else True
