@@ -108,7 +108,11 @@ def main(seed: int, draws: int) -> None:
             found += done.value
     within = float(norm.ppf(0.975))
     rate = Rate.of(abs(z) <= within for _, z in found)
-    click.echo(f"{rate} of {len(found)} intervals of {draws} draws hold the value")
+    low, high = rate.interval
+    click.echo(
+        f"{rate.hits} of {rate.trials} intervals of {draws} draws hold the value"
+        f" ({100 * low:.0f} to {100 * high:.0f} %)"
+    )
     for name in sorted({n for n, _ in found}):
         own = [abs(z) for n, z in found if n == name]
         if np.mean([z <= within for z in own]) < 0.9:
