@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import ClassVar, Protocol
 
 from . import flat_step, hull1996, power_law
-from .effect import PLACES, Effect, State
+from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
 from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, SignalPath, laid_out
 from .hull1996 import Hull1996
 from .parameter import Parameter, ParameterError
@@ -78,6 +78,15 @@ def check_inputs(deflection: float, surface_radius: float) -> None:
         )
 
 
+def check_measured(channel: Channel, value: float) -> None:
+    """Raise InputError unless `value` is one that the channel can have."""
+    if not channel.minimum <= value <= channel.maximum:
+        raise InputError(
+            f"{channel.variable} = {value:.17g} {channel.unit} is not allowed; it must lie between "
+            f"{channel.minimum:g} and {channel.maximum:g} {channel.unit}"
+        )
+
+
 @dataclass(frozen=True)
 class TireModel:
     """An elastic law with effects.
@@ -112,6 +121,18 @@ class TireModel:
         return any(effect.differentiates for effect, _ in self.effects)
 
     @cached_property
+    def channels(self) -> tuple[tuple[int, Channel, float], ...]:
+        """The channels that its effects read: the number of each in CHANNELS, itself, and the value without a reading."""
+        found = {}
+        unknown = {channel.name: channel.unknown for channel in CHANNELS}
+        for effect, values in self.effects:
+            if effect.reads is not None:
+                names = [parameter.name for parameter in effect.parameters]
+                name, reference = effect.reads.channel, effect.reads.reference
+                found[name] = unknown[name] if reference is None else values[names.index(reference)]
+        return tuple((i, c, found[c.name]) for i, c in enumerate(CHANNELS) if c.name in found)
+
+    @cached_property
     def _flat(self) -> tuple[SignalPath, State, State]:
         """Where the numbers of the effects stand, their parameters, and the state before the first sample."""
         effects = tuple(effect for effect, _ in self.effects)
@@ -131,10 +152,16 @@ class TireModel:
         return self._flat[2]
 
     def step(
-        self, deflection: float, surface_radius: float, time: float, state: State
+        self,
+        deflection: float,
+        surface_radius: float,
+        time: float,
+        state: State,
+        measured: tuple[float, ...] = NONE_MEASURED,
     ) -> tuple[float, State]:
         """Return the radial force [N] at `time` [s] and the state after it.
 
+        measured: the value of each of CHANNELS, NOT_MEASURED where there is none
         Pure: called again with the same state it gives the same answer, so a step may be tried and discarded.
         At the time of the state itself, rate and acceleration are those of the state.
         """
@@ -144,22 +171,37 @@ class TireModel:
         path, parameters, _ = self._flat
         after = list(state)
         force, _ = flat_step.step(
-            path, law, (deflection, surface_radius, time, 0.0, 0.0), parameters, state, after
+            path, law, _motion(deflection, surface_radius, time, measured), parameters, state, after
         )
         return force, tuple(after)
 
-    def stiffness(self, deflection: float, surface_radius: float, state: State) -> float:
+    def stiffness(
+        self,
+        deflection: float,
+        surface_radius: float,
+        state: State,
+        measured: tuple[float, ...] = NONE_MEASURED,
+    ) -> float:
         """Return the tangent dF/dx [N/m] at the time of `state`, everything but the deflection held constant.
 
+        measured: as for `step`.
         Where the contact begins it is that of the side on which the tire is: in the air up to a deflection of 0.
         """
         law = self.law.coefficients(surface_radius)
         if not self.effects:
             return power_law.stiffness(deflection, *law)
         path, parameters, _ = self._flat
-        motion = (deflection, surface_radius, state[TIME], 0.0, 0.0)
+        motion = _motion(deflection, surface_radius, state[TIME], measured)
         return flat_step.stiffness(path, law, motion, parameters, state, list(state))
 
     def in_tested_range(self, deflection: float, surface_radius: float, force: float) -> bool:
         """Return whether surface, deflection and force lie in the tested range; False where that is not known."""
         return self.tested_range is not None and self.tested_range.contains(deflection, surface_radius, force)
+
+
+def _motion(
+    deflection: float, surface_radius: float, time: float, measured: tuple[float, ...]
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return the motion as `flat_step` takes it: rate and acceleration are tracked."""
+    pressure, temperature = measured
+    return deflection, surface_radius, time, 0.0, 0.0, pressure, temperature

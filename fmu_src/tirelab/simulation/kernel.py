@@ -25,9 +25,12 @@ def respond_loop(
 ) -> None:
     """Fill `answer` with the effect's signal at every sample; `state` is its initial state.
 
-    history: time, deflection, rate, acceleration, coefficient, exponent, elastic force and curvature of every sample
+    history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
+    of every sample
     """
-    time, deflection, rates, accelerations, coefficient, exponent, elastic, curvature = history
+    time, deflection, rates, accelerations, coefficient, exponent, elastic, curvature, pressure, temperature = (
+        history
+    )
     for i in range(signal.size):
         answer[i], state = respond(
             signal[i],
@@ -42,6 +45,8 @@ def respond_loop(
                 exponent[i],
                 elastic[i],
                 curvature[i],
+                pressure[i],
+                temperature[i],
             ),
             state,
             values,

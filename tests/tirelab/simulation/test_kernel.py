@@ -15,7 +15,9 @@ COUNT = 200
 
 
 def history(seed: int) -> tuple[NDArray[np.float64], ...]:
-    """Time, deflection, rate, acceleration, A, B, elastic force and curvature of a motion; one sample is repeated."""
+    """Time, deflection, rate, acceleration, A, B, elastic force, curvature, pressure and temperature of a motion; one
+    sample is repeated.
+    """
     random = np.random.default_rng(seed)
     time = 3.0 + np.cumsum(random.uniform(1e-3, 0.02, COUNT))
     time[50] = time[49]
@@ -31,6 +33,8 @@ def history(seed: int) -> tuple[NDArray[np.float64], ...]:
         B,
         elastic,
         np.linspace(-2.0, 12.0, COUNT),
+        np.linspace(2e5, 4e5, COUNT),
+        np.linspace(290.0, 310.0, COUNT),
     )
 
 
@@ -38,7 +42,7 @@ def by_hand(
     effect: Effect, signal: NDArray[np.float64], known: tuple[NDArray[np.float64], ...]
 ) -> list[float]:
     """The effect's signal, sample by sample, from plain floats and named fields."""
-    time, deflection, rate, acceleration, A, B, elastic, curvature = (a.tolist() for a in known)
+    time, deflection, rate, acceleration, A, B, elastic, curvature, *channels = (a.tolist() for a in known)
     state, answer = effect.initial_state, []
     for i, given in enumerate(signal.tolist()):
         instant = Instant(
@@ -52,6 +56,8 @@ def by_hand(
             exponent=B[i],
             elastic_force=elastic[i],
             curvature=curvature[i],
+            pressure=channels[0][i],
+            temperature=channels[1][i],
         )
         found, state = effect.respond(given, instant, state, effect.nominal)
         answer.append(found)
@@ -80,7 +86,7 @@ def test_the_loop_as_it_stands_shifts_the_deflection() -> None:
 
 @pytest.mark.parametrize("compiled", [False, True])
 def test_the_elastic_loop_is_the_power_law(compiled: bool) -> None:
-    _, deflection, _, _, A, B, elastic, _ = history(3)
+    _, deflection, _, _, A, B, elastic, *_ = history(3)
     answer = np.empty(COUNT)
     (loop("elastic_loop", "law") if compiled else kernel.elastic_loop)(deflection, A, B, answer)
     assert (deflection < 0.0).any()
