@@ -299,7 +299,7 @@ class BicycleTire(Fmi2Slave):
             return False
         self._state = state
         self._reached = current_time + step_size
-        if not self._tire.effects:
+        if self._tire.bare:
             self._surface, self._elastic = R, power_law.on_surface(*self._tire.law.coefficients(R))
         return True
 
@@ -367,7 +367,7 @@ class BicycleTire(Fmi2Slave):
                 "max": repr(float(channel.maximum)),
                 "nominal": repr(float(channel.usual)),
             }
-        if not self._tire.effects:  # damping, inertia or a wrong zero can make the force negative
+        if self._tire.bare:  # damping, inertia or a wrong zero can make the force negative
             for vr in (RADIAL_FORCE, RADIAL_STIFFNESS):
                 traits[vr] = {**traits[vr], "min": "0"}
         variables = root.find("ModelVariables")

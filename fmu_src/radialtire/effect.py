@@ -10,7 +10,7 @@ An effect is a pure response at one stage of the signal path from the measured d
     place "reading"     force                -> measured force (lag, zero, ceiling)
 
 Effects of one place act in the order of the catalogue. After "parallel" a force below zero becomes zero, since the
-ground cannot pull.
+ground cannot pull; that of a part that is held at both ends (a damper, a bushing) stays.
 """
 
 from __future__ import annotations
@@ -100,6 +100,7 @@ class Instant(NamedTuple):
     elastic_force: [N] at the place "scale" A x^B, after it A x^B with its factor, before it 0
     curvature: [1/m] of the surface, convex > 0
     pressure: [Pa], gauge, and temperature [K] of the tire, as measured or as inputs; else NOT_MEASURED
+    two_sided: whether the part is held at both ends, so that a deflection below 0 is no lost contact
     """
 
     time: float
@@ -114,6 +115,7 @@ class Instant(NamedTuple):
     curvature: float = 0.0
     pressure: float = NOT_MEASURED
     temperature: float = NOT_MEASURED
+    two_sided: bool = False
 
 
 Response = Callable[[float, Instant, State, State], "tuple[float, State]"]

@@ -8,7 +8,7 @@ from typing import ClassVar, Protocol
 
 from . import flat_step, hull1996, power_law
 from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
-from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, SignalPath, laid_out
+from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, TWO_SIDED, SignalPath, laid_out
 from .hull1996 import Hull1996
 from .parameter import Parameter, ParameterError
 
@@ -95,6 +95,8 @@ class TireModel:
     tested_range: where the tire was measured, or None where that is not known
     reading_noise: [m] standard deviation of the noise in the measured deflection, which rate and acceleration must not
     follow (see `tracking`); 0 takes the deflection as exact
+    two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
+    and can pull. A tire on the ground can do neither.
     """
 
     law: Law = Hull1996()
@@ -103,6 +105,7 @@ class TireModel:
     name: str = "Hull, Wang & Moore 1996"
     source: str = "Hull, Wang & Moore, Cycling Science, Spring 1996"
     reading_noise: float = 0.0
+    two_sided: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
@@ -119,6 +122,11 @@ class TireModel:
     def differentiates(self) -> bool:
         """Whether an effect uses rate or acceleration."""
         return any(effect.differentiates for effect, _ in self.effects)
+
+    @property
+    def bare(self) -> bool:
+        """Whether it is an elastic law on the ground and nothing else, so that a step needs no state."""
+        return not self.effects and not self.two_sided
 
     @cached_property
     def channels(self) -> tuple[tuple[int, Channel, float], ...]:
@@ -139,7 +147,7 @@ class TireModel:
         follows = self.differentiates and any(e.place in ("deflection", "series") for e in effects)
         path, parameters, initial_state = laid_out(effects, TRACK * (self.differentiates + follows))
         parameters[TRACKED], parameters[FOLLOWED] = float(self.differentiates), float(follows)
-        parameters[NOISE] = self.reading_noise
+        parameters[NOISE], parameters[TWO_SIDED] = self.reading_noise, float(self.two_sided)
         at = PARAMETERS
         for effect, values in self.effects:
             parameters[at : at + 1 + len(values)] = (1.0, *values)
@@ -166,7 +174,7 @@ class TireModel:
         At the time of the state itself, rate and acceleration are those of the state.
         """
         law = self.law.coefficients(surface_radius)
-        if not self.effects:
+        if self.bare:
             return power_law.force(deflection, *law), state
         path, parameters, _ = self._flat
         after = list(state)
@@ -188,7 +196,7 @@ class TireModel:
         Where the contact begins it is that of the side on which the tire is: in the air up to a deflection of 0.
         """
         law = self.law.coefficients(surface_radius)
-        if not self.effects:
+        if self.bare:
             return power_law.stiffness(deflection, *law)
         path, parameters, _ = self._flat
         motion = _motion(deflection, surface_radius, state[TIME], measured)

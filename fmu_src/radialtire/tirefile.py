@@ -77,6 +77,8 @@ def to_text(tire: TireModel) -> str:
         "reading_noise": tire.reading_noise,
         "tested_range": None if tire.tested_range is None else asdict(tire.tested_range),
     }
+    if tire.two_sided:
+        content["two_sided"] = True
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -86,7 +88,7 @@ def from_text(text: str) -> TireModel:
         content = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
-    known = {"schema", "name", "source", "law", "effects", "reading_noise", "tested_range"}
+    known = {"schema", "name", "source", "law", "effects", "reading_noise", "tested_range", "two_sided"}
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
         raise TireFileError(
@@ -100,6 +102,7 @@ def from_text(text: str) -> TireModel:
             name=_text(entry, "name"),
             source=_text(entry, "source"),
             reading_noise=entry.get("reading_noise", 0.0),
+            two_sided=_flag(entry, "two_sided"),
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None
@@ -171,6 +174,13 @@ def _text(entry: dict[str, Any], key: str) -> str:
     value = entry.get(key, "")
     if not isinstance(value, str):
         raise TireFileError(f"{key} must be text, not {value!r}")
+    return value
+
+
+def _flag(entry: dict[str, Any], key: str) -> bool:
+    value = entry.get(key, False)
+    if not isinstance(value, bool):
+        raise TireFileError(f"{key} must be true or false, not {value!r}")
     return value
 
 

@@ -104,6 +104,7 @@ class History:
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
     coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]; channels: those of CHANNELS
+    two_sided: whether the part is held at both ends
     """
 
     time: FloatArray
@@ -115,6 +116,7 @@ class History:
     elastic_force: FloatArray
     curvature: FloatArray
     channels: tuple[FloatArray, ...]
+    two_sided: bool
 
 
 def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -124,7 +126,9 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
     """
     history, force = elastic_stage(tire, recording, kinematics)
     force = downstream(tire, history, force, ("parallel",))
-    return downstream(tire, history, np.maximum(force, 0.0), ("inertia", "reading"))
+    if not tire.two_sided:
+        force = np.maximum(force, 0.0)
+    return downstream(tire, history, force, ("inertia", "reading"))
 
 
 def elastic_stage(
@@ -142,7 +146,7 @@ def elastic_stage(
             rate, _ = track(history.time, x, tire.reading_noise)
         else:
             rate = rate + np.gradient(x - recording.deflection, history.time)
-    bare = elastic_force(x, history.coefficient, history.exponent)
+    bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
     elastic = factor * bare
@@ -169,7 +173,7 @@ def history_of(tire: TireModel, recording: Sampled, kinematics: Kinematics | Non
     flat = np.abs(surface_radius) >= FLAT_RADIUS
     curvature = np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, surface_radius))
     channels = channel_rows(measured_of(recording), time.size)
-    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection), curvature, channels)
+    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection), curvature, channels, tire.two_sided)
 
 
 def respond_series(effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
@@ -192,14 +196,17 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
         effect.initial_state,
         tuple(float(value) for value in values),
         answer,
+        history.two_sided,
     )
     return answer
 
 
-def elastic_force(deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray) -> FloatArray:
-    """Return A x^B [N] of every sample: deflection [m], A [N/cm^B], B [1]."""
+def elastic_force(
+    deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray, *, two_sided: bool = False
+) -> FloatArray:
+    """Return A x^B [N] of every sample: deflection [m], A [N/cm^B], B [1]; of a two-sided part A sign(x) |x|^B."""
     answer = np.empty_like(deflection)
-    compiled.loop("elastic_loop", "law")(deflection, coefficient, exponent, answer)
+    compiled.loop("elastic_loop", "law")(deflection, coefficient, exponent, answer, two_sided)
     return answer
 
 
