@@ -24,12 +24,13 @@ one, 0 before; time [s] of the first one."""
 HEAD = 6
 """Index of the first number of an effect in the state."""
 
-TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED = 0, 1, 2, 3, 4
+TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD = 0, 1, 2, 3, 4, 5
 """In the parameters: 1 where rate and acceleration follow from the readings (0: they are given, or not needed); 1 where
 the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading; 1 where effects that
-are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at both ends."""
+are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at both ends, and then its
+force [N] without a deflection."""
 
-PARAMETERS = 5
+PARAMETERS = 6
 """Index of the first number of an effect in the parameters."""
 
 TRACK = 4 * 14 + 4 + 1
@@ -138,7 +139,7 @@ def step(
             above = compressed(path, later, moment, surface, p, s)
             v = (above - compressed(path, sooner, moment, surface, p, s)) / (2.0 * h)
 
-    bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
+    bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     at = Instant(time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held)
     elastic = through(path.scale, 1.0, at, p, s, n) * bare
     at = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature, held)

@@ -8,7 +8,18 @@ from typing import ClassVar, Protocol
 
 from . import flat_step, hull1996, power_law
 from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
-from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, TWO_SIDED, SignalPath, laid_out
+from .flat_step import (
+    FOLLOWED,
+    NOISE,
+    PARAMETERS,
+    PRELOAD,
+    TIME,
+    TRACK,
+    TRACKED,
+    TWO_SIDED,
+    SignalPath,
+    laid_out,
+)
 from .hull1996 import Hull1996
 from .parameter import Parameter, ParameterError
 
@@ -26,6 +37,17 @@ READING_NOISE = Parameter(
     0.0,
     0.01,
     "standard deviation of the noise in the measured deflection",
+)
+
+
+PRELOAD_FORCE = Parameter(
+    "preload",
+    "F0",
+    "N",
+    0.0,
+    -1e6,
+    1e6,
+    "force of a two-sided part without a deflection, beside its law",
 )
 
 
@@ -97,6 +119,7 @@ class TireModel:
     follow (see `tracking`); 0 takes the deflection as exact
     two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
     and can pull. A tire on the ground can do neither.
+    preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring
     """
 
     law: Law = Hull1996()
@@ -106,9 +129,15 @@ class TireModel:
     source: str = "Hull, Wang & Moore, Cycling Science, Spring 1996"
     reading_noise: float = 0.0
     two_sided: bool = False
+    preload: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
+        object.__setattr__(self, "preload", PRELOAD_FORCE.checked(self.preload))
+        if self.preload != 0.0 and not self.two_sided:
+            raise ParameterError(
+                f"preload = {self.preload:g} N needs a two-sided part; a tire without a deflection has no force"
+            )
         names = [effect.name for effect, _ in self.effects]
         if len(set(names)) < len(names):
             raise ParameterError(f"an effect occurs twice in {', '.join(names)}; keep one of each")
@@ -147,7 +176,8 @@ class TireModel:
         follows = self.differentiates and any(e.place in ("deflection", "series") for e in effects)
         path, parameters, initial_state = laid_out(effects, TRACK * (self.differentiates + follows))
         parameters[TRACKED], parameters[FOLLOWED] = float(self.differentiates), float(follows)
-        parameters[NOISE], parameters[TWO_SIDED] = self.reading_noise, float(self.two_sided)
+        parameters[NOISE] = self.reading_noise
+        parameters[TWO_SIDED], parameters[PRELOAD] = float(self.two_sided), self.preload
         at = PARAMETERS
         for effect, values in self.effects:
             parameters[at : at + 1 + len(values)] = (1.0, *values)

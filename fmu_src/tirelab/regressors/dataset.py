@@ -109,6 +109,12 @@ class Dataset:
         parts = [(e.counts.sum(), (STEPS_LEFT * e.floor.steps / e.noise) ** 2) for e in self.experiments]
         return float(np.sqrt(sum(n * p for n, p in parts) / max(sum(n for n, _ in parts), 1)))
 
+    @property
+    def load(self) -> float:
+        """Root mean square force in units of the noise: the baseline's, or of a part that pulls the one that was read."""
+        read = self.misfit if self.tire.two_sided else 0.0
+        return float(np.sqrt(np.mean((self.stacked([e.baseline for e in self.experiments]) + read) ** 2)))
+
     @cached_property
     def radii(self) -> tuple[float, ...]:
         """Radii [m] of the surfaces, the flattest first."""

@@ -147,6 +147,8 @@ def elastic_stage(
         else:
             rate = rate + np.gradient(x - recording.deflection, history.time)
     bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
+    if tire.two_sided:
+        bare += tire.preload
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
     elastic = factor * bare

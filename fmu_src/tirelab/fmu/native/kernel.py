@@ -17,6 +17,7 @@ from radialtire.flat_step import (
     FOLLOWED,
     NOISE,
     PARAMETERS,
+    PRELOAD,
     TRACKED,
     TWO_SIDED,
     SignalPath,
@@ -45,7 +46,7 @@ def parameters_of(tire: TireModel) -> list[float]:
     row[TRACKED] = float(tire.differentiates)
     follows = any(effect.place in ("deflection", "series") for effect, _ in tire.effects)
     row[FOLLOWED] = float(tire.differentiates and follows)
-    row[NOISE], row[TWO_SIDED] = tire.reading_noise, float(tire.two_sided)
+    row[NOISE], row[TWO_SIDED], row[PRELOAD] = tire.reading_noise, float(tire.two_sided), tire.preload
     at = PARAMETERS
     values = {effect.name: given for effect, given in tire.effects}
     for effect in effects:
@@ -56,9 +57,9 @@ def parameters_of(tire: TireModel) -> list[float]:
 
 
 def places() -> dict[str, int]:
-    """Return the index in the kernel's parameters of each parameter EFFECT.NAME, and of reading_noise."""
+    """Return the index in the kernel's parameters of each parameter EFFECT.NAME, of reading_noise and preload."""
     effects, *_ = universal()
-    found, at = {"reading_noise": NOISE}, PARAMETERS
+    found, at = {"reading_noise": NOISE, "preload": PRELOAD}, PARAMETERS
     for effect in effects:
         for i, parameter in enumerate(effect.parameters):
             found[f"{effect.name}.{parameter.name}"] = at + 1 + i
