@@ -145,8 +145,8 @@ class Flow:
 class Reading:
     """An effect that reads a channel.
 
-    channel: of CHANNELS, by its name; reference: the parameter that is the channel's value at which the effect vanishes:
-    it does nothing where the channel was not measured; None: it has a response without the channel too
+    channel: of CHANNELS, by its name; reference: the parameter that is the channel's value at which the effect
+    vanishes, and then it does nothing where the channel was not measured; None: it has a response without it too
     """
 
     channel: str

@@ -27,8 +27,8 @@ HEAD = 6
 TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD = 0, 1, 2, 3, 4, 5
 """In the parameters: 1 where rate and acceleration follow from the readings (0: they are given, or not needed); 1 where
 the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading; 1 where effects that
-are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at both ends, and then its
-force [N] without a deflection."""
+are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at
+both ends, and then its force [N] without a deflection."""
 
 PARAMETERS = 6
 """Index of the first number of an effect in the parameters."""
@@ -140,9 +140,13 @@ def step(
             v = (above - compressed(path, sooner, moment, surface, p, s)) / (2.0 * h)
 
     bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
-    at = Instant(time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held)
+    at = Instant(
+        time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held
+    )
     elastic = through(path.scale, 1.0, at, p, s, n) * bare
-    at = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature, held)
+    at = Instant(
+        time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature, held
+    )
     force = through(path.parallel, elastic, at, p, s, n)
     if force < 0.0 and not held:
         force = 0.0
@@ -222,7 +226,9 @@ def compressed(
     deflection, rate, acceleration = read
     time, interval, first, pressure, temperature, held = moment
     A, B, bend = surface
-    at = Instant(time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held)
+    at = Instant(
+        time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held
+    )
     x = unremembered(path.deflection, deflection, at, p, s)
     at = Instant(time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held)
     return unremembered(path.series, x, at, p, s)

@@ -159,7 +159,7 @@ class TireModel:
 
     @cached_property
     def channels(self) -> tuple[tuple[int, Channel, float], ...]:
-        """The channels that its effects read: the number of each in CHANNELS, itself, and the value without a reading."""
+        """The channels that its effects read: their numbers in CHANNELS, themselves, their values without a reading."""
         found = {}
         unknown = {channel.name: channel.unknown for channel in CHANNELS}
         for effect, values in self.effects:

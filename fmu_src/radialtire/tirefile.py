@@ -88,7 +88,17 @@ def from_text(text: str) -> TireModel:
         content = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
-    known = {"schema", "name", "source", "law", "effects", "reading_noise", "tested_range", "two_sided", "preload"}
+    known = {
+        "schema",
+        "name",
+        "source",
+        "law",
+        "effects",
+        "reading_noise",
+        "tested_range",
+        "two_sided",
+        "preload",
+    }
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
         raise TireFileError(
@@ -138,8 +148,8 @@ def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
 def parameters_of(tire: TireModel) -> dict[str, tuple[Parameter, float]]:
     """Return every parameter of `tire` with its value, by the name `law.NAME` or `EFFECT.NAME`.
 
-    Where an effect looks at rate or acceleration, `reading_noise` is one too: who knows the motion exactly sets 0. A two-sided
-    part has its `preload`.
+    Where an effect looks at rate or acceleration, `reading_noise` is one too: who knows the motion exactly sets 0.
+    A two-sided part has its `preload`.
     """
     found = {f"law.{p.name}": (p, float(getattr(tire.law, p.name))) for p in tire.law.parameters}
     for effect, values in tire.effects:

@@ -62,7 +62,7 @@ def drive(
 
 
 def channels_for(effect: Effect, time: ArrayLike) -> Mapping[str, FloatArray]:
-    """Return a course of the channel that the effect reads, which rises by 1 % a second; nothing where it reads none."""
+    """Return a course of the channel that the effect reads, rising by 1 % a second; nothing where it reads none."""
     if effect.reads is None:
         return {}
     usual = {c.name: c.usual for c in CHANNELS}[effect.reads.channel]

@@ -149,7 +149,9 @@ def test_an_effect_that_needs_a_channel_does_nothing_without_it(effect: Effect) 
         return
     assert effect.reads.reference in [parameter.name for parameter in effect.parameters]
     time, x = sine(0.5, 0.012, 0.015, 3.0, 300)
-    assert np.array_equal(drive(tire_with((effect.name, effect.nominal)), time, x), drive(TireModel(), time, x))
+    assert np.array_equal(
+        drive(tire_with((effect.name, effect.nominal)), time, x), drive(TireModel(), time, x)
+    )
 
 
 @EFFECTS

@@ -45,7 +45,9 @@ INFLATION_PRESSURE = Effect(
             neutral=0.0,
             nominal=0.8,
             role="strength",
-            prior=Prior("normal", 0.8, 0.25, "1", "thin toroid 1; pFz1 of car tires about 0.7; less the casing"),
+            prior=Prior(
+                "normal", 0.8, 0.25, "1", "thin toroid 1; pFz1 of car tires about 0.7; less the casing"
+            ),
         ),
         Parameter(
             "reference",
@@ -55,7 +57,9 @@ INFLATION_PRESSURE = Effect(
             1e3,
             1e7,
             "gauge pressure at which the elastic law holds",
-            prior=Prior("log", 1.0, math.log(1.6), "pressure", "tires are pressed near where they are ridden"),
+            prior=Prior(
+                "log", 1.0, math.log(1.6), "pressure", "tires are pressed near where they are ridden"
+            ),
         ),
         Parameter(
             "power",
@@ -72,7 +76,7 @@ INFLATION_PRESSURE = Effect(
     initial_state=(),
     respond=respond,
     statement="the tire is at another pressure: the force changes with the gauge pressure at every deflection",
-    tell_tale="recordings at several pressures differ in proportion to the force, and a pressure channel says by how much",
+    tell_tale="recordings at several pressures differ in proportion to the force, as the pressure channel says",
     imitators=("recalibration", "pressure_leak", "gas_compression", "warm_up"),
     source="MF-Tyre 6.1, pFz1 (Besselink, Schmeitz & Pacejka, Vehicle System Dynamics 48, 2010, S1); Dressel & "
     "Sadauckas, Appl. Sci. 10(9), 3156 (2020), doi 10.3390/app10093156; Renart & Roura-Grabulosa, Am. J. Phys. 87, 102 "

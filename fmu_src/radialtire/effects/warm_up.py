@@ -17,7 +17,6 @@ from ..effect import Effect, Instant, Reading, State, is_measured
 from ..parameter import Parameter
 from ..prior import Prior
 
-
 WARMING = 10.0
 """Rise of a measured temperature [K] that raises the force by the gain."""
 

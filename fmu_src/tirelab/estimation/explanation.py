@@ -126,7 +126,8 @@ def explain_misfit(
     """
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=timed)
-    allowed = [name for name in candidates() if name in catalogue]
+    impossible = excitation.channels.impossible
+    allowed = [name for name in candidates() if name in catalogue and name not in impossible]
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")

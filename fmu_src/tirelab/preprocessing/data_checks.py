@@ -60,10 +60,9 @@ def check_signal(dataset: Dataset, levels: Sequence[float]) -> None:
             raise PoorRecording(
                 f"recording {number} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
-        if record.two_sided:  # a damper's force follows the rate alone
-            related = 1.0
-        else:
-            related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
+        # The force of a part that is held at both ends may follow the rate alone, as a damper's does.
+        elastic = record.force if record.two_sided else record.elastic(motion.deflection)
+        related = float(np.corrcoef(record.force, elastic)[0, 1])
         if not np.isfinite(related) or abs(related) < 0.2 or level > 0.9 * float(np.std(record.force)):
             raise PoorRecording(
                 f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "

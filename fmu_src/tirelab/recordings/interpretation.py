@@ -19,7 +19,15 @@ from .plausibility import doubts_of, too_deep
 from .rows import Rows, complete_rows
 from .samples import gap_notes
 from .sign_convention import compressive_signs
-from .units import STANDARD_ATMOSPHERE, Conversion, UnitError, conversion, parse_interval, parse_quantity, parse_radius
+from .units import (
+    STANDARD_ATMOSPHERE,
+    Conversion,
+    UnitError,
+    conversion,
+    parse_interval,
+    parse_quantity,
+    parse_radius,
+)
 
 FloatArray = NDArray[np.float64]
 

@@ -102,7 +102,8 @@ def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
     For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
-    `skip_rows = 3`, `pressure = "2.5 bar"` and `temperature = "21 degC"` where no column holds them, and the tables `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say.
+    `skip_rows = 3`, `pressure = "2.5 bar"` and `temperature = "21 degC"` where no column holds them, and the tables
+    `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say.
     The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
     named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of

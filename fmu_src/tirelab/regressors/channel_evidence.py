@@ -11,7 +11,8 @@ at one deflection in one direction, or everything that depends on both would pas
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,30 +38,40 @@ ALIKE = 0.8
 """Cosine of the leading courses of two effects beyond which either may stand for the other."""
 
 
-def refuted(dataset: Dataset, cells: Sequence[Cells]) -> dict[str, str]:
-    """Return the effects that the channels speak against, and why; cells: of deflection and direction, of each
-    recording's blocks.
+@dataclass(frozen=True)
+class ChannelEvidence:
+    """impossible: effects that the channels speak against, or that need one that is not there; unvaried: effects that
+    read a channel which was the same at every visit of a deflection, and the sentence that says so.
     """
-    found: dict[str, str] = {}
+
+    impossible: frozenset[str]
+    unvaried: Mapping[str, str]
+
+
+def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidence:
+    """Return what the channels show; cells: of deflection and direction, of each recording's blocks, -1: where it turns."""
+    impossible: set[str] = set()
+    unvaried: dict[str, str] = {}
     for channel in CHANNELS:
         readers = [e for e in CATALOGUE.values() if e.reads is not None and e.reads.channel == channel.name]
         if any(channel.name not in e.measured for e in dataset.experiments):
-            lacking = (e for e in readers if e.reads is not None and e.reads.reference is not None)
-            found |= {e.name: f"the recordings have no {channel.name}" for e in lacking}
+            impossible |= {e.name for e in readers if e.reads is not None and e.reads.reference is not None}
             continue
         level = dataset.scales.channels[channel.name]
         value = np.concatenate([e.measured[channel.name] for e in dataset.experiments]) / level
         changing = [e for e in CATALOGUE.values() if channel.name in e.changes]
         followed, seen = _followed(value, changing, dataset)
-        found |= {
-            e.name: f"the measured {channel.name} does not show it"
+        impossible |= {
+            e.name
             for e in changing
             if not (seen[e.name][0] > SEEN and seen[e.name][1] > LEAST * channel.resolution)
         }
         if _spread_within(value - followed, np.concatenate(cells)) < channel.resolution:
-            same = f"the {channel.name} was the same whenever a deflection was visited"
-            found |= {e.name: same for e in readers}
-    return found
+            same = (
+                f"the {channel.name} was the same whenever a deflection was visited: record at a second one"
+            )
+            unvaried |= {e.name: same for e in readers}
+    return ChannelEvidence(frozenset(impossible), unvaried)
 
 
 def _followed(
@@ -133,4 +144,3 @@ def _spread_within(values: FloatArray, cell: Cells) -> float:
 
 def _size(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
-

@@ -111,7 +111,7 @@ class Dataset:
 
     @property
     def load(self) -> float:
-        """Root mean square force in units of the noise: the baseline's, or of a part that pulls the one that was read."""
+        """Root mean square force in units of the noise: the baseline's, of a part that pulls the one that was read."""
         read = self.misfit if self.tire.two_sided else 0.0
         return float(np.sqrt(np.mean((self.stacked([e.baseline for e in self.experiments]) + read) ** 2)))
 

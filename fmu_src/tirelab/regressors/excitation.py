@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
-from .channel_evidence import refuted
+from .channel_evidence import ChannelEvidence, channel_evidence
 from .dataset import Dataset, Experiment
 
 FloatArray = NDArray[np.float64]
@@ -26,18 +26,24 @@ SPEEDS = 0.5
 STILL = 0.02
 """Speed over its root mean square below which the tire rests."""
 
+UNDER_WAY = 0.3
+"""Speed over its root mean square above which the direction is sure: a channel may change with it."""
+
+
+NO_EVIDENCE = ChannelEvidence(frozenset(), {})
+"""That of recordings whose channels were not looked at."""
+
 
 @dataclass(frozen=True)
 class Excitation:
     """returns: part of the variance of time between visits of the same deflection in the same direction; speeds: spread
-    of the speed there; timed: whether the samples' times are known; refuted: effects that the recorded channels speak
-    against, and why.
+    of the speed there; timed: whether the samples' times are known; channels: what the recorded channels show.
     """
 
     returns: float
     speeds: float
     timed: bool = True
-    refuted: Mapping[str, str] = field(default_factory=dict)
+    channels: ChannelEvidence = NO_EVIDENCE
 
     @property
     def one_speed(self) -> bool:
@@ -46,8 +52,8 @@ class Excitation:
 
     def hidden(self, name: str) -> str:
         """Return why an effect of this name cannot be shown, or ""."""
-        if name in self.refuted:
-            return self.refuted[name]
+        if name in self.channels.unvaried:
+            return self.channels.unvaried[name]
         traits = CATALOGUE[name].traits
         if not self.timed and {"rate", "slow"} & set(traits):
             return "the recording has no time"
@@ -80,7 +86,9 @@ def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
         _spread_within(np.concatenate([v.speed for v in same]), np.concatenate([v.cell for v in same]))
         for same in together.values()
     ]
-    return Excitation(max(returns), max(speeds), timed, refuted(dataset, _common_cells(dataset.experiments)))
+    return Excitation(
+        max(returns), max(speeds), timed, channel_evidence(dataset, _common_cells(dataset.experiments))
+    )
 
 
 @dataclass(frozen=True)
@@ -99,21 +107,21 @@ def _visits(e: Experiment) -> _Visits:
     return _Visits(e.time[moving], np.abs(e.rate[moving]), cell[moving])
 
 
-def _moving(e: Experiment) -> NDArray[np.bool_]:
-    return np.asarray(np.abs(e.rate) > STILL * float(np.sqrt(np.mean(e.rate**2))))
+def _moving(e: Experiment, part: float = STILL) -> NDArray[np.bool_]:
+    return np.asarray(np.abs(e.rate) > part * float(np.sqrt(np.mean(e.rate**2))))
 
 
 def _cells(e: Experiment, low: float, high: float) -> NDArray[np.int_]:
     """Return the cell of deflection, between two ends [m], and direction of each block."""
     span = (e.deflection - low) / max(high - low, 1e-300)
-    return np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (e.rate > 0.0)
+    return np.asarray(np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (e.rate > 0.0))
 
 
 def _common_cells(experiments: Sequence[Experiment]) -> list[NDArray[np.int_]]:
-    """Return the cells of every recording's blocks on one scale of the deflection; -1 where the tire rests."""
+    """Return the cells of every recording's blocks on one scale of the deflection; -1 where the tire turns."""
     low = min(float(e.deflection.min()) for e in experiments)
     high = max(float(e.deflection.max()) for e in experiments)
-    return [np.where(_moving(e), _cells(e, low, high), -1) for e in experiments]
+    return [np.where(_moving(e, UNDER_WAY), _cells(e, low, high), -1) for e in experiments]
 
 
 def _share_within(values: FloatArray, cell: NDArray[np.int_]) -> float:

@@ -46,7 +46,9 @@ def candidates() -> tuple[str, ...]:
 def law_signature(dataset: Dataset) -> Signature:
     """Return the law's signature; its size 1 is that of a change of A by FACTOR."""
     gather = dataset.gathered
-    x = gather([np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments])
+    x = gather(
+        [np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments]
+    )
     radius = gather([e.surface_radius for e in dataset.experiments])
     # A refitted law leaves a part's preload as it is.
     force = dataset.stacked([e.baseline - dataset.tire.preload for e in dataset.experiments])

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 @dataclass(frozen=True)
 class Scales:
     """force [N] peak; travel [m] span of the deflection; duration and interval [s]; rate [m/s] and acceleration [m/s^2]
-    root mean squares over what moves; gauge [m] noise of the deflection's reading; channels: the level of each channel by
-    its name, in SI. All positive.
+    root mean squares over what moves; gauge [m] noise of the deflection's reading; channels: the level of each channel
+    [SI] by its name. All positive.
     """
 
     force: float

@@ -31,9 +31,18 @@ def respond_loop(
     history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
     of every sample
     """
-    time, deflection, rates, accelerations, coefficient, exponent, elastic, curvature, pressure, temperature = (
-        history
-    )
+    (
+        time,
+        deflection,
+        rates,
+        accelerations,
+        coefficient,
+        exponent,
+        elastic,
+        curvature,
+        pressure,
+        temperature,
+    ) = history
     for i in range(signal.size):
         answer[i], state = respond(
             signal[i],

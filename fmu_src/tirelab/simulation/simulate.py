@@ -175,7 +175,18 @@ def history_of(tire: TireModel, recording: Sampled, kinematics: Kinematics | Non
     flat = np.abs(surface_radius) >= FLAT_RADIUS
     curvature = np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, surface_radius))
     channels = channel_rows(measured_of(recording), time.size)
-    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection), curvature, channels, tire.two_sided)
+    return History(
+        time,
+        deflection,
+        rate,
+        acceleration,
+        A,
+        B,
+        np.zeros_like(deflection),
+        curvature,
+        channels,
+        tire.two_sided,
+    )
 
 
 def respond_series(effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:

@@ -43,6 +43,11 @@ def test_at_the_reference_and_without_a_pressure_all_is_as_before_to_the_last_bi
 
 def test_the_tire_says_which_channels_it_reads_and_where_they_start() -> None:
     ((number, channel, start),) = only("inflation_pressure", reference=2.5e5).channels
-    assert (number, channel.name, channel.variable, channel.unit) == (0, "pressure", "inflation_pressure", "Pa")
+    assert (number, channel.name, channel.variable, channel.unit) == (
+        0,
+        "pressure",
+        "inflation_pressure",
+        "Pa",
+    )
     assert start == 2.5e5
     assert TireModel().channels == ()
