@@ -431,12 +431,12 @@ static Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[5] != 0.0) {
-        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[6]}});
+    if (p[6] != 0.0) {
+        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[7]}});
         signal = t1.a;
     }
-    if (p[7] != 0.0) {
-        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[8], p[9]}});
+    if (p[8] != 0.0) {
+        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[9], p[10]}});
         signal = t2.a;
     }
     return signal;
@@ -522,8 +522,8 @@ static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static double unremembered_series(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[10] != 0.0) {
-        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[11], p[12]}});
+    if (p[11] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[12], p[13]}});
         signal = t1.a;
     }
     return signal;
@@ -785,35 +785,35 @@ static Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Ve
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[13] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector8){{p[14], p[15], p[16], p[17],
-            p[18], p[19], p[20], p[21]}});
+    if (p[14] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector8){{p[15], p[16], p[17], p[18],
+            p[19], p[20], p[21], p[22]}});
         signal = t1.a;
     }
-    if (p[22] != 0.0) {
-        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[23], p[24], p[25]}});
+    if (p[23] != 0.0) {
+        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[24], p[25], p[26]}});
         signal = t2.a;
     }
-    if (p[26] != 0.0) {
-        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[27], p[28], p[29], p[30],
-            p[31]}});
+    if (p[27] != 0.0) {
+        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[28], p[29], p[30], p[31],
+            p[32]}});
         signal = t3.a;
     }
-    if (p[32] != 0.0) {
-        const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[33],
-            p[34], p[35], p[36], p[37], p[38], p[39]}});
+    if (p[33] != 0.0) {
+        const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[34],
+            p[35], p[36], p[37], p[38], p[39], p[40]}});
         signal = t4.a;
         Vector3 after = t4.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
-    if (p[40] != 0.0) {
-        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[41], p[42], p[43]}});
+    if (p[41] != 0.0) {
+        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[42], p[43], p[44]}});
         signal = t5.a;
     }
-    if (p[44] != 0.0) {
-        const Tuple15 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[45], p[46], p[47]}});
+    if (p[45] != 0.0) {
+        const Tuple15 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[46], p[47], p[48]}});
         signal = t6.a;
         Vector1 after = t6.b;
         n[9] = after.v[0];
@@ -998,9 +998,9 @@ static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, V
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[48] != 0.0) {
+    if (p[49] != 0.0) {
         const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, (Vector8){{s[10], s[11], s[12], s[13],
-            s[14], s[15], s[16], s[17]}}, (Vector7){{p[49], p[50], p[51], p[52], p[53], p[54], p[55]}});
+            s[14], s[15], s[16], s[17]}}, (Vector7){{p[50], p[51], p[52], p[53], p[54], p[55], p[56]}});
         signal = t1.a;
         Vector8 after = t1.b;
         n[10] = after.v[0];
@@ -1012,14 +1012,14 @@ static double through_parallel(double signal, Instant at, const double *p, const
         n[16] = after.v[6];
         n[17] = after.v[7];
     }
-    if (p[56] != 0.0) {
-        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[57], p[58], p[59],
-            p[60]}});
+    if (p[57] != 0.0) {
+        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[58], p[59], p[60],
+            p[61]}});
         signal = t2.a;
     }
-    if (p[61] != 0.0 && p[3] != 0.0) {
+    if (p[62] != 0.0 && p[3] != 0.0) {
         const Tuple18 t3 = viscoelastic_relaxation_flow(signal, at, (Vector6){{s[18], s[19], s[20], s[21], s[22],
-            s[23]}}, (Vector11){{p[62], p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72]}});
+            s[23]}}, (Vector11){{p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72], p[73]}});
         signal = t3.a;
         Vector6 flowed = t3.b;
         n[18] = flowed.v[0];
@@ -1028,9 +1028,9 @@ static double through_parallel(double signal, Instant at, const double *p, const
         n[21] = flowed.v[3];
         n[22] = flowed.v[4];
         n[23] = flowed.v[5];
-    } else if (p[61] != 0.0) {
+    } else if (p[62] != 0.0) {
         const Tuple18 t4 = viscoelastic_relaxation_respond(signal, at, (Vector6){{s[18], s[19], s[20], s[21], s[22],
-            s[23]}}, (Vector11){{p[62], p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72]}});
+            s[23]}}, (Vector11){{p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72], p[73]}});
         signal = t4.a;
         Vector6 after = t4.b;
         n[18] = after.v[0];
@@ -1040,8 +1040,8 @@ static double through_parallel(double signal, Instant at, const double *p, const
         n[22] = after.v[4];
         n[23] = after.v[5];
     }
-    if (p[73] != 0.0) {
-        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[74], p[75], p[76], p[77]}});
+    if (p[74] != 0.0) {
+        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[75], p[76], p[77], p[78]}});
         signal = t5.a;
     }
     return signal;
@@ -1056,8 +1056,8 @@ static Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vec
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[78] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[79]}});
+    if (p[79] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[80]}});
         signal = t1.a;
     }
     return signal;
@@ -1276,11 +1276,11 @@ static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[80] != 0.0 && p[3] != 0.0) {
+    if (p[81] != 0.0 && p[3] != 0.0) {
         const Tuple24 t1 = force_lag_flow(signal, at, (Vector35){{s[24], s[25], s[26], s[27], s[28], s[29], s[30],
             s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44], s[45],
             s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57], s[58]}},
-            (Vector3){{p[81], p[82], p[83]}});
+            (Vector3){{p[82], p[83], p[84]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         n[24] = flowed.v[0];
@@ -1318,11 +1318,11 @@ static double through_reading(double signal, Instant at, const double *p, const 
         n[56] = flowed.v[32];
         n[57] = flowed.v[33];
         n[58] = flowed.v[34];
-    } else if (p[80] != 0.0) {
+    } else if (p[81] != 0.0) {
         const Tuple24 t2 = force_lag_respond(signal, at, (Vector35){{s[24], s[25], s[26], s[27], s[28], s[29],
             s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44],
             s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57], s[58]}},
-            (Vector3){{p[81], p[82], p[83]}});
+            (Vector3){{p[82], p[83], p[84]}});
         signal = t2.a;
         Vector35 after = t2.b;
         n[24] = after.v[0];
@@ -1361,16 +1361,16 @@ static double through_reading(double signal, Instant at, const double *p, const 
         n[57] = after.v[33];
         n[58] = after.v[34];
     }
-    if (p[84] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[85]}});
+    if (p[85] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[86]}});
         signal = t3.a;
     }
-    if (p[86] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[87]}});
+    if (p[87] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[88]}});
         signal = t4.a;
     }
-    if (p[88] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[89], p[90]}});
+    if (p[89] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[90], p[91]}});
         signal = t5.a;
     }
     return signal;
@@ -1417,7 +1417,7 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
             v = (above - compressed(sooner, moment, surface, p, s)) / (2.0 * h);
         }
     }
-    double bare = held ? power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
+    double bare = held ? p[5] + power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
     Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure,
         temperature, held};
     double elastic = through_scale(1.0, at, p, s, n) * bare;

@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "d90ba0894892039b" /* what stands where in p and s */
+#define LAYOUT "a267355780809288" /* what stands where in p and s */
 enum {
-    PARAMETERS = 91,
+    PARAMETERS = 92,
     STATES = 181,
     S_TIME = 0,
     S_STARTED = 4,
