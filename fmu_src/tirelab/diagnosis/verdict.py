@@ -17,6 +17,7 @@ from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..recordings.recording import Recording
 from ..report.titles import headline
+from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
@@ -263,7 +264,7 @@ def _recording(recorded: Recorded) -> Recording:
     if isinstance(recorded, Recording):
         return recorded
     r = recorded
-    return Recording(r.name, r.time, r.deflection, r.surface_radius, r.force)
+    return Recording(r.name, r.time, r.deflection, r.surface_radius, r.force, **measured_of(r))
 
 
 def _forces(tire: TireModel, recordings: Sequence[Recording]) -> list[FloatArray]:

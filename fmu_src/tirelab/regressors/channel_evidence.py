@@ -49,7 +49,7 @@ class ChannelEvidence:
 
 
 def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidence:
-    """Return what the channels show; cells: of deflection and direction, of each recording's blocks, -1: where it turns."""
+    """Return what the channels show; cells: deflection and direction of each recording's blocks, -1: where it turns."""
     impossible: set[str] = set()
     unvaried: dict[str, str] = {}
     for channel in CHANNELS:
