@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -264,7 +264,8 @@ def _recording(recorded: Recorded) -> Recording:
     if isinstance(recorded, Recording):
         return recorded
     r = recorded
-    return Recording(r.name, r.time, r.deflection, r.surface_radius, r.force, **measured_of(r))
+    plain = Recording(r.name, r.time, r.deflection, r.surface_radius, r.force)
+    return replace(plain, **measured_of(r))  # type: ignore[arg-type]
 
 
 def _forces(tire: TireModel, recordings: Sequence[Recording]) -> list[FloatArray]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from native_me import RADIAL_FORCE, Unit
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.errors import TirelabError
@@ -110,3 +111,14 @@ def test_every_effect_acts_on_a_part_that_pulls_as_it_is_simulated(tmp_path: Pat
     found = replay(built(part, tmp_path, native=native), both)
     assert force.min() < -100.0
     assert np.max(np.abs(found - force)) < 1e-8 * np.max(np.abs(force))
+
+
+def test_a_solver_is_told_how_the_force_depends_on_the_pressure(tmp_path: Path) -> None:
+    """dF/dp = g F0 / p0 of F = F0 (1 + g (p / p0 - 1)), by the directional derivative of Model Exchange."""
+    fmu = built(tire_with("inflation_pressure", 0.8, 2.5e5), tmp_path, native=True)
+    fmpy.extract(str(fmu), str(tmp_path / "unpacked"))
+    unit = Unit(tmp_path / "unpacked", (0.02, 1e5, 2.0e5))
+    reference = unit.names["inflation_pressure"]
+    bare = 550.9 * 2.0**1.422
+    assert unit.get() == pytest.approx(bare * (1.0 + 0.8 * (2.0 / 2.5 - 1.0)), rel=1e-12)
+    assert unit.derivative(RADIAL_FORCE, [reference], [1.0]) == pytest.approx(0.8 * bare / 2.5e5, rel=1e-6)
