@@ -17,10 +17,9 @@ pneumatic_cylinder_pressure_friction/
     6e0bcb4633bd53b2a8544cdbd497c4c06539afc7; CC0, E. Zillen, H. Vallery, G. Smit
 
 None of them is a tire. A sphere pressed into tissue follows the tire's own law with B = 1.5; the indenter's does with
-B = 2. Their lengths and forces are multiplied up to those of a tire, time is left as it is, and every figure is printed
-in the unit of its recording. The damper and the piston have next to no stiffness, and the tool looks for what departs
-from a law that has one: a spring K of our own is laid beside them: K x is added to the recorded force and K to the
-law of the baseline. That is exact and hides nothing.
+B = 2. Micrometres and nanonewtons are told as millimetres and newtons there, time is left as it is, and every figure is
+printed in the unit of its recording. The damper and the piston are read as they are: they pull and push, and their
+baseline is a part that is held at both ends, a straight line through their readings or a preload alone.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from __future__ import annotations
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +36,7 @@ from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.verdict import Verdict
+from tirelab.identification.part_laws import LEAST_SPRING, fit_laws, tire_of
 from tirelab.recordings.recording import Recording, read_recording
 from tirelab.simulation.simulate import simulate
 
@@ -209,33 +209,36 @@ def indenter(folder: Path) -> Finding:
     )
 
 
-DAMPER_SPRING = 1e5
-"""Stiffness laid beside the damper [N/m]: 2.5 kN at its full stroke, as a tire has."""
+def signed(path: Path, columns: dict[str, str], units: dict[str, str]) -> Recording:
+    """A recording whose deflection and force count as they are: of a part that pulls no sign can be told."""
+    kept = {name: column if name == "time" else f"+{column}" for name, column in columns.items()}
+    kept |= {name: column for name, column in columns.items() if name == "pressure"}
+    return read_recording(path, columns=kept, units=units, radius="flat")
 
 
-def damper(folder: Path, name: str, *, preload_in_baseline: bool) -> Finding:
-    """The first half of the strokes fitted, the second half not.
+def of(recording: Recording, samples: slice) -> Recording:
+    """Some samples of a recording with all its channels."""
+    r = recording
+    pressure = None if r.pressure is None else r.pressure[samples]
+    channels = (r.time, r.deflection, r.surface_radius, r.force)
+    return Recording(r.name, *(c[samples] for c in channels), pressure=pressure)
 
-    preload_in_baseline: the law holds the straight line through the first half; else nothing but our own spring
-    """
+
+def damper(folder: Path, name: str) -> Finding:
+    """The first half of the strokes fitted, the second half not; the baseline is a spring with a preload."""
     columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
-    units = {"time": "s", "deflection": "mm", "force": "N"}
-    own = read_recording(folder / f"{name}.mat", columns=columns, units=units, radius="flat")
+    own = signed(folder / f"{name}.mat", columns, {"time": "s", "deflection": "mm", "force": "N"})
     half = len(own) // 2
-    x = own.deflection - own.deflection.min() + 1e-4  # in contact throughout
-    slope, preload = np.polyfit(x[:half], own.force[:half], 1).tolist() if preload_in_baseline else (0.0, 0.0)
-    stiffness = DAMPER_SPRING + slope
-    r = recorded(name, own.time, x + preload / stiffness, own.force + DAMPER_SPRING * x)
-    tire = baseline_law(stiffness / 100.0, 1.0)
-    verdict = diagnose([part(r, slice(0, half))], tire)
-    before, after = errors(verdict, tire, r, slice(half, None))
+    fitted = of(own, slice(0, half))
+    line = next(fit for fit in fit_laws([fitted]) if fit.name == "linear")
+    tire = tire_of(line, [fitted], name)
+    verdict = diagnose([fitted], tire)
+    before, after = errors(verdict, tire, own, slice(half, None))
     still = int(np.flatnonzero(np.abs(np.diff(own.deflection)) > 1e-6)[0])
     at_rest = own.force[:still].mean()
     return Finding(
-        f"Magnetorheological damper ({name})",
-        f"a spring of {slope:.0f} N/m with a preload of {preload:.0f} N"
-        if preload_in_baseline
-        else "no force at all",
+        f"Magnetorheological damper ({name}), {own.force.min():.0f} to {own.force.max():.0f} N",
+        f"the straight line through the strokes: {line.value('k'):.2g} N/mm with a preload of {tire.preload:.0f} N",
         verdict,
         "the second half of the strokes",
         before,
@@ -246,38 +249,33 @@ def damper(folder: Path, name: str, *, preload_in_baseline: bool) -> Finding:
             f"at rest before the first stroke it already presses with {at_rest:.0f} N: a preload",
             f"in the middle of the stroke the ways in and out are {2 * half_loop(own, 0.45):.0f} N apart: a loop",
         ),
-        tuple(
-            Refusal(
-                (name,), "with a linear law the zero of the force and that of the deflection are one preload"
-            )
-            for name in ("force_offset", "deflection_offset")
-            if not preload_in_baseline
-        ),
     )
 
 
-PISTON_LEVER = 0.02
-"""Deflection [m] at which the spring laid beside the piston carries the piston's mean force."""
+BARS = (1, 3, 5, 7)
+
+
+def piston_recordings(folder: Path) -> dict[int, Recording]:
+    """The recordings of the piston by their pressure [bar]."""
+    columns = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
+    units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
+    return {bar: signed(folder / f"O-ring_{bar}bar.csv", columns, units) for bar in BARS}
+
+
+def preloaded(force: float) -> TireModel:
+    """A part without a spring that presses with a constant force [N]."""
+    return TireModel(PowerLaw(LEAST_SPRING, 1.0), tested_range=None, two_sided=True, preload=force)
 
 
 def piston(folder: Path, bar: int) -> Finding:
     """The first half of the strokes is fitted; the baseline is the mean force, without friction."""
-    channels = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
-    units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
-
-    def read(p: int) -> Recording:
-        return read_recording(folder / f"O-ring_{p}bar.csv", columns=channels, units=units, radius="flat")
-
-    files = {p: read(p) for p in (1, 3, 7)}
+    files = piston_recordings(folder)
     own = files[bar]
     half = len(own) // 2
     mean = float(own.force[:half].mean())
-    spring = mean / PISTON_LEVER
-    x = own.deflection - own.deflection.min()
-    r = recorded(f"O-ring_{bar}bar", own.time, x + PISTON_LEVER, own.force + spring * x)
-    tire = baseline_law(spring / 100.0, 1.0)
-    verdict = diagnose([part(r, slice(0, half))], tire)
-    before, after = errors(verdict, tire, r, slice(half, None))
+    tire = preloaded(mean)
+    verdict = diagnose([of(own, slice(0, half))], tire)
+    before, after = errors(verdict, tire, own, slice(half, None))
     alone, together = slope_per_bar([own]), slope_per_bar(list(files.values()))
     loops = {p: half_loop(f, 0.15) for p, f in files.items()}
     rate = 1e3 * smooth_rate(own)
@@ -303,8 +301,44 @@ def piston(folder: Path, bar: int) -> Finding:
                 ("rate_independent_hysteresis", "viscous_damping"),
                 f"each way has one speed, {speeds[0]:.0f} and {speeds[1]:.0f} mm/s: friction looks like viscosity",
             ),
+            Refusal(("inflation_pressure",), "at each deflection the pressure was the same every time"),
         ),
     )
+
+
+def pistons(folder: Path) -> Finding:
+    """All four pressures together, of each the first half; the baseline is their mean force, whatever the pressure."""
+    files = list(piston_recordings(folder).values())
+    fitted, kept = zip(
+        *((of(f, slice(0, len(f) // 2)), of(f, slice(len(f) // 2, None))) for f in files), strict=True
+    )
+    mean = float(np.mean([f.force.mean() for f in fitted]))
+    tire = preloaded(mean)
+    verdict = diagnose(list(fitted), tire, held_out=list(kept))
+    return Finding(
+        "Pneumatic piston at 1, 3, 5 and 7 bar",
+        f"the mean force of all, {mean:.1f} N, whatever the pressure",
+        verdict,
+        "the second half of each file",
+        verdict.fit.held_out_before,
+        verdict.fit.held_out_after,
+        verdict.fit.noise,
+        "N",
+        (
+            f"the corrected part gains {gain_per_bar(verdict.tire, files[1]):.1f} N/bar; the means of the files "
+            f"{slope_per_bar(files):.1f} N/bar",
+        ),
+        (Refusal(("pressure_leak", "gas_compression"), "the measured pressure does not show it"),),
+    )
+
+
+def gain_per_bar(part: TireModel, recording: Recording) -> float:
+    """By how much the simulated mean force [N] grows from 2 to 6 bar on the motion of a recording, for each bar."""
+    means = [
+        float(simulate(part, replace(recording, pressure=np.full(len(recording), 1e5 * bar))).mean())
+        for bar in (2.0, 6.0)
+    ]
+    return (means[1] - means[0]) / 4.0
 
 
 def slope_per_bar(files: list[Recording]) -> float:
@@ -343,10 +377,10 @@ def findings(folder: Path) -> Iterator[Finding]:
     )
     cases: list[Callable[[], Finding]] = [lambda: brain(afm), lambda: gel(afm), lambda: indenter(indent)]
     cases += [
-        lambda: damper(mr, "ensaio1", preload_in_baseline=False),
-        lambda: damper(mr, "ensaio4a", preload_in_baseline=True),
+        lambda: damper(mr, "ensaio1"),
+        lambda: damper(mr, "ensaio4a"),
     ]
-    cases += [lambda: piston(air, 1), lambda: piston(air, 7)]
+    cases += [lambda: piston(air, 1), lambda: piston(air, 7), lambda: pistons(air)]
     return (case() for case in cases)
 
 

@@ -15,8 +15,16 @@ from pythonfmu.default_experiment import DefaultExperiment
 from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Status, Fmi2Variability
 from pythonfmu.fmi2slave import Fmi2Slave
 from pythonfmu.variables import Boolean, Real
-from radialtire import check_inputs, parameters_of, power_law, read_tire, with_parameters
-from radialtire.effect import State
+from radialtire import (
+    NONE_MEASURED,
+    check_inputs,
+    check_measured,
+    parameters_of,
+    power_law,
+    read_tire,
+    with_parameters,
+)
+from radialtire.effect import NOT_MEASURED, State
 from radialtire.flat_step import TIME
 from radialtire.model import DEFLECTION_HIGHEST, DEFLECTION_LOWEST
 from radialtire.tirefile import to_text
@@ -98,6 +106,8 @@ class BicycleTire(Fmi2Slave):
         self._tire = read_tire(Path(self.resources) / "tire.json")
         self._parameters = {name: value for name, (_, value) in parameters_of(self._tire).items()}
         self._pending: dict[str, float] = {}
+        self._channels = self._tire.channels
+        self._given = [start for _, _, start in self._channels]
         self._inputs: Sequence[float] = (0.0, FLAT)
         self._surface = math.nan  # the surface of _elastic; NaN where every step needs the full evaluation
         self._elastic = power_law.on_surface(0.0, 1.0)
@@ -124,11 +134,14 @@ class BicycleTire(Fmi2Slave):
             "Whether curvature, deflection and force are within the tested range",
         )
         self._names = list(self._parameters)
+        self._first_channel = FIRST_PARAMETER + len(self._names)
         for name, (parameter, _) in parameters_of(self._tire).items():
             text = f"{parameter.symbol}: {parameter.meaning}"
             if parameter.unit not in BASE_UNITS:
                 text = f"{text} [{parameter.unit}]"
             self._declare(Real, name, Fmi2Causality.parameter, text)
+        for _, channel, _ in self._channels:
+            self._declare(Real, channel.variable, Fmi2Causality.input, channel.meaning)
 
     def _declare(
         self, kind: type[Real] | type[Boolean], name: str, causality: Fmi2Causality, text: str
@@ -156,7 +169,7 @@ class BicycleTire(Fmi2Slave):
             self._inputs = values
             return True
         for vr, value in zip(vrs, values, strict=True):
-            if not (0 <= vr < RADIAL_FORCE or FIRST_PARAMETER <= vr < FIRST_PARAMETER + len(self._names)):
+            if not (0 <= vr < RADIAL_FORCE or FIRST_PARAMETER <= vr < self._first_channel + len(self._given)):
                 name = self.vars[vr].name if vr in self.vars else f"value reference {vr}"
                 self._tell(f"{name} = {value:.17g} cannot be set; set inputs and parameters only")
                 return False
@@ -164,6 +177,8 @@ class BicycleTire(Fmi2Slave):
         for vr, value in zip(vrs, values, strict=True):
             if vr < RADIAL_FORCE:
                 self._inputs = (value, self._inputs[1]) if vr == DEFLECTION else (self._inputs[0], value)
+            elif vr >= self._first_channel:
+                self._given[vr - self._first_channel] = value
             else:
                 self._pending[self._names[vr - FIRST_PARAMETER]] = value
         return True
@@ -193,11 +208,25 @@ class BicycleTire(Fmi2Slave):
     def _other(self, vr: int) -> float:
         if vr == RADIAL_STIFFNESS:
             x, R = self._inputs
-            return self._tire.stiffness(x, R, self._state) if math.isfinite(self._force) else math.nan
-        if not FIRST_PARAMETER <= vr < FIRST_PARAMETER + len(self._names):
+            return (
+                self._tire.stiffness(x, R, self._state, self._measured())
+                if math.isfinite(self._force)
+                else math.nan
+            )
+        if not FIRST_PARAMETER <= vr < self._first_channel + len(self._given):
             raise ValueError(f"value reference {vr} is no Real variable of this tire")
+        if vr >= self._first_channel:
+            return self._given[vr - self._first_channel]
         name = self._names[vr - FIRST_PARAMETER]
         return self._pending.get(name, self._parameters[name])
+
+    def _measured(self) -> tuple[float, ...]:
+        """Return the channels as the tire takes them; one that is not known is not measured."""
+        found = list(NONE_MEASURED)
+        for (number, channel, _), value in zip(self._channels, self._given, strict=True):
+            check_measured(channel, value)
+            found[number] = NOT_MEASURED if value == channel.unknown else value
+        return tuple(found)
 
     def _tell(self, reason: str) -> None:
         self._current = False
@@ -218,7 +247,7 @@ class BicycleTire(Fmi2Slave):
                 self._pending.clear()
             x, R = self._inputs
             check_inputs(x, R)
-            self._force, state = self._tire.step(x, R, time, self._state)
+            self._force, state = self._tire.step(x, R, time, self._state, self._measured())
             if math.isfinite(self._force):
                 return state, ""
             reason = f"radial_force is not finite at deflection = {x:.17g} m, surface_radius = {R:.17g} m"
@@ -270,7 +299,7 @@ class BicycleTire(Fmi2Slave):
             return False
         self._state = state
         self._reached = current_time + step_size
-        if not self._tire.effects:
+        if self._tire.bare:
             self._surface, self._elastic = R, power_law.on_surface(*self._tire.law.coefficients(R))
         return True
 
@@ -291,6 +320,7 @@ class BicycleTire(Fmi2Slave):
     def _get_fmu_state(self) -> dict[str, Any]:
         return {
             "inputs": list(self._inputs),
+            "channels": list(self._given),
             "parameters": {**self._parameters, **self._pending},
             "history": self._state,
             "reached": self._reached,
@@ -298,6 +328,7 @@ class BicycleTire(Fmi2Slave):
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         self._inputs = tuple(state["inputs"])
+        self._given = list(state["channels"])
         self._surface = math.nan
         self._pending = dict(state["parameters"])
         self._state = tuple(state["history"])
@@ -329,7 +360,14 @@ class BicycleTire(Fmi2Slave):
             finite = {key: repr(float(bound)) for key, bound in bounds.items() if math.isfinite(bound)}
             unit_of = {"unit": parameter.unit} if parameter.unit in BASE_UNITS else {}
             traits[vr] = {**unit_of, **finite}
-        if not self._tire.effects:  # damping, inertia or a wrong zero can make the force negative
+        for vr, (_, channel, _) in enumerate(self._channels, self._first_channel):
+            traits[vr] = {
+                "unit": channel.unit,
+                "min": repr(float(channel.minimum)),
+                "max": repr(float(channel.maximum)),
+                "nominal": repr(float(channel.usual)),
+            }
+        if self._tire.bare:  # damping, inertia or a wrong zero can make the force negative
             for vr in (RADIAL_FORCE, RADIAL_STIFFNESS):
                 traits[vr] = {**traits[vr], "min": "0"}
         variables = root.find("ModelVariables")
@@ -349,8 +387,9 @@ class BicycleTire(Fmi2Slave):
                 SubElement(unit, "DisplayUnit", name=display, factor=factor)
         root.insert(1, units)
 
-        inputs = [DEFLECTION + 1, SURFACE_RADIUS + 1]
-        parameters = [vr + 1 for vr in range(FIRST_PARAMETER, len(self.vars))]
+        channels = range(self._first_channel, self._first_channel + len(self._channels))
+        inputs = [DEFLECTION + 1, SURFACE_RADIUS + 1, *(vr + 1 for vr in channels)]
+        parameters = [vr + 1 for vr in range(FIRST_PARAMETER, self._first_channel)]
         outputs = structure.find("Outputs")
         assert outputs is not None
         unknowns = SubElement(structure, "InitialUnknowns")

@@ -16,17 +16,22 @@ FLAT = 1e5
 
 
 @contextmanager
-def fmu_tire(fmu: Path) -> Iterator[SteppedTire]:
+def fmu_tire(fmu: Path, **held: float) -> Iterator[SteppedTire]:
     """Open the tire FMU at `fmu` and yield it as a function of time [s], deflection [m] and surface radius [m].
+
+    held: inputs that keep one value, such as inflation_pressure [Pa] of a tire that has one
 
     Every question is a communication step that ends at its time, the inputs set first. An FMU is native code: open
     only those that you trust.
     """
     with opened(fmu) as unit:
-        yield _asked(unit)
+        for name in held:
+            if name not in unit.references:
+                raise TirelabError(f"{fmu} has no input {name!r}; build it from a tire that reads it")
+        yield _asked(unit, held)
 
 
-def _asked(unit: OpenFmu) -> SteppedTire:
+def _asked(unit: OpenFmu, held: dict[str, float]) -> SteppedTire:
     instance = unit.instance
     inputs = [unit.references[name] for name in ("deflection", "surface_radius")]
     output = [unit.references["radial_force"]]
@@ -36,6 +41,7 @@ def _asked(unit: OpenFmu) -> SteppedTire:
         if not last:
             instance.setupExperiment(startTime=time)
             instance.enterInitializationMode()
+            instance.setReal([unit.references[name] for name in held], list(held.values()))
         instance.setReal(inputs, [deflection, min(max(surface_radius, -FLAT), FLAT)])
         try:
             if last:

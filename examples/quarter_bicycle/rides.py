@@ -10,7 +10,7 @@ import numpy as np
 from bicycle import QuarterBicycle
 from model import Course, Floats, Motion, Tire, at_rest, integrate, track_of
 from radialtire import TireModel, power_law
-from tirelab.terrain import Ground, flat, ground_from, iso8608, log, place, reach, root
+from tirelab.terrain import Ground, flat, force_at, ground_from, iso8608, log, place, reach, root
 from wheel import Track
 
 SLACK = 0.2
@@ -47,8 +47,14 @@ class RideOnGround:
         return Course(self.ground, self.speed, self.start, self.duration)
 
 
-def elastic(tire: TireModel) -> Tire:
-    """Return the elastic law of `tire`: (deflection [m] > 0, surface radius [m]) -> force [N]."""
+def elastic(tire: TireModel, pressure: float | None = None) -> Tire:
+    """Return the elastic law of `tire`: (deflection [m] > 0, surface radius [m]) -> force [N].
+
+    pressure [Pa]: gauge pressure at which it is ridden, where the tire says what that does to its force
+    """
+    if pressure is not None:
+        at_pressure = force_at(tire, {"pressure": pressure})
+        return lambda x, radius: float(at_pressure(np.array([x]), np.array([radius]))[0])
 
     def force(deflection: float, surface_radius: float) -> float:
         return power_law.force(deflection, *tire.law.coefficients(surface_radius))

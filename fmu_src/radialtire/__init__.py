@@ -3,10 +3,10 @@
 This package is handed to the FMU whole, so it imports the standard library only.
 """
 
-from .effect import Effect, Flow, Instant, State
+from .effect import CHANNELS, NONE_MEASURED, Channel, Effect, Flow, Instant, Reading, State
 from .effects import CATALOGUE
 from .hull1996 import FLAT_RADIUS, SECOND_READING, Hull1996
-from .model import InputError, TestedRange, TireModel, check_inputs
+from .model import InputError, TestedRange, TireModel, check_inputs, check_measured
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
 from .prior import Prior
@@ -15,8 +15,11 @@ from .tirefile import TireFileError, parameters_of, read_tire, with_parameters, 
 
 __all__ = [
     "CATALOGUE",
+    "CHANNELS",
     "FLAT_RADIUS",
+    "NONE_MEASURED",
     "SECOND_READING",
+    "Channel",
     "Effect",
     "Flow",
     "Hull1996",
@@ -26,12 +29,14 @@ __all__ = [
     "ParameterError",
     "PowerLaw",
     "Prior",
+    "Reading",
     "Recalibrated",
     "State",
     "TestedRange",
     "TireFileError",
     "TireModel",
     "check_inputs",
+    "check_measured",
     "parameters_of",
     "read_tire",
     "with_parameters",

@@ -10,11 +10,12 @@ An effect is a pure response at one stage of the signal path from the measured d
     place "reading"     force                -> measured force (lag, zero, ceiling)
 
 Effects of one place act in the order of the catalogue. After "parallel" a force below zero becomes zero, since the
-ground cannot pull.
+ground cannot pull; that of a part that is held at both ends (a damper, a bushing) stays.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -31,6 +32,64 @@ PLACES = ("deflection", "series", "scale", "parallel", "inertia", "reading")
 State = tuple[float, ...]
 
 
+@dataclass(frozen=True)
+class Channel:
+    """A quantity beside the motion that a recording may hold, that an effect may read, and that is then an input.
+
+    name: as in recordings and in `Instant`; variable: as the FMU's input; unit, in SI; usual: a value of usual size;
+    minimum, maximum: the closed interval of values that can be; meaning: one line for the FMU; resolution: least change
+    that shows anything, as a part of the value; unknown: the input's value that stands for a quantity that is not
+    known, or NOT_MEASURED where there is none
+    """
+
+    name: str
+    variable: str
+    unit: str
+    usual: float
+    minimum: float
+    maximum: float
+    meaning: str
+    resolution: float
+    unknown: float = math.nan
+
+
+NOT_MEASURED = math.nan
+"""What `Instant` holds of a channel that was not recorded and is no input."""
+
+CHANNELS = (
+    Channel(
+        "pressure",
+        "inflation_pressure",
+        "Pa",
+        344.7e3,
+        -101325.0,
+        1e7,
+        "Gauge pressure of the air in the tire",
+        resolution=1e-2,
+    ),
+    Channel(
+        "temperature",
+        "tire_temperature",
+        "K",
+        293.15,
+        0.0,
+        1e4,
+        "Temperature of the tire; 0: not known, it warms with time",
+        resolution=1e-3,
+        unknown=0.0,
+    ),
+)
+"""Every channel that an effect may read, in the order of the fields of `Instant` and of `measured` values."""
+
+NONE_MEASURED = (NOT_MEASURED,) * len(CHANNELS)
+"""The measured values where no channel was recorded."""
+
+
+def is_measured(value: float) -> bool:
+    """Return whether a channel was recorded: NOT_MEASURED is not equal to itself."""
+    return value == value
+
+
 class Instant(NamedTuple):
     """The quantities that an effect may use at one time, all in SI except A.
 
@@ -40,6 +99,8 @@ class Instant(NamedTuple):
     coefficient, exponent: A [N/cm^B] and B [1] of the surface
     elastic_force: [N] at the place "scale" A x^B, after it A x^B with its factor, before it 0
     curvature: [1/m] of the surface, convex > 0
+    pressure: [Pa], gauge, and temperature [K] of the tire, as measured or as inputs; else NOT_MEASURED
+    two_sided: whether the part is held at both ends, so that a deflection below 0 is no lost contact
     """
 
     time: float
@@ -52,6 +113,9 @@ class Instant(NamedTuple):
     exponent: float
     elastic_force: float
     curvature: float = 0.0
+    pressure: float = NOT_MEASURED
+    temperature: float = NOT_MEASURED
+    two_sided: bool = False
 
 
 Response = Callable[[float, Instant, State, State], "tuple[float, State]"]
@@ -78,6 +142,18 @@ class Flow:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """An effect that reads a channel.
+
+    channel: of CHANNELS, by its name; reference: the parameter that is the channel's value at which the effect
+    vanishes, and then it does nothing where the channel was not measured; None: it has a response without it too
+    """
+
+    channel: str
+    reference: str | None = None
+
+
+@dataclass(frozen=True)
 class Effect:
     """One piece of physics.
 
@@ -92,6 +168,8 @@ class Effect:
     form_error: part of its response by which other formulations of the same physics differ from it once fitted, as
     measured by `tirelab.validation.form_errors` (at least 0.001; a lag of the deflection and a drift were never alone)
     flow: the effect as differential equations, or None: then its state is memory, kept at accepted steps
+    reads: the channel that it reads, or None; changes: names of the channels that move in proportion to what it does to
+    the force, so that a recording of them shows it or refutes it
     """
 
     name: str
@@ -107,6 +185,8 @@ class Effect:
     traits: tuple[str, ...] = ()
     form_error: float = 0.02
     flow: Flow | None = None
+    reads: Reading | None = None
+    changes: tuple[str, ...] = ()
 
     @property
     def signed(self) -> bool:

@@ -24,12 +24,13 @@ one, 0 before; time [s] of the first one."""
 HEAD = 6
 """Index of the first number of an effect in the state."""
 
-TRACKED, FOLLOWED, NOISE, CONTINUOUS = 0, 1, 2, 3
+TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD = 0, 1, 2, 3, 4, 5
 """In the parameters: 1 where rate and acceleration follow from the readings (0: they are given, or not needed); 1 where
 the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading; 1 where effects that
-are differential equations are a solver's: their numbers in n are then rates (see `Flow`)."""
+are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at
+both ends, and then its force [N] without a deflection."""
 
-PARAMETERS = 4
+PARAMETERS = 6
 """Index of the first number of an effect in the parameters."""
 
 TRACK = 4 * 14 + 4 + 1
@@ -100,7 +101,7 @@ def laid_out(
 def step(
     path: SignalPath,
     law: tuple[float, float],
-    motion: tuple[float, float, float, float, float],
+    motion: tuple[float, float, float, float, float, float, float],
     p: Sequence[float],
     s: Sequence[float],
     n: list[float],
@@ -108,10 +109,11 @@ def step(
     """Return the radial force [N] and the tire's deflection [m], and write the state after the step into `n`.
 
     law: A [N/cm^B] and B [1]; p: parameters; s: state before; n: where the state after goes, a copy of s
-    motion: deflection [m], surface radius [m], time [s]; rate [m/s] and acceleration [m/s^2], used where p tracks none
+    motion: deflection [m], surface radius [m], time [s]; rate [m/s] and acceleration [m/s^2], used where p tracks none;
+    then the channels, in the order of CHANNELS
     """
     A, B = law
-    deflection, surface_radius, time, rate, acceleration = motion
+    deflection, surface_radius, time, rate, acceleration, pressure, temperature = motion
     bend = 0.0 if abs(surface_radius) >= FLAT_RADIUS else 1.0 / surface_radius
     first = s[STARTED] == 0.0
     start = time if first else s[START]
@@ -120,7 +122,8 @@ def step(
         reading = tracked(s, path.track, deflection, interval, p[NOISE])
         store(n, path.track, reading)
         rate, acceleration = tracking.rate(reading), tracking.acceleration(reading)
-    moment = time - start, interval, first
+    held = p[TWO_SIDED] != 0.0
+    moment = time - start, interval, first, pressure, temperature, held
     surface = A, B, bend
     x = compressed(path, (deflection, rate, acceleration), moment, surface, p, s)
     v = rate
@@ -136,12 +139,16 @@ def step(
             above = compressed(path, later, moment, surface, p, s)
             v = (above - compressed(path, sooner, moment, surface, p, s)) / (2.0 * h)
 
-    bare = power_law.force(x, A, B)
-    at = Instant(time - start, interval, first, x, v, acceleration, A, B, bare, bend)
+    bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
+    at = Instant(
+        time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held
+    )
     elastic = through(path.scale, 1.0, at, p, s, n) * bare
-    at = Instant(time - start, interval, first, x, v, acceleration, A, B, elastic, bend)
+    at = Instant(
+        time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature, held
+    )
     force = through(path.parallel, elastic, at, p, s, n)
-    if force < 0.0:
+    if force < 0.0 and not held:
         force = 0.0
     force = through(path.inertia, force, at, p, s, n)
     force = through(path.reading, force, at, p, s, n)
@@ -159,7 +166,7 @@ def step(
 def stiffness(
     path: SignalPath,
     law: tuple[float, float],
-    motion: tuple[float, float, float, float, float],
+    motion: tuple[float, float, float, float, float, float, float],
     p: Sequence[float],
     s: Sequence[float],
     n: list[float],
@@ -168,13 +175,14 @@ def stiffness(
 
     Central, or one-sided where the contact begins within TANGENT_STEP: in the air up to a deflection of 0.
     """
-    x, R, t, v, a = motion
-    force, here = step(path, law, (x, R, t, v, a), p, s, n)
-    above, higher = step(path, law, (x + TANGENT_STEP, R, t, v, a), p, s, n)
-    below, lower = step(path, law, (x - TANGENT_STEP, R, t, v, a), p, s, n)
-    if here <= 0.0 and higher > 0.0:
+    x, R, t, v, a, P, T = motion
+    force, here = step(path, law, (x, R, t, v, a, P, T), p, s, n)
+    above, higher = step(path, law, (x + TANGENT_STEP, R, t, v, a, P, T), p, s, n)
+    below, lower = step(path, law, (x - TANGENT_STEP, R, t, v, a, P, T), p, s, n)
+    one_sided = p[TWO_SIDED] == 0.0
+    if one_sided and here <= 0.0 and higher > 0.0:
         return (force - below) / TANGENT_STEP
-    if here > 0.0 and lower <= 0.0:
+    if one_sided and here > 0.0 and lower <= 0.0:
         return (above - force) / TANGENT_STEP
     return (above - below) / (2.0 * TANGENT_STEP)
 
@@ -205,7 +213,7 @@ def through(
 def compressed(
     path: SignalPath,
     read: tuple[float, float, float],
-    moment: tuple[float, float, bool],
+    moment: tuple[float, float, bool, float, float, bool],
     surface: tuple[float, float, float],
     p: Sequence[float],
     s: Sequence[float],
@@ -213,14 +221,16 @@ def compressed(
     """Return the tire's deflection [m] for one that is read; effects before the elastic law have no memory.
 
     read: deflection [m], rate [m/s], acceleration [m/s^2]; moment: time since the first sample [s], interval [s],
-    whether it is the first one; surface: A, B and curvature [1/m]
+    whether it is the first one, the channels, whether the part is two-sided; surface: A, B and curvature [1/m]
     """
     deflection, rate, acceleration = read
-    time, interval, first = moment
+    time, interval, first, pressure, temperature, held = moment
     A, B, bend = surface
-    at = Instant(time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend)
+    at = Instant(
+        time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held
+    )
     x = unremembered(path.deflection, deflection, at, p, s)
-    at = Instant(time, interval, first, x, rate, acceleration, A, B, 0.0, bend)
+    at = Instant(time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held)
     return unremembered(path.series, x, at, p, s)
 
 

@@ -7,8 +7,19 @@ from functools import cached_property
 from typing import ClassVar, Protocol
 
 from . import flat_step, hull1996, power_law
-from .effect import PLACES, Effect, State
-from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, SignalPath, laid_out
+from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
+from .flat_step import (
+    FOLLOWED,
+    NOISE,
+    PARAMETERS,
+    PRELOAD,
+    TIME,
+    TRACK,
+    TRACKED,
+    TWO_SIDED,
+    SignalPath,
+    laid_out,
+)
 from .hull1996 import Hull1996
 from .parameter import Parameter, ParameterError
 
@@ -26,6 +37,17 @@ READING_NOISE = Parameter(
     0.0,
     0.01,
     "standard deviation of the noise in the measured deflection",
+)
+
+
+PRELOAD_FORCE = Parameter(
+    "preload",
+    "F0",
+    "N",
+    0.0,
+    -1e6,
+    1e6,
+    "force of a two-sided part without a deflection, beside its law",
 )
 
 
@@ -78,6 +100,15 @@ def check_inputs(deflection: float, surface_radius: float) -> None:
         )
 
 
+def check_measured(channel: Channel, value: float) -> None:
+    """Raise InputError unless `value` is one that the channel can have."""
+    if not channel.minimum <= value <= channel.maximum:
+        raise InputError(
+            f"{channel.variable} = {value:.17g} {channel.unit} is not allowed; it must lie between "
+            f"{channel.minimum:g} and {channel.maximum:g} {channel.unit}"
+        )
+
+
 @dataclass(frozen=True)
 class TireModel:
     """An elastic law with effects.
@@ -86,6 +117,9 @@ class TireModel:
     tested_range: where the tire was measured, or None where that is not known
     reading_noise: [m] standard deviation of the noise in the measured deflection, which rate and acceleration must not
     follow (see `tracking`); 0 takes the deflection as exact
+    two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
+    and can pull. A tire on the ground can do neither.
+    preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring
     """
 
     law: Law = Hull1996()
@@ -94,9 +128,16 @@ class TireModel:
     name: str = "Hull, Wang & Moore 1996"
     source: str = "Hull, Wang & Moore, Cycling Science, Spring 1996"
     reading_noise: float = 0.0
+    two_sided: bool = False
+    preload: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
+        object.__setattr__(self, "preload", PRELOAD_FORCE.checked(self.preload))
+        if self.preload != 0.0 and not self.two_sided:
+            raise ParameterError(
+                f"preload = {self.preload:g} N needs a two-sided part; a tire without a deflection has no force"
+            )
         names = [effect.name for effect, _ in self.effects]
         if len(set(names)) < len(names):
             raise ParameterError(f"an effect occurs twice in {', '.join(names)}; keep one of each")
@@ -111,6 +152,23 @@ class TireModel:
         """Whether an effect uses rate or acceleration."""
         return any(effect.differentiates for effect, _ in self.effects)
 
+    @property
+    def bare(self) -> bool:
+        """Whether it is an elastic law on the ground and nothing else, so that a step needs no state."""
+        return not self.effects and not self.two_sided
+
+    @cached_property
+    def channels(self) -> tuple[tuple[int, Channel, float], ...]:
+        """The channels that its effects read: their numbers in CHANNELS, themselves, their values without a reading."""
+        found = {}
+        unknown = {channel.name: channel.unknown for channel in CHANNELS}
+        for effect, values in self.effects:
+            if effect.reads is not None:
+                names = [parameter.name for parameter in effect.parameters]
+                name, reference = effect.reads.channel, effect.reads.reference
+                found[name] = unknown[name] if reference is None else values[names.index(reference)]
+        return tuple((i, c, found[c.name]) for i, c in enumerate(CHANNELS) if c.name in found)
+
     @cached_property
     def _flat(self) -> tuple[SignalPath, State, State]:
         """Where the numbers of the effects stand, their parameters, and the state before the first sample."""
@@ -119,6 +177,7 @@ class TireModel:
         path, parameters, initial_state = laid_out(effects, TRACK * (self.differentiates + follows))
         parameters[TRACKED], parameters[FOLLOWED] = float(self.differentiates), float(follows)
         parameters[NOISE] = self.reading_noise
+        parameters[TWO_SIDED], parameters[PRELOAD] = float(self.two_sided), self.preload
         at = PARAMETERS
         for effect, values in self.effects:
             parameters[at : at + 1 + len(values)] = (1.0, *values)
@@ -131,35 +190,56 @@ class TireModel:
         return self._flat[2]
 
     def step(
-        self, deflection: float, surface_radius: float, time: float, state: State
+        self,
+        deflection: float,
+        surface_radius: float,
+        time: float,
+        state: State,
+        measured: tuple[float, ...] = NONE_MEASURED,
     ) -> tuple[float, State]:
         """Return the radial force [N] at `time` [s] and the state after it.
 
+        measured: the value of each of CHANNELS, NOT_MEASURED where there is none
         Pure: called again with the same state it gives the same answer, so a step may be tried and discarded.
         At the time of the state itself, rate and acceleration are those of the state.
         """
         law = self.law.coefficients(surface_radius)
-        if not self.effects:
+        if self.bare:
             return power_law.force(deflection, *law), state
         path, parameters, _ = self._flat
         after = list(state)
         force, _ = flat_step.step(
-            path, law, (deflection, surface_radius, time, 0.0, 0.0), parameters, state, after
+            path, law, _motion(deflection, surface_radius, time, measured), parameters, state, after
         )
         return force, tuple(after)
 
-    def stiffness(self, deflection: float, surface_radius: float, state: State) -> float:
+    def stiffness(
+        self,
+        deflection: float,
+        surface_radius: float,
+        state: State,
+        measured: tuple[float, ...] = NONE_MEASURED,
+    ) -> float:
         """Return the tangent dF/dx [N/m] at the time of `state`, everything but the deflection held constant.
 
+        measured: as for `step`.
         Where the contact begins it is that of the side on which the tire is: in the air up to a deflection of 0.
         """
         law = self.law.coefficients(surface_radius)
-        if not self.effects:
+        if self.bare:
             return power_law.stiffness(deflection, *law)
         path, parameters, _ = self._flat
-        motion = (deflection, surface_radius, state[TIME], 0.0, 0.0)
+        motion = _motion(deflection, surface_radius, state[TIME], measured)
         return flat_step.stiffness(path, law, motion, parameters, state, list(state))
 
     def in_tested_range(self, deflection: float, surface_radius: float, force: float) -> bool:
         """Return whether surface, deflection and force lie in the tested range; False where that is not known."""
         return self.tested_range is not None and self.tested_range.contains(deflection, surface_radius, force)
+
+
+def _motion(
+    deflection: float, surface_radius: float, time: float, measured: tuple[float, ...]
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return the motion as `flat_step` takes it: rate and acceleration are tracked."""
+    pressure, temperature = measured
+    return deflection, surface_radius, time, 0.0, 0.0, pressure, temperature

@@ -32,6 +32,13 @@ def force(deflection: float, coefficient: float, exponent: float) -> float:
     return result
 
 
+def two_sided(deflection: float, coefficient: float, exponent: float) -> float:
+    """Return the force [N] of a part that is held at both ends and pulls as it presses: A sign(x) |x|^B, x in cm."""
+    if deflection < 0.0:
+        return -force(-deflection, coefficient, exponent)
+    return force(deflection, coefficient, exponent)
+
+
 def stiffness(deflection: float, coefficient: float, exponent: float) -> float:
     """Return the tangent dF/dx [N/m] of `force` at `deflection` [m]: A B x^(B-1), 0 where the tire is not loaded."""
     if deflection <= 0.0:

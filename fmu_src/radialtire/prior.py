@@ -6,9 +6,13 @@ from dataclasses import dataclass
 
 SHAPES = ("log", "normal")
 
-QUANTITIES = ("1", "force", "travel", "duration", "interval", "rate", "acceleration", "gauge")
+QUANTITIES = (
+    *("1", "force", "travel", "duration", "interval", "rate", "acceleration", "gauge"),
+    *("pressure", "temperature"),
+)
 """What a recording has: peak force [N], span of the deflection [m], its duration and sampling interval [s], the root
-mean squares of the deflection's rate [m/s] and acceleration [m/s^2], and the noise of its reading [m]."""
+mean squares of the deflection's rate [m/s] and acceleration [m/s^2], the noise of its reading [m], and the median of
+each channel [Pa, K] (its usual value where it was not recorded)."""
 
 
 @dataclass(frozen=True)

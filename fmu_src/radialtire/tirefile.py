@@ -24,7 +24,7 @@ from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
-from .model import READING_NOISE, Law, TestedRange, TireModel
+from .model import PRELOAD_FORCE, READING_NOISE, Law, TestedRange, TireModel
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
 from .recalibrated import Recalibrated
@@ -77,6 +77,8 @@ def to_text(tire: TireModel) -> str:
         "reading_noise": tire.reading_noise,
         "tested_range": None if tire.tested_range is None else asdict(tire.tested_range),
     }
+    if tire.two_sided:
+        content |= {"two_sided": True, "preload": tire.preload}
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -86,7 +88,17 @@ def from_text(text: str) -> TireModel:
         content = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
-    known = {"schema", "name", "source", "law", "effects", "reading_noise", "tested_range"}
+    known = {
+        "schema",
+        "name",
+        "source",
+        "law",
+        "effects",
+        "reading_noise",
+        "tested_range",
+        "two_sided",
+        "preload",
+    }
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
         raise TireFileError(
@@ -100,6 +112,8 @@ def from_text(text: str) -> TireModel:
             name=_text(entry, "name"),
             source=_text(entry, "source"),
             reading_noise=entry.get("reading_noise", 0.0),
+            two_sided=_flag(entry, "two_sided"),
+            preload=entry.get("preload", 0.0),
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None
@@ -113,10 +127,10 @@ def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
     of_law: dict[str, float] = {}
     of_effect: dict[str, dict[str, float]] = {}
     known = parameters_of(tire)
-    reading_noise = tire.reading_noise
+    own: dict[str, float] = {}
     for key, value in values.items():
-        if key == READING_NOISE.name:
-            reading_noise = known[key][0].checked(value)
+        if key in (READING_NOISE.name, PRELOAD_FORCE.name):
+            own[key] = known[key][0].checked(value)
             continue
         owner, name = key.split(".")
         with _owned_by(owner):
@@ -128,19 +142,22 @@ def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
     )
     with _owned_by("law"):
         law = replace(tire.law, **of_law)  # type: ignore[type-var]
-    return replace(tire, law=law, effects=effects, reading_noise=reading_noise)
+    return replace(tire, law=law, effects=effects, **own)  # type: ignore[arg-type]
 
 
 def parameters_of(tire: TireModel) -> dict[str, tuple[Parameter, float]]:
     """Return every parameter of `tire` with its value, by the name `law.NAME` or `EFFECT.NAME`.
 
     Where an effect looks at rate or acceleration, `reading_noise` is one too: who knows the motion exactly sets 0.
+    A two-sided part has its `preload`.
     """
     found = {f"law.{p.name}": (p, float(getattr(tire.law, p.name))) for p in tire.law.parameters}
     for effect, values in tire.effects:
         found |= {f"{effect.name}.{p.name}": (p, v) for p, v in zip(effect.parameters, values, strict=True)}
     if tire.differentiates:
         found[READING_NOISE.name] = (READING_NOISE, tire.reading_noise)
+    if tire.two_sided:
+        found[PRELOAD_FORCE.name] = (PRELOAD_FORCE, tire.preload)
     return found
 
 
@@ -171,6 +188,13 @@ def _text(entry: dict[str, Any], key: str) -> str:
     value = entry.get(key, "")
     if not isinstance(value, str):
         raise TireFileError(f"{key} must be text, not {value!r}")
+    return value
+
+
+def _flag(entry: dict[str, Any], key: str) -> bool:
+    value = entry.get(key, False)
+    if not isinstance(value, bool):
+        raise TireFileError(f"{key} must be true or false, not {value!r}")
     return value
 
 

@@ -1,7 +1,7 @@
 """The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT]
 
-REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static. Every recording is brought to
-a tire's form as there: lengths and forces times a constant, a spring of our own beside what has no stiffness.
+REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static. Dampers, pistons and springs
+are read as they are; micrometres and nanonewtons are told as millimetres and newtons, as there.
 """
 
 from __future__ import annotations
@@ -19,8 +19,10 @@ from radialtire import PowerLaw, TireModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
 from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
+from real_recordings import of, piston_recordings, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.recordings.recording import Recording, read_recording
+from tirelab.identification.part_laws import fit_laws, tire_of
+from tirelab.recordings.recording import Recording
 from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
@@ -46,31 +48,21 @@ def law(coefficient: float, exponent: float) -> TireModel:
 
 
 def damper(folder: Path, name: str, reference: str) -> Real:
-    """A damper beside a spring of 1e5 N/m; no force of its own is believed."""
+    """A damper; the straight line through the fitted half is believed."""
     columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
-    units = {"time": "s", "deflection": "mm", "force": "N"}
-    own = read_recording(
-        folder / f"{name}.mat",
-        columns={k: "+" + v if k != "time" else v for k, v in columns.items()},
-        units=units,
-        radius="flat",
-    )
-    x = own.deflection - own.deflection.min() + 1e-4 + 0.01
-    r = recorded(name, own.time, x, own.force + 1e5 * x)
-    half = len(r) // 2
-    return Real(name, r, slice(0, half), slice(half, None), law(1e3, 1.0), 1.0, reference)
+    own = signed(folder / f"{name}.mat", columns, {"time": "s", "deflection": "mm", "force": "N"})
+    half = len(own) // 2
+    fitted = of(own, slice(0, half))
+    line = next(fit for fit in fit_laws([fitted]) if fit.name == "linear")
+    return Real(name, own, slice(0, half), slice(half, None), tire_of(line, [fitted], name), 1.0, reference)
 
 
 def piston(folder: Path, bar: int, reference: str) -> Real:
     """A piston at constant pressure: its mean force is believed."""
-    channels = {"time": "#1", "deflection": "+#5", "pressure": "#6", "force": "+#7"}
-    units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
-    own = read_recording(folder / f"O-ring_{bar}bar.csv", columns=channels, units=units, radius="flat")
+    own = piston_recordings(folder)[bar]
     half = len(own) // 2
-    spring = float(own.force[:half].mean()) / 0.02
-    x = own.deflection - own.deflection.min()
-    r = recorded(f"O-ring_{bar}bar", own.time, x + 0.02, own.force + spring * x)
-    return Real(r.name, r, slice(0, half), slice(half, None), law(spring / 100.0, 1.0), 1.0, reference)
+    tire = preloaded(float(own.force[:half].mean()))
+    return Real(own.name, own, slice(0, half), slice(half, None), tire, 1.0, reference)
 
 
 def spring(folder: Path) -> Iterator[Real]:
@@ -200,7 +192,7 @@ def main() -> None:
         if given.only not in real.name:
             continue
         w, s = real.whole, real.fitted
-        part = recorded(w.name, w.time[s], w.deflection[s], w.force[s])
+        part = of(w, s)
         began = time.process_time()
         found = diagnose([part], real.tire)
         seconds = time.process_time() - began

@@ -21,7 +21,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 from tirelab.errors import TirelabError
 from tirelab.terrain import Ground, flat, ground_from, log, place, sine
 
@@ -382,3 +382,29 @@ def test_the_readmes_archive_rides(repository: Path, master: Callable[..., Any],
     for name, package in MASTERS:
         found = master(name, package, archive, 1e-3)
         np.testing.assert_allclose(found["hub_height"], rows["QuarterBicyclehub_height"][1:], atol=1e-12)
+
+
+def test_a_softer_tire_is_ridden_through_its_input(
+    example: dict[str, ModuleType], wavy: Any, tmp_path: Path
+) -> None:
+    """At two thirds of the pressure, with the FMU in the loop and as one system."""
+    effect = CATALOGUE["inflation_pressure"]
+    tire = TireModel(effects=((effect, (0.9, 3e5, 1.0)),))
+    soft = wavy.integrated(example["rides"].elastic(tire, 2e5), 1201)
+    stiff = wavy.integrated(example["rides"].elastic(tire), 1201)
+    fmu = example["ride_with_fmu"].build_fmu(tire, tmp_path).path
+    with example["fmu_tire"].fmu_tire(fmu, inflation_pressure=2e5) as asked:
+        found = example["ride_with_fmu"].stepped(wavy, asked, 0.25e-3, "one after the other, with look-ahead")
+    apart = float(np.max(np.abs(soft.hub_height - stiff.hub_height)))
+    hub = np.interp(found.time, soft.time, soft.hub_height)
+    assert apart > 5e-4
+    assert float(np.max(np.abs(found.hub_height - hub))) < 0.02 * apart
+
+
+def test_an_fmu_without_the_input_is_refused(example: dict[str, ModuleType], tmp_path: Path) -> None:
+    fmu = example["ride_with_fmu"].build_fmu(TireModel(), tmp_path).path
+    with (
+        pytest.raises(TirelabError, match="has no input 'inflation_pressure'"),
+        example["fmu_tire"].fmu_tire(fmu, inflation_pressure=2e5),
+    ):
+        pass

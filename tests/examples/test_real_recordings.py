@@ -8,6 +8,8 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from tirelab.regressors.dataset import dataset_of
+from tirelab.regressors.excitation import excitation_of
 
 FOLDERS = (
     "afm_creep_brain_gel",
@@ -127,10 +129,15 @@ def test_the_indenters_own_compliance_is_not_claimed(real_recordings: ModuleType
 
 @pytest.mark.slow
 def test_the_damper_has_preload_and_a_loop(real_recordings: ModuleType, data: Path) -> None:
-    found = real_recordings.damper(data / FOLDERS[1], "ensaio1", preload_in_baseline=False)
-    named = set(found.verdict.names)
-    assert named & {"force_offset", "deflection_offset"}
-    assert named & {"rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation", "unknown"}
+    found = real_recordings.damper(data / FOLDERS[1], "ensaio1")
+    # at rest it presses with 120 N by its notes; the line through the strokes has that preload
+    assert found.verdict.baseline.preload == pytest.approx(120.0, abs=10.0)
+    assert set(found.verdict.names) & {
+        "rate_independent_hysteresis",
+        "viscous_damping",
+        "viscoelastic_relaxation",
+        "unknown",
+    }
     assert found.after < 0.5 * found.before
 
 
@@ -144,3 +151,22 @@ def test_the_pistons_friction_is_not_claimed_from_one_speed(
     assert found.after < 0.5 * found.before
     assert not any("CLAIMS" in refusal.text(found.verdict) for refusal in found.refusals)
     assert any("49.9 N/bar over all files" in line for line in found.evidence)
+
+
+@pytest.mark.slow
+def test_four_pressures_together_show_what_a_bar_does(real_recordings: ModuleType, data: Path) -> None:
+    found = real_recordings.pistons(data / FOLDERS[3])
+    assert "inflation_pressure" in found.verdict.names
+    files = real_recordings.piston_recordings(data / FOLDERS[3])
+    # 499 mm2 of piston: 49.9 N/bar, by the notes of the recordings
+    assert real_recordings.gain_per_bar(found.verdict.tire, files[3]) == pytest.approx(49.9, rel=0.02)
+    assert found.after < 0.05 * found.before
+
+
+@pytest.mark.parametrize("bar", [1, 3, 5, 7])
+def test_no_pressure_alone_can_show_it(real_recordings: ModuleType, data: Path, bar: int) -> None:
+    own = real_recordings.piston_recordings(data / FOLDERS[3])[bar]
+    tire = real_recordings.preloaded(float(own.force.mean()))
+    found = excitation_of(dataset_of([own], tire))
+    assert "was the same" in found.hidden("inflation_pressure")
+    assert {"pressure_leak", "gas_compression"} <= found.channels.impossible

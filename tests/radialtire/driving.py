@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from radialtire import CATALOGUE, Effect, PowerLaw, TireModel
-from radialtire.effect import PLACES
+from radialtire import CATALOGUE, CHANNELS, Effect, PowerLaw, TireModel
+from radialtire.effect import NOT_MEASURED, PLACES
 
 FloatArray = NDArray[np.float64]
 
@@ -44,15 +44,29 @@ def only(name: str, law: object = None, reading_noise: float = 0.0, **changed: f
 
 
 def drive(
-    tire: TireModel, time: ArrayLike, deflection: ArrayLike, surface_radius: ArrayLike = FLAT
+    tire: TireModel,
+    time: ArrayLike,
+    deflection: ArrayLike,
+    surface_radius: ArrayLike = FLAT,
+    **channels: ArrayLike,
 ) -> FloatArray:
-    """Return the force [N] at every moment, from rest."""
+    """Return the force [N] at every moment, from rest; channels: measured, by their names."""
     t, x, R = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in (time, deflection, surface_radius)))
+    values = [np.broadcast_to(channels.get(c.name, NOT_MEASURED), t.shape) for c in CHANNELS]
+    measured = np.stack(values, axis=1).tolist()
     state = tire.initial_state
     force = np.empty(t.size)
     for i in range(t.size):
-        force[i], state = tire.step(float(x[i]), float(R[i]), float(t[i]), state)
+        force[i], state = tire.step(float(x[i]), float(R[i]), float(t[i]), state, tuple(measured[i]))
     return force
+
+
+def channels_for(effect: Effect, time: ArrayLike) -> Mapping[str, FloatArray]:
+    """Return a course of the channel that the effect reads, rising by 1 % a second; nothing where it reads none."""
+    if effect.reads is None:
+        return {}
+    usual = {c.name: c.usual for c in CHANNELS}[effect.reads.channel]
+    return {effect.reads.channel: usual * (1.0 + 0.01 * (np.asarray(time) - np.min(time) + 1.0))}
 
 
 def loop_area(deflection: FloatArray, force: FloatArray) -> float:

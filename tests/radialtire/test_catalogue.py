@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from driving import converges, drive, sine, tire_with
+from driving import channels_for, converges, drive, sine, tire_with
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from radialtire import (
     CATALOGUE,
+    CHANNELS,
     Effect,
     Instant,
     Parameter,
@@ -33,6 +34,7 @@ ISSUE = {
     "viscoelastic_relaxation",
     "series_compliance",
     "gas_compression",
+    "inflation_pressure",
     "bottoming",
     "mullins_softening",
     "pressure_leak",
@@ -128,15 +130,34 @@ def test_off_equals_the_bare_law_exactly(effect: Effect, data: st.DataObject) ->
         for other, parameter in zip(others, effect.parameters, strict=True)
     ]
     time, x, R = data.draw(motions())
-    assert np.array_equal(drive(tire_with((effect.name, values)), time, x, R), drive(TireModel(), time, x, R))
+    bare = drive(TireModel(), time, x, R)
+    for channels in ({}, channels_for(effect, time)):
+        assert np.array_equal(drive(tire_with((effect.name, values)), time, x, R, **channels), bare)
 
 
 @EFFECTS
 def test_on_changes_the_force(effect: Effect) -> None:
     time, x = sine(0.5, 0.012, 0.015, 3.0, 300)
     bare = drive(TireModel(), time, x)
-    force = drive(tire_with((effect.name, effect.nominal)), time, x)
+    force = drive(tire_with((effect.name, effect.nominal)), time, x, **channels_for(effect, time))
     assert np.max(np.abs(force - bare)) > 1e-4 * np.max(bare)
+
+
+@EFFECTS
+def test_an_effect_that_needs_a_channel_does_nothing_without_it(effect: Effect) -> None:
+    if effect.reads is None or effect.reads.reference is None:
+        return
+    assert effect.reads.reference in [parameter.name for parameter in effect.parameters]
+    time, x = sine(0.5, 0.012, 0.015, 3.0, 300)
+    assert np.array_equal(
+        drive(tire_with((effect.name, effect.nominal)), time, x), drive(TireModel(), time, x)
+    )
+
+
+@EFFECTS
+def test_it_names_channels_that_there_are(effect: Effect) -> None:
+    names = {channel.name for channel in CHANNELS}
+    assert {*effect.changes, *([effect.reads.channel] if effect.reads else [])} <= names
 
 
 @EFFECTS
@@ -146,7 +167,9 @@ def test_it_is_finite_over_its_bounds(effect: Effect, data: st.DataObject) -> No
     tire = tire_with(
         (effect.name, data.draw(any_values(effect))), reading_noise=data.draw(st.floats(0.0, 0.01))
     )
-    assert np.all(np.isfinite(drive(tire, *data.draw(motions()))))
+    time, x, R = data.draw(motions())
+    assert np.all(np.isfinite(drive(tire, time, x, R)))
+    assert np.all(np.isfinite(drive(tire, time, x, R, **channels_for(effect, time))))
 
 
 @EFFECTS
@@ -158,7 +181,8 @@ def test_finer_steps_converge(effect: Effect) -> None:
 
     def force(count: int) -> np.ndarray:
         time = np.linspace(0.0, 1.0, count + 1)
-        return drive(tire, time, 0.013 + 0.008 * np.sin(12.0 * time) - 0.004 * np.cos(5.0 * time))
+        x = 0.013 + 0.008 * np.sin(12.0 * time) - 0.004 * np.cos(5.0 * time)
+        return drive(tire, time, x, **channels_for(effect, time))
 
     assert converges(force, order, 250)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from radialtire import CATALOGUE
+from radialtire import CATALOGUE, NONE_MEASURED
 from radialtire.effect import Instant, State
 from radialtire.effects.force_lag import flow as lag_flow
 from radialtire.effects.viscoelastic_relaxation import flow as relaxation_flow
@@ -92,11 +92,11 @@ def test_a_solvers_step_gives_the_rates_of_flows_and_follows_a_spring_under_the_
     n = list(s)
     s[STARTED] = 1.0
     s[rubber.state : rubber.state_end] = [0.0] * (rubber.state_end - rubber.state)
-    force, x = step(path, LAW, (0.01, FLAT, 0.5, 0.2, 0.0), p, s, n)
+    force, x = step(path, LAW, (0.01, FLAT, 0.5, 0.2, 0.0, *NONE_MEASURED), p, s, n)
     p[damper.values] = 0.0
-    still, _ = step(path, LAW, (0.01, FLAT, 0.5, 0.2, 0.0), p, s, n)
+    still, _ = step(path, LAW, (0.01, FLAT, 0.5, 0.2, 0.0, *NONE_MEASURED), p, s, n)
     p[damper.values] = 300.0
-    _, above = step(path, LAW, (0.01 + 1e-7, FLAT, 0.5, 0.0, 0.0), p, s, n)
+    _, above = step(path, LAW, (0.01 + 1e-7, FLAT, 0.5, 0.0, 0.0, *NONE_MEASURED), p, s, n)
     assert x < 0.01
     assert force - still == pytest.approx(300.0 * 0.2 * (above - x) / 1e-7, rel=1e-2)
     elastic = LAW[0] * (100.0 * x) ** LAW[1]
@@ -115,11 +115,11 @@ def test_the_tangent_is_one_sided_where_the_contact_begins(x: float, begin: floa
     def force(deflection: float) -> float:
         return LAW[0] * max(100.0 * deflection, 0.0) ** LAW[1]
 
-    found = stiffness(path, LAW, (x, FLAT, 0.0, 0.0, 0.0), p, s, list(s))
+    found = stiffness(path, LAW, (x, FLAT, 0.0, 0.0, 0.0, *NONE_MEASURED), p, s, list(s))
     assert found == pytest.approx((force(begin + TANGENT_STEP) - force(begin)) / TANGENT_STEP)
 
 
 def test_effects_that_are_switched_off_do_nothing() -> None:
     path, p, s = laid_out([CATALOGUE[n] for n in ("series_compliance", "viscous_damping")], tracks=0)
-    force, x = step(path, LAW, (0.01, FLAT, 0.0, 0.2, 0.0), p, s, list(s))
+    force, x = step(path, LAW, (0.01, FLAT, 0.0, 0.2, 0.0, *NONE_MEASURED), p, s, list(s))
     assert (force, x) == (pytest.approx(LAW[0]), 0.01)

@@ -12,6 +12,7 @@ from .force_lag import FORCE_LAG
 from .force_offset import FORCE_OFFSET
 from .gas_compression import GAS_COMPRESSION
 from .inertia import INERTIA
+from .inflation_pressure import INFLATION_PRESSURE
 from .mullins_softening import MULLINS_SOFTENING
 from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
@@ -28,6 +29,7 @@ CATALOGUE: dict[str, Effect] = {
         DEFLECTION_LAG,
         SERIES_COMPLIANCE,
         ELASTIC_SHAPE,
+        INFLATION_PRESSURE,
         GAS_COMPRESSION,
         MULLINS_SOFTENING,
         PRESSURE_LEAK,

@@ -21,7 +21,7 @@ from ..prior import Prior
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x))."""
     bend, twist, reference, first, second, third, fourth, fifth = values
-    x = instant.deflection
+    x = abs(instant.deflection) if instant.two_sided else instant.deflection
     if x <= 0.0:
         return signal, state
     exponent = 0.0

@@ -109,4 +109,5 @@ GAS_COMPRESSION = Effect(
     source="polytropic gas law; 101.3 kPa over 344.7 kPa; 3 to 4 % of pressure at 25 mm is an estimate, bounds wide",
     traits=("static",),
     form_error=0.0086,
+    changes=("pressure",),
 )

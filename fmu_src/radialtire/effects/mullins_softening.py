@@ -36,7 +36,7 @@ DEAD_ZONE = 1e-4
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Multiply the factor by the softening; the state: largest measure, last counted position [m], path length [m]."""
     share, ratio, width, sharpness, history, gathering, load = values
-    x = instant.deflection
+    x = abs(instant.deflection) if instant.two_sided else instant.deflection
     largest, counted, path = state
     power = 1.0 + load * instant.exponent
     by_surface = instant.coefficient**load

@@ -80,4 +80,5 @@ PRESSURE_LEAK = Effect(
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
     traits=("slow",),
     form_error=0.0036,
+    changes=("pressure",),
 )

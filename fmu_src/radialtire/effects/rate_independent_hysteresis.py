@@ -57,7 +57,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     """
     slip_force, load_share, reach, memory, spread, play, seat = values
     z, updated_at, direction, last, y1, y2, y3, y4 = state
-    x = max(instant.deflection, 0.0)
+    x = instant.deflection if instant.two_sided else max(instant.deflection, 0.0)
     if instant.first:
         updated_at = last = 0.0
     travel = x - updated_at
@@ -78,9 +78,9 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
             y1, y2, y3, y4 = seat * y1, seat * y2, seat * y3, seat * y4
         friction += memory * (0.25 * (y1 + y2 + y3 + y4) - friction)
     after = (z, updated_at, direction, x, y1, y2, y3, y4)
-    if instant.deflection <= 0.0:
+    if instant.deflection <= 0.0 and not instant.two_sided:
         return signal, after
-    return signal + (slip_force + load_share * instant.elastic_force) * friction, after
+    return signal + (slip_force + load_share * abs(instant.elastic_force)) * friction, after
 
 
 RATE_INDEPENDENT_HYSTERESIS = Effect(

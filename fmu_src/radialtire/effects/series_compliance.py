@@ -53,11 +53,18 @@ def stiffening(x: float, k: float, h: float, A: float, B: float, plain: float) -
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Return the tire's part [m] of the deflection."""
+    """Return the tire's part [m] of the deflection; that of a two-sided part is odd."""
+    if values[0] == 0.0 or (signal <= 0.0 and not (instant.two_sided and signal < 0.0)):
+        return signal, state
+    if signal < 0.0:
+        return -pressed(-signal, instant, values), state
+    return pressed(signal, instant, values), state
+
+
+def pressed(signal: float, instant: Instant, values: State) -> float:
+    """Return the tire's part [m] of a deflection above 0."""
     k, h = values
     A, B = instant.coefficient, instant.exponent
-    if k == 0.0 or signal <= 0.0:
-        return signal, state
     root = signal
     force = A * (100.0 * root) ** B
     if k * force > signal:
@@ -71,14 +78,14 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
             force = A * (100.0 * root) ** B
             step = (root + k * force - signal) / (1.0 + k * B * force / root)
         root -= step
-        return (stiffening(signal, k, h, A, B, root) if h > 0.0 else root), state
+        return stiffening(signal, k, h, A, B, root) if h > 0.0 else root
     step = (root + k * force - signal) / (k + root / (B * force))
     while step > NEAR * force:
         force -= step
         root = 0.01 * (force / A) ** (1.0 / B)
         step = (root + k * force - signal) / (k + root / (B * force))
     root = 0.01 * ((force - step) / A) ** (1.0 / B)
-    return (stiffening(signal, k, h, A, B, root) if h > 0.0 else root), state
+    return stiffening(signal, k, h, A, B, root) if h > 0.0 else root
 
 
 SERIES_COMPLIANCE = Effect(

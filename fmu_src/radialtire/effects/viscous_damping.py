@@ -1,6 +1,6 @@
 """A dashpot in parallel with the spring: force that grows with the speed of compression.
 
-    F = F_elastic + c v0 (|w| / v0)^n sign(w) (x / x0)^p     while the tire is loaded (x > 0)
+    F = F_elastic + c v0 (|w| / v0)^n sign(w) |x / x0|^p     while the tire is loaded (x > 0)
     w = asinh(s v) / s
 
 v = dx/dt, v0 = 0.1 m/s, x0 = 1 cm. n = 1, p = 0, s = 0 is the linear dashpot c v; p > 0 makes it grow with the contact
@@ -28,10 +28,10 @@ DEPTH = 0.01
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Add the dashpot's force [N] while the tire is loaded."""
+    """Add the dashpot's force [N] while the tire is loaded; a part that is held at both ends always is."""
     damping, rate_exponent, deflection_exponent, thinning = values
     x, v = instant.deflection, instant.rate
-    if x <= 0.0:
+    if x <= 0.0 and not instant.two_sided:
         return signal, state
     if thinning > 0.0:
         v = math.asinh(thinning * v) / thinning
@@ -39,7 +39,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         size = SPEED * (abs(v) / SPEED) ** rate_exponent
         v = size if v > 0.0 else -size
     if deflection_exponent != 0.0:
-        v *= (x / DEPTH) ** deflection_exponent
+        v *= (abs(x) / DEPTH) ** deflection_exponent
     return signal + damping * v, state
 
 

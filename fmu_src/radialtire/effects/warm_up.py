@@ -4,20 +4,29 @@
 
 t is the time since the start; s below 1 stretches the rise over several time constants, as the air, the rubber and the
 rim warm one after the other. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
+
+Where the temperature T is measured, the rise follows it and no course of time is assumed: F = A x^B (1 + g (T - Ts) /
+10 K), with Ts that at the start.
 """
 
 from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, Reading, State, is_measured
 from ..parameter import Parameter
 from ..prior import Prior
 
+WARMING = 10.0
+"""Rise of a measured temperature [K] that raises the force by the gain."""
+
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by the rise of the pressure."""
+    """Multiply the factor by the rise of the pressure; the state is the temperature [K] at the start."""
     gain, tau, stretch = values
+    if is_measured(instant.temperature):
+        start = instant.temperature if instant.first else state[0]
+        return signal * max(1.0 + gain * (instant.temperature - start) / WARMING, 0.0), (start,)
     return signal * (1.0 - gain * math.expm1(-((instant.time / tau) ** stretch))), state
 
 
@@ -32,7 +41,7 @@ WARM_UP = Effect(
             0.0,
             0.0,
             1.0,
-            "final rise of the force, as a fraction of it",
+            "final rise of the force, as a fraction of it; that for 10 K where the temperature is measured",
             neutral=0.0,
             nominal=0.05,
             role="strength",
@@ -60,7 +69,7 @@ WARM_UP = Effect(
             prior=Prior("normal", 1.0, 0.25),
         ),
     ),
-    initial_state=(),
+    initial_state=(0.0,),
     respond=respond,
     statement="the tire warms: the force rises with time to a new level at every deflection",
     tell_tale="a cycle that is repeated at the end is higher, in proportion to the force; the rise levels off",
@@ -68,4 +77,6 @@ WARM_UP = Effect(
     source="gas law at constant volume: about 1 psi for 10 degF near 40 psi; time constants not found, bounds wide",
     traits=("slow",),
     form_error=0.015,
+    reads=Reading("temperature"),
+    changes=("pressure",),
 )

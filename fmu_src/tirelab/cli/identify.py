@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..identification.result import Identification
     from ..recordings.recording import Recording
 
-PART_LAWS = ("linear_gap", "power_gap")
+PART_LAWS = ("linear", "power", "power_preload", "linear_gap", "power_gap")
 """Laws of `--part` that a tire file holds."""
 
 WIDTH_LEAST = 100
@@ -90,7 +90,8 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
     if found is None:
-        _part(output, console, read, part, options["name"])
+        words = ["tirelab", "diagnose", *map(str, recordings), "--tire", str(out), *reading.words()]
+        _part(output, console, read, (part, options["name"]), shlex.join(words))
         return
     beside = out.parent / f"{out.stem}.identification.json"
     with staged(out.parent) as folder:
@@ -109,16 +110,24 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     console.print(f"tire: {out}\nuncertainties: {beside}", soft_wrap=True)
 
 
-def _part(output: Output, console: Console, recordings: list[Recording], part: str, name: str) -> None:
-    """Print what the laws leave of recordings of a part; write the tire file of the law that is named."""
+def _part(
+    output: Output, console: Console, recordings: list[Recording], chosen: tuple[str, str], command: str
+) -> None:
+    """Print what the laws leave of recordings of a part; write the tire file of the law that is chosen.
+
+    chosen: the law, or "compare", and the tire's name; command: that looks for what the law leaves out
+    """
+    part, name = chosen
     from ..computing.staging import staged
-    from ..identification.part_laws import fit_laws, tire_of
+    from ..identification.misfit import misfit_sentence
+    from ..identification.part_laws import fit_laws, reading_noise, tire_of
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
     tire = None if part == "compare" else output.out
     if tire is not None:
-        model = tire_of(next(fit for fit in fits if fit.name == part), recordings, name)
+        law = next(fit for fit in fits if fit.name == part)
+        model = tire_of(law, recordings, name)
         with staged(tire.parent) as folder:
             write_tire(model, folder / tire.name)
     if output.as_json:
@@ -127,6 +136,8 @@ def _part(output: Output, console: Console, recordings: list[Recording], part: s
         return
     console.print(law_table(fits))
     if tire is not None:
+        if misfit := misfit_sentence(law.rmse, reading_noise(recordings), command):
+            console.print(f"- {misfit}", markup=False, soft_wrap=True)
         console.print(f"tire: {tire}", soft_wrap=True)
 
 

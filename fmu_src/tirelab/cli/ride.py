@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from radialtire import TireModel, read_tire
+from radialtire import InputError, TireModel, read_tire
 from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
@@ -17,6 +17,7 @@ from .output import Output, example, output_options
 
 if TYPE_CHECKING:
     from ..terrain import Profile, ProfileColumns, Ride
+    from ..terrain.ride import TireForce
 
 LOAD = 500.0
 """Load [N] where neither a load nor a path of the hub is given."""
@@ -87,6 +88,7 @@ class Passage:
     load: float | None
     hub_path: Path | None
     wheel_radius: float
+    inflation_pressure: str | None
 
 
 @click.command(
@@ -131,6 +133,11 @@ class Passage:
     click.option(
         "--wheel-radius", default=WHEEL_RADIUS, show_default=True, help="Unloaded radius [m] of the wheel."
     ),
+    click.option(
+        "--inflation-pressure",
+        metavar="VALUE",
+        help="Gauge pressure, such as 2.5bar or 36psi.  [default: that at which the tire was measured]",
+    ),
 )
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
 @output_options("ride")
@@ -163,7 +170,7 @@ def command(
         load = LOAD
     result = ride(
         ground,
-        model,
+        _at_pressure(model, passage.inflation_pressure),
         speed=passage.speed,
         load=load,
         hub_path=hub_path,
@@ -180,6 +187,19 @@ def command(
     written = [str(output.out / name) for name in names]
     lines = _summary(result, model, () if output.quiet else notes)
     output.result([*lines, f"written: {', '.join(written)}"], _content(result, model, notes, written))
+
+
+def _at_pressure(tire: TireModel, text: str | None) -> TireModel | TireForce:
+    """Return the tire, or its force at a pressure that is given with its unit."""
+    from ..recordings.units import UnitError, parse_quantity
+    from ..terrain.ride import force_at
+
+    if text is None:
+        return tire
+    try:
+        return force_at(tire, {"pressure": parse_quantity(text, "Pa")})
+    except (UnitError, InputError) as error:
+        raise TirelabError(f"--inflation-pressure: {error}") from None
 
 
 def _content(result: Ride, tire: TireModel, notes: tuple[str, ...], written: list[str]) -> dict[str, object]:

@@ -57,7 +57,7 @@ def diagnose(
     report = progress or (lambda sentence: None)
     allowed = catalogue_names() if catalogue is None else tuple(catalogue)
     _check_names(allowed)
-    check_recordings(fitted)
+    check_recordings(fitted, two_sided=baseline.two_sided)
     dataset = dataset_of(fitted, baseline)
     timed = is_timed(fitted)
     explanation = explain_misfit(fitted, baseline, allowed, report, timed=timed)

@@ -8,8 +8,8 @@ gain in log likelihood.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -35,12 +35,13 @@ class Limits:
 
 @dataclass(frozen=True)
 class Test:
-    """A motion to drive: arrays of one length."""
+    """A motion to drive: arrays of one length; measured: channels that are held at a value, by their names."""
 
     name: str
     time: FloatArray
     deflection: FloatArray
     surface_radius: FloatArray
+    measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
     __test__ = False
 

@@ -12,6 +12,7 @@ from radialtire.effect import Effect, State
 
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
+from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .discriminating_test import Test
 
@@ -46,7 +47,9 @@ def sketch_of(name: str, tire: TireModel, recordings: Sequence[Recorded]) -> Eff
     if found is None or not recordings:
         return None
     effect, values = found
-    motion = _motion(recordings, slow="slow" in effect.traits)
+    motion = replace(
+        _motion(recordings, slow="slow" in effect.traits), measured=_set(effect, values, recordings)
+    )
     bare = simulate(replace(tire, effects=()), motion)
 
     def added(given: State) -> FloatArray:
@@ -54,6 +57,19 @@ def sketch_of(name: str, tire: TireModel, recordings: Sequence[Recorded]) -> Eff
 
     varied = {p.name: added(_larger(effect, values, i)) for i, p in enumerate(effect.parameters)}
     return EffectSketch(motion.deflection, added(values), MappingProxyType(varied))
+
+
+def _set(effect: Effect, values: State, recordings: Sequence[Recorded]) -> dict[str, FloatArray]:
+    """Return the channel that the effect reads at the recorded value that is farthest from its reference."""
+    reads = effect.reads
+    if reads is None or reads.reference is None:
+        return {}
+    held = [measured_of(r)[reads.channel] for r in recordings if reads.channel in measured_of(r)]
+    if not held:
+        return {}
+    reference = values[[p.name for p in effect.parameters].index(reads.reference)]
+    levels = np.array([float(np.median(values)) for values in held])
+    return {reads.channel: np.full(SAMPLES, levels[np.argmax(np.abs(levels - reference))])}
 
 
 def _larger(effect: Effect, values: State, index: int) -> State:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..recordings.recording import Recording
 from ..report.titles import headline
+from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
@@ -263,7 +264,8 @@ def _recording(recorded: Recorded) -> Recording:
     if isinstance(recorded, Recording):
         return recorded
     r = recorded
-    return Recording(r.name, r.time, r.deflection, r.surface_radius, r.force)
+    plain = Recording(r.name, r.time, r.deflection, r.surface_radius, r.force)
+    return replace(plain, **measured_of(r))  # type: ignore[arg-type]
 
 
 def _forces(tire: TireModel, recordings: Sequence[Recording]) -> list[FloatArray]:

@@ -6,7 +6,7 @@ catalogue's own forms (`estimation`), and the sets are ranked by those fits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -23,6 +23,7 @@ from ..regressors.signature import in_other_noise, signatures_of
 from ..selection.discrepancy import discrepancy_of
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import search
+from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .findings import Estimate, Evidence, FittedModel, NamedEffect, Refitted
 from .fit import Fit, fitted
@@ -130,7 +131,8 @@ def explain_misfit(
     """
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=timed)
-    allowed = [name for name in candidates() if name in catalogue]
+    impossible = excitation.channels.impossible
+    allowed = [name for name in candidates() if name in catalogue and name not in impossible]
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
@@ -240,8 +242,10 @@ class _Part:
     deflection: FloatArray
     surface_radius: FloatArray
     force: FloatArray
+    measured: Mapping[str, FloatArray]
 
 
 def _part(recording: Recorded, kept: BoolArray) -> _Part:
     r = recording
-    return _Part(r.name, r.time[kept], r.deflection[kept], r.surface_radius[kept], r.force[kept])
+    measured = {name: values[kept] for name, values in measured_of(r).items()}
+    return _Part(r.name, r.time[kept], r.deflection[kept], r.surface_radius[kept], r.force[kept], measured)

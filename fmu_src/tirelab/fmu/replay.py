@@ -17,8 +17,10 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from numpy.typing import NDArray
+from radialtire import CHANNELS
 
 from ..errors import TirelabError
+from ..simulation.channels import measured_of
 
 INPUTS = ("deflection", "surface_radius")
 OUTPUT = "radial_force"
@@ -167,6 +169,8 @@ class _Stepper:
 def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
     """Return the FMU's radial force [N] at every sample of `motion`, without a sample of delay.
 
+    A channel that the motion holds and the FMU has an input for, such as the pressure, is set at every sample.
+
     Each step sets the inputs of its end, steps, and reads the output (fmpy.simulate_fmu samples the output of a model
     with direct feed-through one communication step late).
     Raises TirelabError where the FMU lacks a variable or refuses a sample.
@@ -179,8 +183,11 @@ def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
                 )
         instance = unit.instance
         times = motion.time.tolist()
-        inputs = np.column_stack([motion.deflection, motion.surface_radius])
-        stepper = _Stepper(instance, inputs, [unit.references[name] for name in (*INPUTS, OUTPUT)])
+        measured = measured_of(motion)
+        read = {c.variable: measured[c.name] for c in CHANNELS if c.name in measured}
+        read = {name: values for name, values in read.items() if name in unit.references}
+        inputs = np.column_stack([motion.deflection, motion.surface_radius, *read.values()])
+        stepper = _Stepper(instance, inputs, [unit.references[n] for n in (*INPUTS, *read, OUTPUT)])
         try:
             instance.setupExperiment(startTime=times[0])
             instance.enterInitializationMode()

@@ -5,6 +5,7 @@ Deflection x and force F may have both signs. All samples count alike.
     linear        F = F0 + k x
     linear_gap    F = k max(x - x0, 0)                   x0: where the force begins (a gap > 0, a preload < 0)
     power         F = A sign(x) |x|^B                    x in cm, as the tire's law
+    power_preload F = F0 + A sign(x) |x|^B
     power_gap     F = A max(x - x0, 0)^B
     polynomial    F = F0 + k1 x + k2 x^2 + k3 x^3
     piecewise     straight lines between the forces at x1 ... x6, which divide the samples alike
@@ -17,7 +18,7 @@ mf_tyre is the vertical force of MF-Tyre without speed and camber: H. Pacejka, "
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,8 +26,10 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
 
 from ..errors import TirelabError
+from ..preprocessing.robust_scale import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
+from .misfit import SAMPLES_LEAST, THIRD
 from .surfaces import CM_PER_M
 
 Array = NDArray[np.float64]
@@ -39,8 +42,17 @@ KNOTS = 6
 LARGEST_OFFSET = 0.01
 """The deflection offset [m] that a tire file can hold."""
 
-AS_TIRES = ("linear_gap", "power_gap")
-"""Laws that a tire file holds, as a power law whose deflection is shifted."""
+GAPS = ("linear_gap", "power_gap")
+"""Laws that a tire file holds as a power law whose deflection is shifted: without contact there is no force."""
+
+TWO_SIDED = ("linear", "power", "power_preload")
+"""Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
+
+LEAST_SPRING = 1e-3
+"""Least coefficient A [N/cm^B] that a tire file holds: a part without a spring, such as a damper, has this one."""
+
+SURE = 3.0
+"""Standard uncertainties by which a spring's constant must be below 0 to be no spring."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +100,7 @@ def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
         _linear(samples),
         _shifted(samples, "linear_gap"),
         _power(samples),
+        _power_preload(samples),
         _shifted(samples, "power_gap"),
         _polynomial(samples),
         _piecewise(samples),
@@ -97,12 +110,16 @@ def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
 
 
 def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireModel:
-    """Return a tire with a fitted law: a power law, and a deflection offset for its gap or preload.
+    """Return a tire with a fitted law: a power law, and a deflection offset for its gap, or a two-sided part with its
+    preload.
 
     Raises TirelabError where a tire file cannot hold the law.
     """
-    if fit.name not in AS_TIRES:
-        raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {', '.join(AS_TIRES)}")
+    if fit.name in TWO_SIDED:
+        return _described(_two_sided(fit), recordings, name)
+    if fit.name not in GAPS:
+        known = ", ".join((*TWO_SIDED, *GAPS))
+        raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
     x0 = 1e-3 * fit.value("x0")
     if abs(x0) > LARGEST_OFFSET:
         raise TirelabError(
@@ -112,12 +129,41 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
     scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
     law = PowerLaw(scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
+    effects = ((CATALOGUE["deflection_offset"], (-x0,)),)
+    return _described(TireModel(law=law, effects=effects), recordings, name)
+
+
+def reading_noise(recordings: Sequence[Recording]) -> float:
+    """Return the noise of the forces [N], root mean square over the recordings; NaN where they are too short.
+
+    From third differences of the force, which changes little from one sample to the next but for noise.
+    """
+    long = [r for r in recordings if len(r) >= SAMPLES_LEAST]
+    squares = [len(r) * (robust_sigma(np.diff(r.force, 3)) / THIRD) ** 2 for r in long]
+    return float(np.sqrt(sum(squares) / sum(len(r) for r in long))) if long else float("nan")
+
+
+def _two_sided(fit: LawFit) -> TireModel:
+    symbol, scale = ("k", 10.0) if fit.name == "linear" else ("A", 1.0)  # N/mm to N/cm
+    value, deviation = next((v, d) for s, v, d, _ in fit.constants if s == symbol)
+    if value + SURE * deviation < 0.0:
+        raise TirelabError(
+            f"the law {fit.name} has {symbol} = {value:.3g}, a force that falls as the deflection grows, which a tire "
+            "file cannot hold; check the signs of force and deflection"
+        )
+    exponent = 1.0 if fit.name == "linear" else fit.value("B")
+    preload = 0.0 if fit.name == "power" else fit.value("F0")
+    law = PowerLaw(max(scale * value, LEAST_SPRING), min(max(exponent, 0.1), 10.0))
+    return TireModel(law=law, two_sided=True, preload=preload)
+
+
+def _described(tire: TireModel, recordings: Sequence[Recording], name: str) -> TireModel:
+    """Return the tire with its name, its source and the range of the recordings."""
     recorded = ", ".join(dict.fromkeys(r.name for r in recordings))
     flat = 1.0 / FLAT_RADIUS
     curvature = 1.0 / float(recordings[0].surface_radius[0])
-    return TireModel(
-        law=law,
-        effects=((CATALOGUE["deflection_offset"], (-x0,)),),
+    return replace(
+        tire,
         tested_range=TestedRange(
             curvature_min=curvature - flat,
             curvature_max=curvature + flat,
@@ -213,6 +259,18 @@ def _power(s: _Samples) -> LawFit:
 
     values, fitted = _searched(law, _power_start(s, 0.0), s)
     return _fit("power", (("A", 1.0, "N/cm^B"), ("B", 1.0, "1")), values, fitted)
+
+
+def _power_preload(s: _Samples) -> LawFit:
+    size, sign = np.abs(s.x) + 1e-12, np.sign(s.x)
+
+    def law(v: Array) -> Array:
+        return np.asarray(v[2] + v[0] * sign * size ** v[1])
+
+    (preload, stiffness), _ = _lstsq([np.ones_like(s.x), s.x], s)
+    values, fitted = _searched(law, np.array([stiffness, 1.0, preload]), s)
+    symbols = (("A", 1.0, "N/cm^B"), ("B", 1.0, "1"), ("F0", 1.0, "N"))
+    return _fit("power_preload", symbols, values, fitted)
 
 
 def _shifted(s: _Samples, name: str) -> LawFit:

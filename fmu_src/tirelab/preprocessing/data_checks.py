@@ -20,8 +20,11 @@ class PoorRecording(TirelabError):
     """The recordings are too short or too poor to say anything."""
 
 
-def check_recordings(recordings: Sequence[Recorded]) -> None:
-    """Raise PoorRecording where there is no recording, or one of them shows no cycle."""
+def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False) -> None:
+    """Raise PoorRecording where there is no recording, or one of them shows no cycle.
+
+    two_sided: whether the part is held at both ends: a deflection below 0 loads it too
+    """
     if not recordings:
         raise PoorRecording("no recording was given; name at least one to diagnose")
     for r in recordings:
@@ -32,7 +35,7 @@ def check_recordings(recordings: Sequence[Recorded]) -> None:
             raise PoorRecording(f"{where} has one constant deflection; record at least one full cycle")
         if np.ptp(r.force) <= 0.0:
             raise PoorRecording(f"{where} has one constant force; check that the load cell was connected")
-        if float(r.deflection.max()) <= 0.0:
+        if float(r.deflection.max()) <= 0.0 and not two_sided:
             raise PoorRecording(f"{where} never loads the tire: its deflection stays at or below 0 m")
         distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
         if distinct < FEWEST_STEPS:
@@ -57,7 +60,9 @@ def check_signal(dataset: Dataset, levels: Sequence[float]) -> None:
             raise PoorRecording(
                 f"recording {number} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
-        related = float(np.corrcoef(record.force, record.elastic(motion.deflection))[0, 1])
+        # The force of a part that is held at both ends may follow the rate alone, as a damper's does.
+        elastic = record.force if record.two_sided else record.elastic(motion.deflection)
+        related = float(np.corrcoef(record.force, elastic)[0, 1])
         if not np.isfinite(related) or abs(related) < 0.2 or level > 0.9 * float(np.std(record.force)):
             raise PoorRecording(
                 f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "

@@ -60,7 +60,7 @@ class Experiment:
 
     time [s] from its start; force [N] as read; motion: its kinematics; surface (n, surfaces): weights of the law's
     support points, rows sum to 1; coefficient A [N/cm^B], exponent B [1] of the baseline law; rows: indices of the
-    samples that are compared; number: of the recording, from 0
+    samples that are compared; number: of the recording, from 0; two_sided: whether the part can pull
     """
 
     time: FloatArray
@@ -71,6 +71,7 @@ class Experiment:
     exponent: FloatArray
     rows: IndexArray
     number: int
+    two_sided: bool = False
 
     @cached_property
     def sampled(self) -> Experiment:
@@ -86,6 +87,7 @@ class Experiment:
             self.exponent[rows],
             np.arange(rows.size),
             self.number,
+            self.two_sided,
         )
 
     @property
@@ -95,13 +97,17 @@ class Experiment:
 
     def elastic(self, deflection: FloatArray) -> FloatArray:
         """Return the baseline law's force [N] at `deflection` [m], sample by sample."""
-        return self.coefficient * np.maximum(100.0 * deflection, 0.0) ** self.exponent
+        x = 100.0 * deflection
+        if self.two_sided:
+            return self.coefficient * np.sign(x) * np.abs(x) ** self.exponent
+        return self.coefficient * np.maximum(x, 0.0) ** self.exponent
 
     def stiffness(self, deflection: FloatArray) -> FloatArray:
         """Return the baseline law's tangent dF/dx [N/m] at `deflection` [m]."""
-        loaded = np.maximum(100.0 * deflection, LEAST_CM)
+        size = np.abs(deflection) if self.two_sided else deflection
+        loaded = np.maximum(100.0 * size, LEAST_CM)
         slope = 100.0 * self.coefficient * self.exponent * loaded ** (self.exponent - 1.0)
-        return np.where(deflection > 0.0, slope, 0.0)
+        return np.where(size > 0.0, slope, 0.0)
 
 
 @dataclass(frozen=True)
@@ -142,6 +148,7 @@ def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
                 pairs[inverse, 1],
                 np.arange(0, time.size, -(-time.size // share)),
                 number,
+                baseline.two_sided,
             )
         )
     return Dataset(
@@ -149,7 +156,7 @@ def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
         radii,
         max(float(e.motion.deflection.max()) for e in experiments),
         max(float(e.elastic(e.motion.deflection).max()) for e in experiments),
-        max(float(np.quantile(e.force, PEAK_QUANTILE)) for e in experiments),
+        max(float(np.quantile(np.abs(e.force), PEAK_QUANTILE)) for e in experiments),
         max(float(e.time[-1]) for e in experiments),
         min(e.step for e in experiments),
     )

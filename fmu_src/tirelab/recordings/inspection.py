@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .channels import UNIT_OF
 from .choices import Choices
 from .description import surface_text
 from .formats.delimited import DelimitedTable
@@ -219,6 +220,8 @@ def _settings(found: Understood) -> dict[str, Any]:
         columns["time"] = ""
     settings["columns"] = columns
     settings["units"] = dict(found.found.units)
+    for name, value in plan.constants.items():
+        settings[name] = f"{value!r} {UNIT_OF[name]}"
     if plan.radius is not None:
         settings["radius"] = "flat" if np.isinf(plan.radius) else f"{plan.radius!r} m"
     if plan.interval is not None and recording.timed:

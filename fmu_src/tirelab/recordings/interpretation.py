@@ -19,7 +19,15 @@ from .plausibility import doubts_of, too_deep
 from .rows import Rows, complete_rows
 from .samples import gap_notes
 from .sign_convention import compressive_signs
-from .units import STANDARD_ATMOSPHERE, Conversion, UnitError, conversion, parse_interval, parse_radius
+from .units import (
+    STANDARD_ATMOSPHERE,
+    Conversion,
+    UnitError,
+    conversion,
+    parse_interval,
+    parse_quantity,
+    parse_radius,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -35,7 +43,7 @@ class Plan:
     """What is to be read from a table: columns by channel, their units, and the radius if no column gives it.
 
     interval: between samples [s] where no column gives the time; timed: whether the time was measured, or its interval
-    given; trials: how many tests stand side by side in the table
+    given; trials: how many tests stand side by side in the table; constants: of channels that no column holds [SI]
     """
 
     origin: Origin
@@ -47,6 +55,7 @@ class Plan:
     interval: float | None = None
     timed: bool = True
     trials: int = 1
+    constants: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def wanted(self) -> tuple[Wanted, ...]:
@@ -124,17 +133,35 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
             "time was not measured: one second from sample to sample is made up, and nothing of rate, time or "
             f"acceleration can be told (if the sampling is known: {origin.sampling('10Hz')})"
         )
+    constants, told = _constants(matches, settings)
     return Plan(
         origin,
         matches,
         headers,
         conversions,
         radius,
-        (*notes, *more),
+        (*notes, *more, *told),
         None if "time" in matches else interval,
         not no_time,
         found.trials,
+        constants,
     )
+
+
+def _constants(matches: Mapping[str, Match], settings: Settings) -> tuple[dict[str, float], list[str]]:
+    """Return the one value [SI] of each channel that no column holds and the settings state, and the notes of them."""
+    values: dict[str, float] = {}
+    notes = []
+    for name, text in settings.constants.items():
+        if name in matches:
+            notes.append(f"{name} = {text} of the settings not used: a column gives it")
+            continue
+        try:
+            values[name] = parse_quantity(text, UNIT_OF[name])
+        except UnitError as error:
+            raise RecordingError(f"{name} in the settings: {error}") from None
+        notes.append(f"{name} {text} in every row, as the settings say")
+    return values, notes
 
 
 def interpret(
@@ -156,6 +183,7 @@ def interpret(
         values = {"time": np.asarray(kept * plan.interval, dtype=np.float64), **values}
     if plan.radius is not None:
         values["radius"] = np.full(samples, plan.radius)
+    values |= {name: np.full(samples, value) for name, value in plan.constants.items()}
     notes = [*read.notes, *rows.notes, *plan.notes]
     notes += [f"settings read from {source}" for source in sources]
     notes += _unit_notes(plan.conversions, plan.headers)

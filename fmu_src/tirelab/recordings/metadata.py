@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from radialtire import CHANNELS
+
 from .channels import known_channel
 from .formats import RecordingError
 
@@ -19,7 +21,10 @@ else:
 FOLDER_SIDECAR = "recording.toml"
 """The sidecar of every recording in its folder."""
 
-_TEXTS = ("radius", "sampling", "from", "to")
+_CONSTANT = {channel.name: f"{channel.usual:.4g} {channel.unit}" for channel in CHANNELS}
+"""Channels of which a file may state one value for the whole recording, with an example."""
+
+_TEXTS = ("radius", "sampling", "from", "to", *_CONSTANT)
 _TABLES = ("columns", "units")
 _KEYS = (*_TEXTS, *_TABLES, "skip_rows", "files")
 _SAID = ("table", "provenance", "doubtful")
@@ -39,6 +44,7 @@ class Sidecar:
     skip_rows: int | None = None
     start: str = ""
     stop: str = ""
+    constants: Mapping[str, str] = field(default_factory=dict)
 
     def overruled(
         self,
@@ -55,6 +61,7 @@ class Sidecar:
             self.radius,
             self.radius_source,
             self.sampling if sampling is None else sampling,
+            self.constants,
         )
 
     def below(self, over: Sidecar) -> Sidecar:
@@ -69,6 +76,7 @@ class Sidecar:
             skip_rows=self.skip_rows if over.skip_rows is None else over.skip_rows,
             start=over.start or self.start,
             stop=over.stop or self.stop,
+            constants={**self.constants, **over.constants},
         )
 
 
@@ -77,7 +85,8 @@ class Settings:
     """What is known beside the table: columns and units by channel, and the radius.
 
     radius: as the user gave it; radius_in_file: as `radius_source` states it, over which the former goes
-    sampling: rate or interval of the samples, where the table has no time
+    sampling: rate or interval of the samples, where the table has no time; constants: the one value of a channel that
+    no column holds, such as "2.5 bar" of the pressure
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -86,13 +95,15 @@ class Settings:
     radius_in_file: str | None = None
     radius_source: str = ""
     sampling: str | float | None = None
+    constants: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None) -> Sidecar:
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
     For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
-    `skip_rows = 3`, and the tables `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say.
+    `skip_rows = 3`, `pressure = "2.5 bar"` and `temperature = "21 degC"` where no column holds them, and the tables
+    `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say.
     The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
     named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of
@@ -130,6 +141,7 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
         skip_rows=content.get("skip_rows"),
         start=content.get("from", ""),
         stop=content.get("to", ""),
+        constants={name: content[name] for name in _CONSTANT if name in content},
     )
 
 
@@ -173,7 +185,7 @@ def _check(file: Path, content: Mapping[str, Any], inside: str) -> None:
 
 def _as_text(file: Path, key: str, value: object) -> None:
     if not isinstance(value, str) or (not value.strip() and not key.startswith("columns.")):
-        examples = {"radius": "25.4 cm", "sampling": "10 Hz", "from": "10 s", "to": "20 s"}
+        examples = {"radius": "25.4 cm", "sampling": "10 Hz", "from": "10 s", "to": "20 s", **_CONSTANT}
         raise RecordingError(
             f'{file.name}: {key} is {value!r}, not text; write {key} = "{examples.get(key, "...")}"'
         )

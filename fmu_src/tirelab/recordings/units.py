@@ -188,6 +188,17 @@ def parse_radius(text: str | float) -> float:
     return math.inf if math.isinf(radius) else radius
 
 
+def parse_quantity(text: str, si: str) -> float:
+    """Return a value in SI from a number and a unit: "2.5 bar", "21 degC"; a pressure is gauge unless it says absolute.
+
+    Errors: UnitError for what has no number, no unit, or a unit of something else.
+    """
+    found = _MAGNITUDE.match(text.strip().replace("\N{MINUS SIGN}", "-"))
+    if found is None or not found["unit"].strip():
+        raise UnitError(f"{text[:40]!r} is no {QUANTITIES[si]}; write a number and {_advice('', si)[6:]}")
+    return float(conversion(found["unit"].strip(), si).to_si(np.array([float(found["value"])]))[0])
+
+
 def parse_interval(text: str | float) -> float:
     """The time between samples [s] from a rate or an interval: "10 Hz", "0.1s", "100 ms", or a number of hertz.
 

@@ -7,18 +7,18 @@ whose motion turns within a sample do not count. All comparisons are made in uni
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, TireModel
+from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
 
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import motion_of
-from ..simulation.simulate import simulate
+from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .gauge import destepped
 from .noise_floor import NoiseFloor, gauge_step, noise_floor, white_level
 from .scales import Scales
@@ -71,6 +71,7 @@ class Experiment:
     baseline [N]: force of the baseline tire there; misfit [N]: force read less the baseline's, averaged over the block
     counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
+    measured: the channels that were recorded, by their names, averaged over the blocks
     """
 
     name: str
@@ -86,6 +87,7 @@ class Experiment:
     floor: NoiseFloor
     gauge: float
     size: int
+    measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,12 @@ class Dataset:
         """Root mean square of what a gauge's steps leave of the motion behind them, in units of the noise."""
         parts = [(e.counts.sum(), (STEPS_LEFT * e.floor.steps / e.noise) ** 2) for e in self.experiments]
         return float(np.sqrt(sum(n * p for n, p in parts) / max(sum(n for n, _ in parts), 1)))
+
+    @property
+    def load(self) -> float:
+        """Root mean square force in units of the noise: the baseline's, of a part that pulls the one that was read."""
+        read = self.misfit if self.tire.two_sided else 0.0
+        return float(np.sqrt(np.mean((self.stacked([e.baseline for e in self.experiments]) + read) ** 2)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -154,9 +162,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
     motion = motion_of(recording.time, read)
     gauge = 0.0 if step > 0.0 else motion.noise
-    moved = _Moved(
-        recording.time, motion.deflection, recording.surface_radius, motion.rate, motion.acceleration
-    )
+    moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, 0.01)), moved, moved)
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
@@ -183,12 +189,16 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         # That of an even block lies between two samples: either of them would be a lag of half a sample.
         return np.asarray(0.5 * (values[before] + values[after]))
 
-    blocks = _Moved(
+    measured = {
+        name: values[:whole].reshape(-1, size).mean(axis=1) for name, values in moved.measured.items()
+    }
+    blocks = SmoothedMotion(
         middle(recording.time),
         middle(motion.deflection),
         recording.surface_radius[after],
         middle(motion.rate),
         middle(motion.acceleration),
+        measured,
     )
     # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
     noise = (
@@ -208,16 +218,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         floor,
         gauge,
         size,
+        measured,
     )
-
-
-@dataclass(frozen=True)
-class _Moved:
-    time: FloatArray
-    deflection: FloatArray
-    surface_radius: FloatArray
-    rate: FloatArray
-    acceleration: FloatArray
 
 
 def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
@@ -266,4 +268,12 @@ def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -
         rate=max(float(np.sqrt(np.mean(rate**2))), 1e-12),
         acceleration=max(float(np.sqrt(np.mean(acceleration**2))), 1e-12),
         gauge=max(float(np.median([e.gauge for e in experiments])), 1e-12),
+        channels={channel.name: _level(channel, experiments) for channel in CHANNELS},
     )
+
+
+def _level(channel: Channel, experiments: Sequence[Experiment]) -> float:
+    """Return the median of a channel over all recordings that hold it, or its usual value."""
+    held = [e.measured[channel.name] for e in experiments if channel.name in e.measured]
+    level = float(np.median(np.concatenate(held))) if held else channel.usual
+    return level if level > 0.0 else channel.usual

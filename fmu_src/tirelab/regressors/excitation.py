@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
+from .channel_evidence import ChannelEvidence, channel_evidence
 from .dataset import Dataset, Experiment
 
 FloatArray = NDArray[np.float64]
@@ -25,17 +26,26 @@ SPEEDS = 0.5
 STILL = 0.02
 """Speed over its root mean square below which the tire rests."""
 
+UNDER_WAY = 0.3
+"""Speed over its root mean square above which the direction is sure: a channel may change with it."""
+
+
+NO_EVIDENCE = ChannelEvidence(frozenset(), {})
+"""That of recordings whose channels were not looked at."""
+
 
 @dataclass(frozen=True)
 class Excitation:
     """returns: part of the variance of time between visits of the same deflection in the same direction; speeds: spread
-    of the speed there; timed: whether the samples' times are known; surfaces: how many were pressed on.
+    of the speed there; timed: whether the samples' times are known; surfaces: how many were pressed on; channels: what
+    the recorded channels show.
     """
 
     returns: float
     speeds: float
     timed: bool = True
     surfaces: int = 1
+    channels: ChannelEvidence = NO_EVIDENCE
 
     @property
     def one_speed(self) -> bool:
@@ -44,6 +54,8 @@ class Excitation:
 
     def hidden(self, name: str) -> str:
         """Return why an effect of this name cannot be shown, or ""."""
+        if name in self.channels.unvaried:
+            return self.channels.unvaried[name]
         traits = CATALOGUE[name].traits
         if not self.timed and {"rate", "slow"} & set(traits):
             return "the recording has no time"
@@ -66,9 +78,10 @@ class Excitation:
 
     def within_law(self, name: str) -> bool:
         """Whether a law of another shape could be all that an effect of this name is: it depends on the deflection
-        alone, which on one surface is all that a law can be.
+        alone, which on one surface is all that a law can be; not on a channel that was read beside it.
         """
-        return self.surfaces == 1 and "static" in CATALOGUE[name].traits
+        effect = CATALOGUE[name]
+        return self.surfaces == 1 and "static" in effect.traits and effect.reads is None
 
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
@@ -82,7 +95,8 @@ def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
         _spread_within(np.concatenate([v.speed for v in same]), np.concatenate([v.cell for v in same]))
         for same in together.values()
     ]
-    return Excitation(max(returns), max(speeds), timed, len(dataset.radii))
+    channels = channel_evidence(dataset, _common_cells(dataset.experiments))
+    return Excitation(max(returns), max(speeds), timed, len(dataset.radii), channels)
 
 
 @dataclass(frozen=True)
@@ -96,10 +110,26 @@ class _Visits:
 
 def _visits(e: Experiment) -> _Visits:
     # In a hold everything that relaxes passes for something slow: only visits on the way count.
-    moving = np.abs(e.rate) > STILL * float(np.sqrt(np.mean(e.rate**2)))
-    span = (e.deflection - e.deflection.min()) / max(float(np.ptp(e.deflection)), 1e-300)
-    cell = np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (e.rate > 0.0)
+    moving = _moving(e)
+    cell = _cells(e, float(e.deflection.min()), float(e.deflection.max()))
     return _Visits(e.time[moving], np.abs(e.rate[moving]), cell[moving])
+
+
+def _moving(e: Experiment, part: float = STILL) -> NDArray[np.bool_]:
+    return np.asarray(np.abs(e.rate) > part * float(np.sqrt(np.mean(e.rate**2))))
+
+
+def _cells(e: Experiment, low: float, high: float) -> NDArray[np.int_]:
+    """Return the cell of deflection, between two ends [m], and direction of each block."""
+    span = (e.deflection - low) / max(high - low, 1e-300)
+    return np.asarray(np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (e.rate > 0.0))
+
+
+def _common_cells(experiments: Sequence[Experiment]) -> list[NDArray[np.int_]]:
+    """Return the cells of every recording's blocks on one scale of the deflection; -1 where the tire turns."""
+    low = min(float(e.deflection.min()) for e in experiments)
+    high = max(float(e.deflection.max()) for e in experiments)
+    return [np.where(_moving(e, UNDER_WAY), _cells(e, low, high), -1) for e in experiments]
 
 
 def _share_within(values: FloatArray, cell: NDArray[np.int_]) -> float:

@@ -46,9 +46,12 @@ def candidates() -> tuple[str, ...]:
 def law_signature(dataset: Dataset) -> Signature:
     """Return the law's signature; its size 1 is that of a change of A by FACTOR."""
     gather = dataset.gathered
-    x = gather([e.deflection for e in dataset.experiments])
+    x = gather(
+        [np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments]
+    )
     radius = gather([e.surface_radius for e in dataset.experiments])
-    force = dataset.stacked([e.baseline for e in dataset.experiments])
+    # A refitted law leaves a part's preload as it is.
+    force = dataset.stacked([e.baseline - dataset.tire.preload for e in dataset.experiments])
     positive = x[x > 0.0]
     middle = float(np.median(positive)) if positive.size else 1.0
     way = np.log(np.maximum(x / middle, 0.01))

@@ -66,7 +66,7 @@ def signature_of(name: str, dataset: Dataset) -> Signature | None:
     """Return the signature of an effect, or None where it has no response on these recordings."""
     effect = CATALOGUE[name]
     sets, shares = drawn(effect, dataset.scales, DRAWS)
-    force = size_of(dataset.stacked([e.baseline for e in dataset.experiments]))
+    force = dataset.load
     misfit = size_of(dataset.misfit)
     curves: list[FloatArray] = []
     values: list[tuple[float, ...]] = []

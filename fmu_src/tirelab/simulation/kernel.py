@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from radialtire.effect import Instant, State
 from radialtire.effects.deflection_offset import respond
 from radialtire.power_law import force as elastic_force
+from radialtire.power_law import two_sided as held_force
 from radialtire.tracking import acceleration, begin, follow, rate
 
 FloatArray = NDArray[np.float64]
@@ -22,12 +23,26 @@ def respond_loop(
     state: State,
     values: State,
     answer: FloatArray,
+    two_sided: bool,
 ) -> None:
     """Fill `answer` with the effect's signal at every sample; `state` is its initial state.
 
-    history: time, deflection, rate, acceleration, coefficient, exponent, elastic force and curvature of every sample
+    two_sided: whether the part is held at both ends
+    history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
+    of every sample
     """
-    time, deflection, rates, accelerations, coefficient, exponent, elastic, curvature = history
+    (
+        time,
+        deflection,
+        rates,
+        accelerations,
+        coefficient,
+        exponent,
+        elastic,
+        curvature,
+        pressure,
+        temperature,
+    ) = history
     for i in range(signal.size):
         answer[i], state = respond(
             signal[i],
@@ -42,6 +57,9 @@ def respond_loop(
                 exponent[i],
                 elastic[i],
                 curvature[i],
+                pressure[i],
+                temperature[i],
+                two_sided,
             ),
             state,
             values,
@@ -65,8 +83,15 @@ def track_loop(
 
 
 def elastic_loop(
-    deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray, answer: FloatArray
+    deflection: FloatArray,
+    coefficient: FloatArray,
+    exponent: FloatArray,
+    answer: FloatArray,
+    two_sided: bool,
 ) -> None:
-    """Fill `answer` with A x^B [N]."""
+    """Fill `answer` with A x^B [N], of a two-sided part A sign(x) |x|^B."""
     for i in range(deflection.size):
-        answer[i] = elastic_force(deflection[i], coefficient[i], exponent[i])
+        if two_sided:
+            answer[i] = held_force(deflection[i], coefficient[i], exponent[i])
+        else:
+            answer[i] = elastic_force(deflection[i], coefficient[i], exponent[i])

@@ -10,7 +10,8 @@ linear fit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +20,7 @@ from radialtire import FLAT_RADIUS, Effect, State, TireModel
 from radialtire.model import Law
 
 from . import compiled
+from .channels import channel_rows, measured_of
 
 FloatArray = NDArray[np.float64]
 
@@ -27,7 +29,7 @@ UPSTREAM = ("deflection", "series")
 
 
 class Sampled(Protocol):
-    """What is simulated: arrays of one length, time rising."""
+    """What is simulated: arrays of one length, time rising; the channels that effects read as `measured_of` says."""
 
     @property
     def time(self) -> FloatArray:
@@ -73,6 +75,7 @@ class SmoothedMotion:
     """The motion of a recording without the noise in the measured deflection; arrays of one length.
 
     time [s], deflection [m], surface_radius [m]; rate [m/s], acceleration [m/s^2]: smoothed with look-ahead
+    measured: the channels that were recorded, by their names
     """
 
     time: FloatArray
@@ -80,12 +83,18 @@ class SmoothedMotion:
     surface_radius: FloatArray
     rate: FloatArray
     acceleration: FloatArray
+    measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 def smoothed_motion(recording: Sampled, motion: Smoothed) -> SmoothedMotion:
     """Return the smoothed `motion` of a recording at its times and on its surfaces."""
     return SmoothedMotion(
-        recording.time, motion.deflection, recording.surface_radius, motion.rate, motion.acceleration
+        recording.time,
+        motion.deflection,
+        recording.surface_radius,
+        motion.rate,
+        motion.acceleration,
+        measured_of(recording),
     )
 
 
@@ -94,7 +103,8 @@ class History:
     """The quantities that effects use, at every sample (see `radialtire.effect.Instant`); arrays of one length.
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
-    coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]
+    coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]; channels: those of CHANNELS
+    two_sided: whether the part is held at both ends
     """
 
     time: FloatArray
@@ -105,6 +115,8 @@ class History:
     exponent: FloatArray
     elastic_force: FloatArray
     curvature: FloatArray
+    channels: tuple[FloatArray, ...]
+    two_sided: bool
 
 
 def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -114,7 +126,9 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
     """
     history, force = elastic_stage(tire, recording, kinematics)
     force = downstream(tire, history, force, ("parallel",))
-    return downstream(tire, history, np.maximum(force, 0.0), ("inertia", "reading"))
+    if not tire.two_sided:
+        force = np.maximum(force, 0.0)
+    return downstream(tire, history, force, ("inertia", "reading"))
 
 
 def elastic_stage(
@@ -122,7 +136,7 @@ def elastic_stage(
 ) -> tuple[History, FloatArray]:
     """Return the quantities for the effects after the elastic law, and the elastic force [N] with its factor."""
     x = recording.deflection
-    history = history_of(tire, recording.time, x, recording.surface_radius, kinematics)
+    history = history_of(tire, recording, kinematics)
     for place in UPSTREAM:
         history = replace(history, deflection=x)
         x = downstream(tire, history, x, (place,))
@@ -132,7 +146,9 @@ def elastic_stage(
             rate, _ = track(history.time, x, tire.reading_noise)
         else:
             rate = rate + np.gradient(x - recording.deflection, history.time)
-    bare = elastic_force(x, history.coefficient, history.exponent)
+    bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
+    if tire.two_sided:
+        bare += tire.preload
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
     elastic = factor * bare
@@ -147,14 +163,9 @@ def downstream(tire: TireModel, history: History, signal: FloatArray, places: tu
     return signal
 
 
-def history_of(
-    tire: TireModel,
-    time: FloatArray,
-    deflection: FloatArray,
-    surface_radius: FloatArray,
-    kinematics: Kinematics | None = None,
-) -> History:
-    """Return the quantities for the first effects: time [s], deflection [m], surface radius [m] of every sample."""
+def history_of(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> History:
+    """Return the quantities for the first effects at every sample of a recording."""
+    time, deflection, surface_radius = recording.time, recording.deflection, recording.surface_radius
     rate = acceleration = np.zeros_like(deflection)
     if kinematics is not None:
         rate, acceleration = kinematics.rate, kinematics.acceleration
@@ -163,7 +174,19 @@ def history_of(
     A, B = coefficients(tire.law, surface_radius)
     flat = np.abs(surface_radius) >= FLAT_RADIUS
     curvature = np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, surface_radius))
-    return History(time, deflection, rate, acceleration, A, B, np.zeros_like(deflection), curvature)
+    channels = channel_rows(measured_of(recording), time.size)
+    return History(
+        time,
+        deflection,
+        rate,
+        acceleration,
+        A,
+        B,
+        np.zeros_like(deflection),
+        curvature,
+        channels,
+        tire.two_sided,
+    )
 
 
 def respond_series(effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
@@ -181,18 +204,22 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
             history.exponent,
             history.elastic_force,
             history.curvature,
+            *history.channels,
         ),
         effect.initial_state,
         tuple(float(value) for value in values),
         answer,
+        history.two_sided,
     )
     return answer
 
 
-def elastic_force(deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray) -> FloatArray:
-    """Return A x^B [N] of every sample: deflection [m], A [N/cm^B], B [1]."""
+def elastic_force(
+    deflection: FloatArray, coefficient: FloatArray, exponent: FloatArray, *, two_sided: bool = False
+) -> FloatArray:
+    """Return A x^B [N] of every sample: deflection [m], A [N/cm^B], B [1]; of a two-sided part A sign(x) |x|^B."""
     answer = np.empty_like(deflection)
-    compiled.loop("elastic_loop", "law")(deflection, coefficient, exponent, answer)
+    compiled.loop("elastic_loop", "law")(deflection, coefficient, exponent, answer, two_sided)
     return answer
 
 

@@ -16,7 +16,7 @@ from .obstacles import OBSTACLES, Obstacle, kerb, log, place, root, rut, stick, 
 from .picture import animate_ride, draw_ride
 from .profile import Profile, flat, from_function, sine
 from .profile_file import ProfileColumns, add_roughness, read_gpx, read_profile, read_profile_csv
-from .ride import HubPath, Ride, TireForce, constant_load_path, law_force, ride
+from .ride import HubPath, Ride, TireForce, constant_load_path, force_at, law_force, ride
 from .ride_file import write_ride
 
 __all__ = [
@@ -39,6 +39,7 @@ __all__ = [
     "contact",
     "draw_ride",
     "flat",
+    "force_at",
     "from_function",
     "ground_from",
     "hub_positions",

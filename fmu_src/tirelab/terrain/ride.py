@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
+from radialtire import CHANNELS, TireModel, check_measured
 from radialtire.hull1996 import WHEEL_RADIUS
 from radialtire.model import Law
 from radialtire.power_law import CM_PER_M
 
 from ..errors import TirelabError
+from ..simulation.simulate import SmoothedMotion, simulate
 from .contact import Contact, contact, hub_positions, rolling_path
 from .curvature import Ground
 from .limits import LimitReport, limit_report, limits
@@ -132,6 +133,38 @@ def law_force(law: Law) -> TireForce:
         coefficients = np.array([law.coefficients(radius) for radius in surface_radius.tolist()])
         newtons: Floats = coefficients[:, 0] * (CM_PER_M * deflection) ** coefficients[:, 1]
         return newtons
+
+    return force
+
+
+def force_at(tire: TireModel, channels: Mapping[str, float]) -> TireForce:
+    """Return the force of a tire whose channels, such as the pressure, are held at values [SI].
+
+    Its elastic law acts, with the effects that read one of them and depend on nothing but the deflection beside it.
+
+    Raises TirelabError where no such effect of the tire reads one of the channels, InputError for one that cannot be.
+    """
+    known = {channel.name: channel for channel in CHANNELS}
+    reading = tuple(
+        (e, v)
+        for e, v in tire.effects
+        if e.reads is not None and e.reads.channel in channels and "static" in e.traits
+    )
+    read = {effect.reads.channel for effect, _ in reading if effect.reads is not None}
+    for name, value in channels.items():
+        check_measured(known[name], value)
+        if name not in read:
+            raise TirelabError(
+                f"the tire {tire.name!r} does not say how its force depends on the {name}; tirelab diagnose finds that "
+                f"from recordings at several values, or write the effect that reads it into the tire file"
+            )
+    at = TireModel(tire.law, reading, None)
+
+    def force(deflection: Floats, surface_radius: Floats) -> Floats:
+        count = deflection.size
+        still, order = np.zeros(count), np.arange(count, dtype=np.float64)
+        measured = {name: np.full(count, value) for name, value in channels.items()}
+        return simulate(at, SmoothedMotion(order, deflection, surface_radius, still, still, measured))
 
     return force
 

@@ -29,3 +29,16 @@ def test_ten_kelvin_at_40_psi_are_three_percent_and_more() -> None:
     assert gain_for_10_degF * 40.0 == pytest.approx(1.0, rel=0.1)
     force = drive(only("warm_up", gain=gain_for_10_degF, time_constant=1.0), [0.0, 100.0], [0.02] * 2)
     assert force[1] / force[0] == pytest.approx(1.0 + 1.0 / 40.0, abs=0.003)
+
+
+def test_a_measured_temperature_takes_the_place_of_time() -> None:
+    # 10 K above the temperature at the start the force has risen by the gain, whenever that is
+    tire = only("warm_up", gain=0.03, time_constant=60.0)
+    force = drive(tire, [0.0, 1e4, 2e4], [0.02] * 3, temperature=[290.0, 290.0, 300.0])
+    assert force[1] == force[0]
+    assert force[2] / force[0] == pytest.approx(1.03, rel=1e-14)
+
+
+def test_a_tire_that_cools_presses_less() -> None:
+    force = drive(only("warm_up", gain=0.03), [0.0, 1.0], [0.02] * 2, temperature=[300.0, 295.0])
+    assert force[1] / force[0] == pytest.approx(0.985, rel=1e-14)

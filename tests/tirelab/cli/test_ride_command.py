@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import tirelab.terrain
 from click.testing import CliRunner
+from radialtire import CATALOGUE, TireModel, write_tire
 from tirelab.cli.ride import command
 from tirelab.terrain.iso8608 import GEOMETRIC_MEAN
 
@@ -149,3 +150,15 @@ def test_the_help_names_every_obstacle_and_class() -> None:
     text = " ".join(run("--help").split())
     assert f"({', '.join(tirelab.terrain.OBSTACLES)})" in text
     assert f"[{'|'.join(GEOMETRIC_MEAN)}]" in text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_pressure_is_given_with_its_unit(tmp_path: Path) -> None:
+    effect = CATALOGUE["inflation_pressure"]
+    write_tire(TireModel(effects=((effect, (1.0, 3e5, 1.0)),)), tmp_path / "tire.json")
+    # F = 550.9 x^1.422 p / p0 is 550.9 N / 2 at 1 cm and half the pressure
+    flat = ("--length", "4", "--load", "275.45", "--tire", tmp_path / "tire.json")
+    assert "deflection 10.0 to 10.0 mm" in run(*flat, "--inflation-pressure", "1.5bar")
+    wrong = CliRunner().invoke(command, [*map(str, flat), "--inflation-pressure", "1.5"])
+    assert wrong.exit_code != 0
+    assert "is no pressure" in wrong.output

@@ -53,3 +53,14 @@ def test_every_effect_has_curves_without_gaps(name: str) -> None:
 def test_what_is_not_there_has_no_sketch() -> None:
     assert sketch_of("inertia", TireModel(), [RECORDING]) is None
     assert sketch_of("force_offset", tire("force_offset", offset=1.0), []) is None
+
+
+def test_a_pressure_is_drawn_at_the_recorded_one_that_is_farthest() -> None:
+    """Half of the reference pressure, all of the force the air's: half of the bare force is missing."""
+    half = Recording(
+        "soft", TIME, DEFLECTION, RECORDING.surface_radius, RECORDING.force, pressure=np.full(3000, 1.5e5)
+    )
+    sketch = sketch_of("inflation_pressure", tire("inflation_pressure", gain=1.0, reference=3e5), [half])
+    assert sketch is not None
+    # the article's law on the flat at 2 cm: 550.9 N x 2^1.422
+    assert sketch.force.min() == pytest.approx(-0.5 * 550.9 * 2.0**1.422, rel=0.05)

@@ -1,5 +1,6 @@
 """Each law is found from what it makes itself, and the one that made the readings is the first."""
 
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ from click.testing import CliRunner
 from radialtire import read_tire
 from tirelab.cli import main
 from tirelab.errors import TirelabError
-from tirelab.identification.part_laws import fit_laws, tire_of
+from tirelab.identification.part_laws import fit_laws, reading_noise, tire_of
 from tirelab.recordings.recording import Recording, write_recording
 from tirelab.simulation.simulate import simulate
 
@@ -27,6 +28,11 @@ MADE = {
     "linear": (BOTH, 15.0 + 40e3 * BOTH, {"F0": 15.0, "k": 40.0}),
     "linear_gap": (X, 90e3 * np.maximum(X - 0.004, 0.0), {"k": 90.0, "x0": 4.0}),
     "power": (BOTH, 700.0 * np.sign(BOTH) * np.abs(100.0 * BOTH) ** 1.45, {"A": 700.0, "B": 1.45}),
+    "power_preload": (
+        BOTH,
+        120.0 + 700.0 * np.sign(BOTH) * np.abs(100.0 * BOTH) ** 1.6,
+        {"F0": 120.0, "A": 700.0, "B": 1.6},
+    ),
     "power_gap": (
         X,
         700.0 * np.maximum(100.0 * (X - 0.003), 0.0) ** 1.45,
@@ -75,7 +81,7 @@ def test_the_pressure_of_mf_tyre() -> None:
     assert fit.rmse == pytest.approx(2.0, rel=0.08)
 
 
-@pytest.mark.parametrize("name", ["linear_gap", "power_gap"])
+@pytest.mark.parametrize("name", ["linear", "power", "power_preload", "linear_gap", "power_gap"])
 def test_a_tire_of_it_runs(name: str, tmp_path: Path) -> None:
     x, force, _ = MADE[name]
     part = recording(x, force)
@@ -97,6 +103,48 @@ def test_what_a_tire_file_cannot_hold_is_refused() -> None:
         tire_of(fits["linear_gap"], [far], "")
     with pytest.raises(TirelabError, match="cannot hold the law polynomial"):
         tire_of(fits["polynomial"], [far], "")
+
+
+def test_a_force_that_falls_as_the_deflection_grows_is_no_spring() -> None:
+    turned = recording(BOTH, 10.0 - 40e3 * BOTH)
+    (linear,) = [fit for fit in fit_laws([turned]) if fit.name == "linear"]
+    with pytest.raises(TirelabError, match=r"k = -40, a force that falls .* check the signs"):
+        tire_of(linear, [turned], "")
+
+
+def test_a_damper_without_a_spring_has_its_preload_alone() -> None:
+    time = np.arange(2000) / 100.0
+    x = 0.01 * np.sin(2.0 * np.pi * time)
+    rate = 0.02 * np.pi * np.cos(2.0 * np.pi * time)
+    force = 120.0 + 3000.0 * rate + np.random.default_rng(8).standard_normal(2000)
+    damper = Recording("damper", time, x, np.full(2000, np.inf), force)
+    (linear,) = [fit for fit in fit_laws([damper]) if fit.name == "linear"]
+    tire = tire_of(linear, [damper], "damper")
+    assert tire.two_sided
+    assert tire.preload == pytest.approx(120.0, abs=0.5)
+    assert tire.law.coefficient < 10.0  # type: ignore[attr-defined]
+    # third differences leave the noise of 1 N, and of a sine of 6.3 rad/s in steps of 10 ms its part of 2.5e-4
+    assert reading_noise([damper]) == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: Path) -> None:
+    time = np.arange(2000) / 100.0
+    x = 0.01 * np.sin(2.0 * np.pi * time)
+    force = 120.0 + 3000.0 * 0.02 * np.pi * np.cos(2.0 * np.pi * time) + 2e4 * x
+    force += np.random.default_rng(8).standard_normal(2000)
+    write_recording(Recording("damper", time, x, np.full(2000, np.inf), force), tmp_path / "damper.csv")
+    out = tmp_path / "part.json"
+    signed = ["--columns", "deflection=+deflection [cm],force=+force [N]"]
+    words = ["identify", str(tmp_path / "damper.csv"), *signed, "--part", "linear", "--out", str(out)]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    (said,) = [line for line in done.output.splitlines() if "of noise" in line]
+    command = shlex.split(said.split("`")[1])
+    assert command[:2] == ["tirelab", "diagnose"]
+    diagnosed = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "d"), "--quiet"])
+    assert diagnosed.exit_code == 0, diagnosed.output
+    assert "damping" in diagnosed.output
+    assert "hysteresis" in diagnosed.output  # one speed at each deflection: either may be
 
 
 def test_one_surface_at_a_time() -> None:

@@ -99,3 +99,29 @@ class TestSidecar:
     def test_an_empty_column_leaves_a_channel_out(self, tmp_path: Path) -> None:
         (tmp_path / "recording.toml").write_text('[columns]\nspeed = ""\n', encoding="utf-8")
         assert read_sidecar(tmp_path / "a.csv").columns == {"speed": ""}
+
+    def test_one_pressure_for_the_whole_recording(self, tmp_path: Path) -> None:
+        path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],force [N]", *loading())
+        (tmp_path / "recording.toml").write_text(
+            'radius = "flat"\ntemperature = "21 degC"\n[files."a.csv"]\npressure = "2.5 bar"\n'
+        )
+        recording = read_recording(path)
+        assert set(recording.pressure.tolist()) == {2.5e5}
+        assert recording.temperature[0] == pytest.approx(294.15)
+        assert "pressure 2.5 bar in every row, as the settings say" in recording.notes
+
+    def test_a_column_of_pressure_goes_over_the_one_value(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],deflection [cm],force [N],pressure [kPa]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, [300.0] * len(time))
+        (tmp_path / "recording.toml").write_text('radius = "flat"\npressure = "2.5 bar"\n')
+        recording = read_recording(path)
+        assert recording.pressure[0] == pytest.approx(3e5)
+        assert "pressure = 2.5 bar of the settings not used: a column gives it" in recording.notes
+
+    @pytest.mark.parametrize("text", ["2.5", "high", "2.5 N"])
+    def test_a_pressure_that_is_none_is_told(self, tmp_path: Path, text: str) -> None:
+        path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],force [N]", *loading())
+        (tmp_path / "recording.toml").write_text(f'radius = "flat"\npressure = "{text}"\n')
+        with pytest.raises(RecordingError, match=r"pressure in the settings: .*(write|mean)"):
+            read_recording(path)

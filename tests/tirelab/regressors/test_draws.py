@@ -6,14 +6,21 @@ import math
 
 import numpy as np
 import pytest
-from radialtire import CATALOGUE, Parameter
+from radialtire import CATALOGUE, CHANNELS, Parameter
 from radialtire.prior import Prior
 from scipy.stats import norm, truncnorm
 from tirelab.regressors.draws import at_reading, centre_and_spread, drawn, quantile
 from tirelab.regressors.scales import Scales
 
 SCALES = Scales(
-    force=900.0, travel=0.02, duration=60.0, interval=0.01, rate=0.05, acceleration=1.5, gauge=1e-6
+    force=900.0,
+    travel=0.02,
+    duration=60.0,
+    interval=0.01,
+    rate=0.05,
+    acceleration=1.5,
+    gauge=1e-6,
+    channels={channel.name: channel.usual for channel in CHANNELS},
 )
 
 

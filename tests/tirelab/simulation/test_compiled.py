@@ -23,7 +23,7 @@ def shifted(offset: float) -> float:
     """Return what the loop of deflection_offset makes of a deflection of 0.01 m."""
     effect = CATALOGUE["deflection_offset"]
     one, answer = np.full(1, 0.01), np.empty(1)
-    compiled.loop("respond_loop", effect.name, effect.respond)(one, (one,) * 8, (), (offset,), answer)
+    compiled.loop("respond_loop", effect.name, effect.respond)(one, (one,) * 10, (), (offset,), answer, False)
     return float(answer[0])
 
 
@@ -53,10 +53,10 @@ def test_a_store_without_room_costs_only_time(store: Path, monkeypatch: pytest.M
 def test_two_effects_do_not_share_a_loop() -> None:
     one, two = CATALOGUE["force_offset"], CATALOGUE["force_drift"]
     loops = [compiled.loop("respond_loop", e.name, e.respond) for e in (one, two)]
-    history = (np.array([0.0, 2.0]), *(np.zeros(2) for _ in range(7)))
+    history = (np.array([0.0, 2.0]), *(np.zeros(2) for _ in range(9)))
     answers = [np.empty(2), np.empty(2)]
     for loop, answer in zip(loops, answers, strict=True):
-        loop(np.full(2, 100.0), history, (), (5.0,), answer)
+        loop(np.full(2, 100.0), history, (), (5.0,), answer, False)
     # F + F0, and F + d t with t = 0 s and 2 s
     assert answers[0].tolist() == [105.0, 105.0]
     assert answers[1].tolist() == [100.0, 110.0]

@@ -15,7 +15,9 @@ COUNT = 200
 
 
 def history(seed: int) -> tuple[NDArray[np.float64], ...]:
-    """Time, deflection, rate, acceleration, A, B, elastic force and curvature of a motion; one sample is repeated."""
+    """Time, deflection, rate, acceleration, A, B, elastic force, curvature, pressure and temperature of a motion; one
+    sample is repeated.
+    """
     random = np.random.default_rng(seed)
     time = 3.0 + np.cumsum(random.uniform(1e-3, 0.02, COUNT))
     time[50] = time[49]
@@ -31,6 +33,8 @@ def history(seed: int) -> tuple[NDArray[np.float64], ...]:
         B,
         elastic,
         np.linspace(-2.0, 12.0, COUNT),
+        np.linspace(2e5, 4e5, COUNT),
+        np.linspace(290.0, 310.0, COUNT),
     )
 
 
@@ -38,7 +42,7 @@ def by_hand(
     effect: Effect, signal: NDArray[np.float64], known: tuple[NDArray[np.float64], ...]
 ) -> list[float]:
     """The effect's signal, sample by sample, from plain floats and named fields."""
-    time, deflection, rate, acceleration, A, B, elastic, curvature = (a.tolist() for a in known)
+    time, deflection, rate, acceleration, A, B, elastic, curvature, *channels = (a.tolist() for a in known)
     state, answer = effect.initial_state, []
     for i, given in enumerate(signal.tolist()):
         instant = Instant(
@@ -52,6 +56,8 @@ def by_hand(
             exponent=B[i],
             elastic_force=elastic[i],
             curvature=curvature[i],
+            pressure=channels[0][i],
+            temperature=channels[1][i],
         )
         found, state = effect.respond(given, instant, state, effect.nominal)
         answer.append(found)
@@ -64,7 +70,7 @@ def test_the_compiled_loop_responds_as_the_effect_does(effect: Effect) -> None:
     signal = {"deflection": known[1], "series": known[1], "scale": np.ones(COUNT)}.get(effect.place, known[6])
     expected, answer = by_hand(effect, signal, known), np.empty(COUNT)
     loop("respond_loop", effect.name, effect.respond)(
-        signal, known, effect.initial_state, effect.nominal, answer
+        signal, known, effect.initial_state, effect.nominal, answer, False
     )
     # the same operations: what differs is the rounding of a power or an exponential
     assert answer == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.max(np.abs(expected)))
@@ -74,15 +80,15 @@ def test_the_loop_as_it_stands_shifts_the_deflection() -> None:
     # uncompiled the kernel's `respond` is that of a shifted zero: x = x_read + x0
     known = history(2)
     answer = np.empty(COUNT)
-    kernel.respond_loop(known[1], known, (), (1e-3,), answer)
+    kernel.respond_loop(known[1], known, (), (1e-3,), answer, False)
     assert answer == pytest.approx(known[1] + 1e-3, rel=1e-15)
 
 
 @pytest.mark.parametrize("compiled", [False, True])
 def test_the_elastic_loop_is_the_power_law(compiled: bool) -> None:
-    _, deflection, _, _, A, B, elastic, _ = history(3)
+    _, deflection, _, _, A, B, elastic, *_ = history(3)
     answer = np.empty(COUNT)
-    (loop("elastic_loop", "law") if compiled else kernel.elastic_loop)(deflection, A, B, answer)
+    (loop("elastic_loop", "law") if compiled else kernel.elastic_loop)(deflection, A, B, answer, False)
     assert (deflection < 0.0).any()
     assert answer == pytest.approx(elastic, rel=1e-14)
 

@@ -7,7 +7,8 @@ import math
 import os
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, Effect, Hull1996, PowerLaw, TireModel
 from radialtire.effect import PLACES
 from tirelab.simulation import simulate as simulation
+from tirelab.simulation.channels import channel_rows, measured_of
 from tirelab.simulation.simulate import (
     coefficients,
     downstream,
@@ -38,15 +40,17 @@ class Motion:
     time: FloatArray
     deflection: FloatArray
     surface_radius: FloatArray
+    measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 def stepped(tire: TireModel, motion: Motion) -> FloatArray:
     """The force by the steps of the FMU."""
     state = tire.initial_state
     force = np.empty(motion.time.size)
+    channels = np.stack(channel_rows(motion.measured, force.size), axis=1).tolist()
     for i in range(force.size):
         x, R, t = motion.deflection[i], motion.surface_radius[i], motion.time[i]
-        force[i], state = tire.step(float(x), float(R), float(t), state)
+        force[i], state = tire.step(float(x), float(R), float(t), state, tuple(channels[i]))
     return force
 
 
@@ -59,7 +63,13 @@ def random_motion(seed: int, count: int = 400) -> Motion:
         x += random.uniform(0.0, 0.006) * np.sin(random.uniform(0.5, 30.0) * time + random.uniform(0.0, 6.0))
     x += random.uniform(0.0, 2e-5) * random.standard_normal(count)
     radii = random.choice([math.inf, 0.0127, 0.08, 0.3, -0.4, -0.6], 5)
-    return Motion(time, x, np.repeat(radii, math.ceil(count / 5))[:count])
+    measured = {
+        "pressure": 3e5 + 1e5 * np.sin(time),
+        "temperature": 295.0 + random.uniform(0.0, 20.0) * np.linspace(0.0, 1.0, count),
+    }
+    kept = random.integers(0, 2, len(measured))
+    chosen = {name: values for (name, values), k in zip(measured.items(), kept, strict=True) if k}
+    return Motion(time, x, np.repeat(radii, math.ceil(count / 5))[:count], chosen)
 
 
 def random_values(effect: Effect, random: np.random.Generator) -> tuple[float, ...]:
@@ -127,8 +137,25 @@ def test_one_sample_is_a_recording() -> None:
 
 def test_zero_intervals_are_looked_at_again() -> None:
     motion = random_motion(3)
-    repeated = Motion(*(np.repeat(a, 2) for a in (motion.time, motion.deflection, motion.surface_radius)))
+    repeated = Motion(
+        *(np.repeat(a, 2) for a in (motion.time, motion.deflection, motion.surface_radius)),
+        {name: np.repeat(values, 2) for name, values in motion.measured.items()},
+    )
     same(random_tire(list(CATALOGUE), 5), repeated)
+
+
+def test_a_channel_is_found_as_an_attribute_and_absent_where_it_is_none() -> None:
+    @dataclass(frozen=True)
+    class Read:
+        pressure: FloatArray
+        temperature: None = None
+
+    pressure = np.array([2e5, 3e5])
+    assert measured_of(Read(pressure)) == {"pressure": pressure}
+    assert measured_of(object()) == {}
+    rows = channel_rows({"pressure": pressure}, 2)
+    assert rows[0].tolist() == [2e5, 3e5]
+    assert np.isnan(rows[1]).all()
 
 
 @dataclass(frozen=True)

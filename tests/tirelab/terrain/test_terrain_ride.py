@@ -4,12 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from radialtire import PowerLaw, TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.errors import TirelabError
 from tirelab.terrain import (
     HubPath,
     Limit,
     flat,
+    force_at,
     from_function,
     ground_from,
     hub_positions,
@@ -151,3 +152,21 @@ def test_a_ride_on_a_tire_has_its_law_and_is_written(tmp_path: Path) -> None:
     np.testing.assert_allclose(table[:, 0], 0.5 * (table[:, 1] - table[0, 1]), atol=1e-8)
     with pytest.raises(TirelabError, match=r"absent.*; name a file that can be written"):
         write_ride(soft, tmp_path / "absent" / "soft.csv")
+
+
+def test_a_tire_of_half_the_pressure_sinks_in_deeper() -> None:
+    """Of a thin toroid F is in proportion to p: half the pressure needs 2^(1/B) of the deflection for the same load."""
+    effect = CATALOGUE["inflation_pressure"]
+    tire = TireModel(PowerLaw(500.0, 1.4), ((effect, (1.0, 3e5, 1.0)),))
+    ground = ground_from(flat(4.0))
+    depths = [
+        float(ride(ground, force_at(tire, {"pressure": p}), speed=5.0, load=500.0).contact.deflection[5])
+        for p in (3e5, 1.5e5)
+    ]
+    assert depths[0] == pytest.approx(0.01, rel=1e-5)
+    assert depths[1] / depths[0] == pytest.approx(2.0 ** (1.0 / 1.4), rel=1e-5)
+
+
+def test_a_tire_that_says_nothing_of_the_pressure_is_not_ridden_at_one() -> None:
+    with pytest.raises(TirelabError, match="does not say how its force depends on the pressure"):
+        force_at(TireModel(), {"pressure": 3e5})

@@ -37,30 +37,32 @@ static const double TAIL = 4.0;
 static const double TANGENT_STEP = 1e-07;
 static const double UNIT = 0.001;
 static const double UNKNOWN = 10000.0;
+static const double WARMING = 10.0;
 static const double WHEEL_RADIUS = 0.33;
 
 typedef struct { double v[14]; } Vector14;
 typedef struct { Vector14 v[4]; } Vector14x4;
 typedef struct { double v[4]; } Vector4;
 typedef struct { Vector14x4 a; Vector4 b; double c; } Tuple3;
-typedef struct { double a; double b; bool c; } Tuple4;
+typedef struct { double a; double b; bool c; double d; double e; bool f; } Tuple4;
 typedef struct { double v[3]; } Vector3;
-typedef struct { double time; double interval; bool first; double deflection; double rate; double acceleration; double coefficient; double exponent; double elastic_force; double curvature; } Instant;
+typedef struct { double time; double interval; bool first; double deflection; double rate; double acceleration; double coefficient; double exponent; double elastic_force; double curvature; double pressure; double temperature; bool two_sided; } Instant;
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
 typedef struct { double v[8]; } Vector8;
+typedef struct { double v[5]; } Vector5;
 typedef struct { double a; Vector3 b; } Tuple13;
-typedef struct { double v[7]; } Vector7;
-typedef struct { double a; Vector8 b; } Tuple15;
+typedef struct { double a; Vector1 b; } Tuple15;
+typedef struct { double a; Vector8 b; } Tuple16;
 typedef struct { double v[6]; } Vector6;
-typedef struct { double a; Vector6 b; } Tuple17;
+typedef struct { double a; Vector6 b; } Tuple18;
 typedef struct { double v[11]; } Vector11;
 typedef struct { double v[16]; } Vector16;
 typedef struct { double v[32]; } Vector32;
-typedef struct { double a; Vector32 b; } Tuple21;
+typedef struct { double a; Vector32 b; } Tuple22;
 typedef struct { double v[35]; } Vector35;
-typedef struct { double a; Vector35 b; } Tuple23;
+typedef struct { double a; Vector35 b; } Tuple24;
 typedef struct { double v[10]; } Vector10;
 typedef struct { double v[18]; } Vector18;
 
@@ -298,12 +300,12 @@ static Tuple3 tracked_track(const double *s, double deflection, double interval,
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[58], s[59], s[60], s[61], s[62], s[63], s[64], s[65],
-        s[66], s[67], s[68], s[69], s[70], s[71]}}, (Vector14){{s[72], s[73], s[74], s[75], s[76], s[77], s[78],
-        s[79], s[80], s[81], s[82], s[83], s[84], s[85]}}, (Vector14){{s[86], s[87], s[88], s[89], s[90], s[91],
-        s[92], s[93], s[94], s[95], s[96], s[97], s[98], s[99]}}, (Vector14){{s[100], s[101], s[102], s[103],
-        s[104], s[105], s[106], s[107], s[108], s[109], s[110], s[111], s[112], s[113]}}}}, (Vector4){{s[114],
-        s[115], s[116], s[117]}}, s[118]};
+    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[59], s[60], s[61], s[62], s[63], s[64], s[65], s[66],
+        s[67], s[68], s[69], s[70], s[71], s[72]}}, (Vector14){{s[73], s[74], s[75], s[76], s[77], s[78], s[79],
+        s[80], s[81], s[82], s[83], s[84], s[85], s[86]}}, (Vector14){{s[87], s[88], s[89], s[90], s[91], s[92],
+        s[93], s[94], s[95], s[96], s[97], s[98], s[99], s[100]}}, (Vector14){{s[101], s[102], s[103], s[104],
+        s[105], s[106], s[107], s[108], s[109], s[110], s[111], s[112], s[113], s[114]}}}}, (Vector4){{s[115],
+        s[116], s[117], s[118]}}, s[119]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -316,67 +318,67 @@ static void store_track(double *n, Tuple3 track)
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
     double last = track.c;
-    n[58] = modes.v[0].v[0];
-    n[59] = modes.v[0].v[1];
-    n[60] = modes.v[0].v[2];
-    n[61] = modes.v[0].v[3];
-    n[62] = modes.v[0].v[4];
-    n[63] = modes.v[0].v[5];
-    n[64] = modes.v[0].v[6];
-    n[65] = modes.v[0].v[7];
-    n[66] = modes.v[0].v[8];
-    n[67] = modes.v[0].v[9];
-    n[68] = modes.v[0].v[10];
-    n[69] = modes.v[0].v[11];
-    n[70] = modes.v[0].v[12];
-    n[71] = modes.v[0].v[13];
-    n[72] = modes.v[1].v[0];
-    n[73] = modes.v[1].v[1];
-    n[74] = modes.v[1].v[2];
-    n[75] = modes.v[1].v[3];
-    n[76] = modes.v[1].v[4];
-    n[77] = modes.v[1].v[5];
-    n[78] = modes.v[1].v[6];
-    n[79] = modes.v[1].v[7];
-    n[80] = modes.v[1].v[8];
-    n[81] = modes.v[1].v[9];
-    n[82] = modes.v[1].v[10];
-    n[83] = modes.v[1].v[11];
-    n[84] = modes.v[1].v[12];
-    n[85] = modes.v[1].v[13];
-    n[86] = modes.v[2].v[0];
-    n[87] = modes.v[2].v[1];
-    n[88] = modes.v[2].v[2];
-    n[89] = modes.v[2].v[3];
-    n[90] = modes.v[2].v[4];
-    n[91] = modes.v[2].v[5];
-    n[92] = modes.v[2].v[6];
-    n[93] = modes.v[2].v[7];
-    n[94] = modes.v[2].v[8];
-    n[95] = modes.v[2].v[9];
-    n[96] = modes.v[2].v[10];
-    n[97] = modes.v[2].v[11];
-    n[98] = modes.v[2].v[12];
-    n[99] = modes.v[2].v[13];
-    n[100] = modes.v[3].v[0];
-    n[101] = modes.v[3].v[1];
-    n[102] = modes.v[3].v[2];
-    n[103] = modes.v[3].v[3];
-    n[104] = modes.v[3].v[4];
-    n[105] = modes.v[3].v[5];
-    n[106] = modes.v[3].v[6];
-    n[107] = modes.v[3].v[7];
-    n[108] = modes.v[3].v[8];
-    n[109] = modes.v[3].v[9];
-    n[110] = modes.v[3].v[10];
-    n[111] = modes.v[3].v[11];
-    n[112] = modes.v[3].v[12];
-    n[113] = modes.v[3].v[13];
-    n[114] = probability.v[0];
-    n[115] = probability.v[1];
-    n[116] = probability.v[2];
-    n[117] = probability.v[3];
-    n[118] = last;
+    n[59] = modes.v[0].v[0];
+    n[60] = modes.v[0].v[1];
+    n[61] = modes.v[0].v[2];
+    n[62] = modes.v[0].v[3];
+    n[63] = modes.v[0].v[4];
+    n[64] = modes.v[0].v[5];
+    n[65] = modes.v[0].v[6];
+    n[66] = modes.v[0].v[7];
+    n[67] = modes.v[0].v[8];
+    n[68] = modes.v[0].v[9];
+    n[69] = modes.v[0].v[10];
+    n[70] = modes.v[0].v[11];
+    n[71] = modes.v[0].v[12];
+    n[72] = modes.v[0].v[13];
+    n[73] = modes.v[1].v[0];
+    n[74] = modes.v[1].v[1];
+    n[75] = modes.v[1].v[2];
+    n[76] = modes.v[1].v[3];
+    n[77] = modes.v[1].v[4];
+    n[78] = modes.v[1].v[5];
+    n[79] = modes.v[1].v[6];
+    n[80] = modes.v[1].v[7];
+    n[81] = modes.v[1].v[8];
+    n[82] = modes.v[1].v[9];
+    n[83] = modes.v[1].v[10];
+    n[84] = modes.v[1].v[11];
+    n[85] = modes.v[1].v[12];
+    n[86] = modes.v[1].v[13];
+    n[87] = modes.v[2].v[0];
+    n[88] = modes.v[2].v[1];
+    n[89] = modes.v[2].v[2];
+    n[90] = modes.v[2].v[3];
+    n[91] = modes.v[2].v[4];
+    n[92] = modes.v[2].v[5];
+    n[93] = modes.v[2].v[6];
+    n[94] = modes.v[2].v[7];
+    n[95] = modes.v[2].v[8];
+    n[96] = modes.v[2].v[9];
+    n[97] = modes.v[2].v[10];
+    n[98] = modes.v[2].v[11];
+    n[99] = modes.v[2].v[12];
+    n[100] = modes.v[2].v[13];
+    n[101] = modes.v[3].v[0];
+    n[102] = modes.v[3].v[1];
+    n[103] = modes.v[3].v[2];
+    n[104] = modes.v[3].v[3];
+    n[105] = modes.v[3].v[4];
+    n[106] = modes.v[3].v[5];
+    n[107] = modes.v[3].v[6];
+    n[108] = modes.v[3].v[7];
+    n[109] = modes.v[3].v[8];
+    n[110] = modes.v[3].v[9];
+    n[111] = modes.v[3].v[10];
+    n[112] = modes.v[3].v[11];
+    n[113] = modes.v[3].v[12];
+    n[114] = modes.v[3].v[13];
+    n[115] = probability.v[0];
+    n[116] = probability.v[1];
+    n[117] = probability.v[2];
+    n[118] = probability.v[3];
+    n[119] = last;
 }
 
 /* tracking.py: Return the rate [m/s] of the deflection at the last sample, 0 before the second one. */
@@ -429,12 +431,12 @@ static Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[4] != 0.0) {
-        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[5]}});
+    if (p[6] != 0.0) {
+        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[7]}});
         signal = t1.a;
     }
-    if (p[6] != 0.0) {
-        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[7], p[8]}});
+    if (p[8] != 0.0) {
+        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[9], p[10]}});
         signal = t2.a;
     }
     return signal;
@@ -472,16 +474,13 @@ static double series_compliance_stiffening(double x, double k, double h, double 
     return x - d;
 }
 
-/* effects.series_compliance.py: Return the tire's part [m] of the deflection. */
-static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing state, Vector2 values)
+/* effects.series_compliance.py: Return the tire's part [m] of a deflection above 0. */
+static double series_compliance_pressed(double signal, Instant instant, Vector2 values)
 {
     double step;
     double k = values.v[0], h = values.v[1];
     double A = instant.coefficient;
     double B = instant.exponent;
-    if (k == 0.0 || signal <= 0.0) {
-        return (Tuple8){signal, state};
-    }
     double root = signal;
     double force = A * pow(100.0 * root, B);
     if (k * force > signal) {
@@ -496,7 +495,7 @@ static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing 
             step = (root + k * force - signal) / (1.0 + k * B * force / root);
         }
         root -= step;
-        return (Tuple8){h > 0.0 ? series_compliance_stiffening(signal, k, h, A, B, root) : root, state};
+        return h > 0.0 ? series_compliance_stiffening(signal, k, h, A, B, root) : root;
     }
     step = (root + k * force - signal) / (k + root / (B * force));
     while (step > NEAR * force) {
@@ -505,14 +504,26 @@ static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing 
         step = (root + k * force - signal) / (k + root / (B * force));
     }
     root = 0.01 * pow((force - step) / A, 1.0 / B);
-    return (Tuple8){h > 0.0 ? series_compliance_stiffening(signal, k, h, A, B, root) : root, state};
+    return h > 0.0 ? series_compliance_stiffening(signal, k, h, A, B, root) : root;
+}
+
+/* effects.series_compliance.py: Return the tire's part [m] of the deflection; that of a two-sided part is odd. */
+static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing state, Vector2 values)
+{
+    if (values.v[0] == 0.0 || (signal <= 0.0 && !(instant.two_sided && signal < 0.0))) {
+        return (Tuple8){signal, state};
+    }
+    if (signal < 0.0) {
+        return (Tuple8){-series_compliance_pressed(-signal, instant, values), state};
+    }
+    return (Tuple8){series_compliance_pressed(signal, instant, values), state};
 }
 
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static double unremembered_series(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[9] != 0.0) {
-        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[10], p[11]}});
+    if (p[11] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[12], p[13]}});
         signal = t1.a;
     }
     return signal;
@@ -526,10 +537,14 @@ static double compressed(Vector3 read, Tuple4 moment, Vector3 surface, const dou
     double time = moment.a;
     double interval = moment.b;
     bool first = moment.c;
+    double pressure = moment.d;
+    double temperature = moment.e;
+    bool held = moment.f;
     double A = surface.v[0], B = surface.v[1], bend = surface.v[2];
-    Instant at = (Instant){time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend};
+    Instant at = (Instant){time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure,
+        temperature, held};
     double x = unremembered_deflection(deflection, at, p, s);
-    at = (Instant){time, interval, first, x, rate, acceleration, A, B, 0.0, bend};
+    at = (Instant){time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held};
     return unremembered_series(x, at, p, s);
 }
 
@@ -540,12 +555,12 @@ static Tuple3 tracked_compression(const double *s, double deflection, double int
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[119], s[120], s[121], s[122], s[123], s[124], s[125],
-        s[126], s[127], s[128], s[129], s[130], s[131], s[132]}}, (Vector14){{s[133], s[134], s[135], s[136],
-        s[137], s[138], s[139], s[140], s[141], s[142], s[143], s[144], s[145], s[146]}}, (Vector14){{s[147],
-        s[148], s[149], s[150], s[151], s[152], s[153], s[154], s[155], s[156], s[157], s[158], s[159], s[160]}},
-        (Vector14){{s[161], s[162], s[163], s[164], s[165], s[166], s[167], s[168], s[169], s[170], s[171], s[172],
-        s[173], s[174]}}}}, (Vector4){{s[175], s[176], s[177], s[178]}}, s[179]};
+    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[120], s[121], s[122], s[123], s[124], s[125], s[126],
+        s[127], s[128], s[129], s[130], s[131], s[132], s[133]}}, (Vector14){{s[134], s[135], s[136], s[137],
+        s[138], s[139], s[140], s[141], s[142], s[143], s[144], s[145], s[146], s[147]}}, (Vector14){{s[148],
+        s[149], s[150], s[151], s[152], s[153], s[154], s[155], s[156], s[157], s[158], s[159], s[160], s[161]}},
+        (Vector14){{s[162], s[163], s[164], s[165], s[166], s[167], s[168], s[169], s[170], s[171], s[172], s[173],
+        s[174], s[175]}}}}, (Vector4){{s[176], s[177], s[178], s[179]}}, s[180]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -558,67 +573,77 @@ static void store_compression(double *n, Tuple3 track)
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
     double last = track.c;
-    n[119] = modes.v[0].v[0];
-    n[120] = modes.v[0].v[1];
-    n[121] = modes.v[0].v[2];
-    n[122] = modes.v[0].v[3];
-    n[123] = modes.v[0].v[4];
-    n[124] = modes.v[0].v[5];
-    n[125] = modes.v[0].v[6];
-    n[126] = modes.v[0].v[7];
-    n[127] = modes.v[0].v[8];
-    n[128] = modes.v[0].v[9];
-    n[129] = modes.v[0].v[10];
-    n[130] = modes.v[0].v[11];
-    n[131] = modes.v[0].v[12];
-    n[132] = modes.v[0].v[13];
-    n[133] = modes.v[1].v[0];
-    n[134] = modes.v[1].v[1];
-    n[135] = modes.v[1].v[2];
-    n[136] = modes.v[1].v[3];
-    n[137] = modes.v[1].v[4];
-    n[138] = modes.v[1].v[5];
-    n[139] = modes.v[1].v[6];
-    n[140] = modes.v[1].v[7];
-    n[141] = modes.v[1].v[8];
-    n[142] = modes.v[1].v[9];
-    n[143] = modes.v[1].v[10];
-    n[144] = modes.v[1].v[11];
-    n[145] = modes.v[1].v[12];
-    n[146] = modes.v[1].v[13];
-    n[147] = modes.v[2].v[0];
-    n[148] = modes.v[2].v[1];
-    n[149] = modes.v[2].v[2];
-    n[150] = modes.v[2].v[3];
-    n[151] = modes.v[2].v[4];
-    n[152] = modes.v[2].v[5];
-    n[153] = modes.v[2].v[6];
-    n[154] = modes.v[2].v[7];
-    n[155] = modes.v[2].v[8];
-    n[156] = modes.v[2].v[9];
-    n[157] = modes.v[2].v[10];
-    n[158] = modes.v[2].v[11];
-    n[159] = modes.v[2].v[12];
-    n[160] = modes.v[2].v[13];
-    n[161] = modes.v[3].v[0];
-    n[162] = modes.v[3].v[1];
-    n[163] = modes.v[3].v[2];
-    n[164] = modes.v[3].v[3];
-    n[165] = modes.v[3].v[4];
-    n[166] = modes.v[3].v[5];
-    n[167] = modes.v[3].v[6];
-    n[168] = modes.v[3].v[7];
-    n[169] = modes.v[3].v[8];
-    n[170] = modes.v[3].v[9];
-    n[171] = modes.v[3].v[10];
-    n[172] = modes.v[3].v[11];
-    n[173] = modes.v[3].v[12];
-    n[174] = modes.v[3].v[13];
-    n[175] = probability.v[0];
-    n[176] = probability.v[1];
-    n[177] = probability.v[2];
-    n[178] = probability.v[3];
-    n[179] = last;
+    n[120] = modes.v[0].v[0];
+    n[121] = modes.v[0].v[1];
+    n[122] = modes.v[0].v[2];
+    n[123] = modes.v[0].v[3];
+    n[124] = modes.v[0].v[4];
+    n[125] = modes.v[0].v[5];
+    n[126] = modes.v[0].v[6];
+    n[127] = modes.v[0].v[7];
+    n[128] = modes.v[0].v[8];
+    n[129] = modes.v[0].v[9];
+    n[130] = modes.v[0].v[10];
+    n[131] = modes.v[0].v[11];
+    n[132] = modes.v[0].v[12];
+    n[133] = modes.v[0].v[13];
+    n[134] = modes.v[1].v[0];
+    n[135] = modes.v[1].v[1];
+    n[136] = modes.v[1].v[2];
+    n[137] = modes.v[1].v[3];
+    n[138] = modes.v[1].v[4];
+    n[139] = modes.v[1].v[5];
+    n[140] = modes.v[1].v[6];
+    n[141] = modes.v[1].v[7];
+    n[142] = modes.v[1].v[8];
+    n[143] = modes.v[1].v[9];
+    n[144] = modes.v[1].v[10];
+    n[145] = modes.v[1].v[11];
+    n[146] = modes.v[1].v[12];
+    n[147] = modes.v[1].v[13];
+    n[148] = modes.v[2].v[0];
+    n[149] = modes.v[2].v[1];
+    n[150] = modes.v[2].v[2];
+    n[151] = modes.v[2].v[3];
+    n[152] = modes.v[2].v[4];
+    n[153] = modes.v[2].v[5];
+    n[154] = modes.v[2].v[6];
+    n[155] = modes.v[2].v[7];
+    n[156] = modes.v[2].v[8];
+    n[157] = modes.v[2].v[9];
+    n[158] = modes.v[2].v[10];
+    n[159] = modes.v[2].v[11];
+    n[160] = modes.v[2].v[12];
+    n[161] = modes.v[2].v[13];
+    n[162] = modes.v[3].v[0];
+    n[163] = modes.v[3].v[1];
+    n[164] = modes.v[3].v[2];
+    n[165] = modes.v[3].v[3];
+    n[166] = modes.v[3].v[4];
+    n[167] = modes.v[3].v[5];
+    n[168] = modes.v[3].v[6];
+    n[169] = modes.v[3].v[7];
+    n[170] = modes.v[3].v[8];
+    n[171] = modes.v[3].v[9];
+    n[172] = modes.v[3].v[10];
+    n[173] = modes.v[3].v[11];
+    n[174] = modes.v[3].v[12];
+    n[175] = modes.v[3].v[13];
+    n[176] = probability.v[0];
+    n[177] = probability.v[1];
+    n[178] = probability.v[2];
+    n[179] = probability.v[3];
+    n[180] = last;
+}
+
+/* power_law.py: Return the force [N] of a part that is held at both ends and pulls as it presses: A sign(x) |x|^B,
+   x in cm. */
+static double power_law_two_sided(double deflection, double coefficient, double exponent)
+{
+    if (deflection < 0.0) {
+        return -tire_elastic(-deflection, coefficient, exponent);
+    }
+    return tire_elastic(deflection, coefficient, exponent);
 }
 
 /* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x)). */
@@ -627,7 +652,7 @@ static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing stat
     double log_ratio;
     double bend = values.v[0], twist = values.v[1], reference = values.v[2], first = values.v[3], second =
         values.v[4], third = values.v[5], fourth = values.v[6], fifth = values.v[7];
-    double x = instant.deflection;
+    double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
     if (x <= 0.0) {
         return (Tuple8){signal, state};
     }
@@ -653,6 +678,27 @@ static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing stat
     return (Tuple8){signal * exp(exponent), state};
 }
 
+/* effect.py: Return whether a channel was recorded: NOT_MEASURED is not equal to itself. */
+static bool effect_is_measured(double value)
+{
+    return value == value;
+}
+
+/* effects.inflation_pressure.py: Multiply the factor by the share of the casing and that of the air at this
+   pressure. */
+static Tuple8 inflation_pressure_respond(double signal, Instant instant, Nothing state, Vector3 values)
+{
+    double gain = values.v[0], reference = values.v[1], power = values.v[2];
+    if (!effect_is_measured(instant.pressure)) {
+        return (Tuple8){signal, state};
+    }
+    double ratio = greater(instant.pressure / reference, 0.0);
+    if (power != 1.0) {
+        ratio = pow(ratio, power);
+    }
+    return (Tuple8){signal * (1.0 + gain * (ratio - 1.0)), state};
+}
+
 /* effects.gas_compression.py: Multiply the factor by p / p0. */
 static Tuple8 gas_compression_respond(double signal, Instant instant, Nothing state, Vector5 values)
 {
@@ -674,7 +720,7 @@ static Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3
 {
     double share = values.v[0], ratio = values.v[1], width = values.v[2], sharpness = values.v[3], history =
         values.v[4], gathering = values.v[5], load = values.v[6];
-    double x = instant.deflection;
+    double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
     double largest = state.v[0], counted = state.v[1], path = state.v[2];
     double power = 1.0 + load * instant.exponent;
     double by_surface = pow(instant.coefficient, load);
@@ -722,42 +768,55 @@ static Tuple8 pressure_leak_respond(double signal, Instant instant, Nothing stat
     return (Tuple8){signal * (1.0 + (1.0 - structural) * expm1(-lost)), state};
 }
 
-/* effects.warm_up.py: Multiply the factor by the rise of the pressure. */
-static Tuple8 warm_up_respond(double signal, Instant instant, Nothing state, Vector3 values)
+/* effects.warm_up.py: Multiply the factor by the rise of the pressure; the state is the temperature [K] at the
+   start. */
+static Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
 {
+    double start;
     double gain = values.v[0], tau = values.v[1], stretch = values.v[2];
-    return (Tuple8){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
+    if (effect_is_measured(instant.temperature)) {
+        start = instant.first ? instant.temperature : state.v[0];
+        return (Tuple15){signal * greater(1.0 + gain * (instant.temperature - start) / WARMING, 0.0),
+            (Vector1){{start}}};
+    }
+    return (Tuple15){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[12] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector8){{p[13], p[14], p[15], p[16],
-            p[17], p[18], p[19], p[20]}});
+    if (p[14] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector8){{p[15], p[16], p[17], p[18],
+            p[19], p[20], p[21], p[22]}});
         signal = t1.a;
     }
-    if (p[21] != 0.0) {
-        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[22], p[23], p[24], p[25],
-            p[26]}});
+    if (p[23] != 0.0) {
+        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[24], p[25], p[26]}});
         signal = t2.a;
     }
     if (p[27] != 0.0) {
-        const Tuple13 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[28],
-            p[29], p[30], p[31], p[32], p[33], p[34]}});
+        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[28], p[29], p[30], p[31],
+            p[32]}});
         signal = t3.a;
-        Vector3 after = t3.b;
+    }
+    if (p[33] != 0.0) {
+        const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[34],
+            p[35], p[36], p[37], p[38], p[39], p[40]}});
+        signal = t4.a;
+        Vector3 after = t4.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
-    if (p[35] != 0.0) {
-        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[36], p[37], p[38]}});
-        signal = t4.a;
-    }
-    if (p[39] != 0.0) {
-        const Tuple8 t5 = warm_up_respond(signal, at, (Nothing){0}, (Vector3){{p[40], p[41], p[42]}});
+    if (p[41] != 0.0) {
+        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[42], p[43], p[44]}});
         signal = t5.a;
+    }
+    if (p[45] != 0.0) {
+        const Tuple15 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[46], p[47], p[48]}});
+        signal = t6.a;
+        Vector1 after = t6.b;
+        n[9] = after.v[0];
     }
     return signal;
 }
@@ -781,7 +840,7 @@ static double rate_independent_hysteresis_slip(double y, double travel, double r
 }
 
 /* effects.rate_independent_hysteresis.py: Add the friction force [N]. */
-static Tuple15 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector7 values)
+static Tuple16 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector7 values)
 {
     double friction;
     double mean;
@@ -789,7 +848,7 @@ static Tuple15 rate_independent_hysteresis_respond(double signal, Instant instan
         values.v[4], play = values.v[5], seat = values.v[6];
     double z = state.v[0], updated_at = state.v[1], direction = state.v[2], last = state.v[3], y1 = state.v[4], y2 =
         state.v[5], y3 = state.v[6], y4 = state.v[7];
-    double x = greater(instant.deflection, 0.0);
+    double x = instant.two_sided ? instant.deflection : greater(instant.deflection, 0.0);
     if (instant.first) {
         last = 0.0;
         updated_at = 0.0;
@@ -820,13 +879,14 @@ static Tuple15 rate_independent_hysteresis_respond(double signal, Instant instan
         friction += memory * (0.25 * (y1 + y2 + y3 + y4) - friction);
     }
     Vector8 after = (Vector8){{z, updated_at, direction, x, y1, y2, y3, y4}};
-    if (instant.deflection <= 0.0) {
-        return (Tuple15){signal, after};
+    if (instant.deflection <= 0.0 && !instant.two_sided) {
+        return (Tuple16){signal, after};
     }
-    return (Tuple15){signal + (slip_force + load_share * instant.elastic_force) * friction, after};
+    return (Tuple16){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
 }
 
-/* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded. */
+/* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
+   ends always is. */
 static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector4 values)
 {
     double size;
@@ -834,7 +894,7 @@ static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing st
         values.v[3];
     double x = instant.deflection;
     double v = instant.rate;
-    if (x <= 0.0) {
+    if (x <= 0.0 && !instant.two_sided) {
         return (Tuple8){signal, state};
     }
     if (thinning > 0.0) {
@@ -845,14 +905,14 @@ static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing st
         v = v > 0.0 ? size : -size;
     }
     if (deflection_exponent != 0.0) {
-        v *= pow(x / DEPTH, deflection_exponent);
+        v *= pow(fabs(x) / DEPTH, deflection_exponent);
     }
     return (Tuple8){signal + damping * v, state};
 }
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt =
    (F_elastic - q_i) / tau_i. */
-static Tuple17 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector11 values)
+static Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector11 values)
 {
     double added;
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
@@ -862,7 +922,7 @@ static Tuple17 viscoelastic_relaxation_flow(double signal, Instant instant, Vect
     double q1 = state.v[1], q2 = state.v[2], q3 = state.v[3], q4 = state.v[4], q5 = state.v[5];
     if (instant.first) {
         added = -sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
-        return (Tuple17){signal + added, (Vector6){{0.0, elastic, elastic, elastic, elastic, elastic}}};
+        return (Tuple18){signal + added, (Vector6){{0.0, elastic, elastic, elastic, elastic, elastic}}};
     }
     double h1 = elastic - q1;
     double h2 = elastic - q2;
@@ -870,7 +930,7 @@ static Tuple17 viscoelastic_relaxation_flow(double signal, Instant instant, Vect
     double h4 = elastic - q4;
     double h5 = elastic - q5;
     added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
-    return (Tuple17){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
+    return (Tuple18){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
 }
 
 /* effects.viscoelastic_relaxation.py: Return h after `interval` [s] in which the elastic force changed linearly by
@@ -887,7 +947,7 @@ static double viscoelastic_relaxation_overstress(double h, double change, double
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N]; the state holds the last elastic force and the five
    overstresses. */
-static Tuple17 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector11 values)
+static Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector11 values)
 {
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
         values.v[5], sudden = values.v[6], g4 = values.v[7], tau4 = values.v[8], g5 = values.v[9], tau5 =
@@ -915,7 +975,7 @@ static Tuple17 viscoelastic_relaxation_respond(double signal, Instant instant, V
     if (sudden != 0.0) {
         added -= sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
     }
-    return (Tuple17){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
+    return (Tuple18){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
 }
 
 /* effects.bottoming.py: Add the second spring's force [N]. */
@@ -938,50 +998,50 @@ static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, V
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[43] != 0.0) {
-        const Tuple15 t1 = rate_independent_hysteresis_respond(signal, at, (Vector8){{s[9], s[10], s[11], s[12],
-            s[13], s[14], s[15], s[16]}}, (Vector7){{p[44], p[45], p[46], p[47], p[48], p[49], p[50]}});
+    if (p[49] != 0.0) {
+        const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, (Vector8){{s[10], s[11], s[12], s[13],
+            s[14], s[15], s[16], s[17]}}, (Vector7){{p[50], p[51], p[52], p[53], p[54], p[55], p[56]}});
         signal = t1.a;
         Vector8 after = t1.b;
-        n[9] = after.v[0];
-        n[10] = after.v[1];
-        n[11] = after.v[2];
-        n[12] = after.v[3];
-        n[13] = after.v[4];
-        n[14] = after.v[5];
-        n[15] = after.v[6];
-        n[16] = after.v[7];
+        n[10] = after.v[0];
+        n[11] = after.v[1];
+        n[12] = after.v[2];
+        n[13] = after.v[3];
+        n[14] = after.v[4];
+        n[15] = after.v[5];
+        n[16] = after.v[6];
+        n[17] = after.v[7];
     }
-    if (p[51] != 0.0) {
-        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[52], p[53], p[54],
-            p[55]}});
+    if (p[57] != 0.0) {
+        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[58], p[59], p[60],
+            p[61]}});
         signal = t2.a;
     }
-    if (p[56] != 0.0 && p[3] != 0.0) {
-        const Tuple17 t3 = viscoelastic_relaxation_flow(signal, at, (Vector6){{s[17], s[18], s[19], s[20], s[21],
-            s[22]}}, (Vector11){{p[57], p[58], p[59], p[60], p[61], p[62], p[63], p[64], p[65], p[66], p[67]}});
+    if (p[62] != 0.0 && p[3] != 0.0) {
+        const Tuple18 t3 = viscoelastic_relaxation_flow(signal, at, (Vector6){{s[18], s[19], s[20], s[21], s[22],
+            s[23]}}, (Vector11){{p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72], p[73]}});
         signal = t3.a;
         Vector6 flowed = t3.b;
-        n[17] = flowed.v[0];
-        n[18] = flowed.v[1];
-        n[19] = flowed.v[2];
-        n[20] = flowed.v[3];
-        n[21] = flowed.v[4];
-        n[22] = flowed.v[5];
-    } else if (p[56] != 0.0) {
-        const Tuple17 t4 = viscoelastic_relaxation_respond(signal, at, (Vector6){{s[17], s[18], s[19], s[20], s[21],
-            s[22]}}, (Vector11){{p[57], p[58], p[59], p[60], p[61], p[62], p[63], p[64], p[65], p[66], p[67]}});
+        n[18] = flowed.v[0];
+        n[19] = flowed.v[1];
+        n[20] = flowed.v[2];
+        n[21] = flowed.v[3];
+        n[22] = flowed.v[4];
+        n[23] = flowed.v[5];
+    } else if (p[62] != 0.0) {
+        const Tuple18 t4 = viscoelastic_relaxation_respond(signal, at, (Vector6){{s[18], s[19], s[20], s[21], s[22],
+            s[23]}}, (Vector11){{p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72], p[73]}});
         signal = t4.a;
         Vector6 after = t4.b;
-        n[17] = after.v[0];
-        n[18] = after.v[1];
-        n[19] = after.v[2];
-        n[20] = after.v[3];
-        n[21] = after.v[4];
-        n[22] = after.v[5];
+        n[18] = after.v[0];
+        n[19] = after.v[1];
+        n[20] = after.v[2];
+        n[21] = after.v[3];
+        n[22] = after.v[4];
+        n[23] = after.v[5];
     }
-    if (p[68] != 0.0) {
-        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[69], p[70], p[71], p[72]}});
+    if (p[74] != 0.0) {
+        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[75], p[76], p[77], p[78]}});
         signal = t5.a;
     }
     return signal;
@@ -996,8 +1056,8 @@ static Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vec
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[73] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[74]}});
+    if (p[79] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[80]}});
         signal = t1.a;
     }
     return signal;
@@ -1005,7 +1065,7 @@ static double through_inertia(double signal, Instant at, const double *p, const 
 
 /* effects.force_lag.py: Return the force [N] a delay `delta` [s] ago and the stored samples after this one: times,
    then forces. */
-static Tuple21 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
+static Tuple22 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
 {
     Vector2 two;
     Vector4 four;
@@ -1050,7 +1110,7 @@ static Tuple21 force_lag_delayed(double signal, Instant instant, Vector35 state,
             }
         }
     }
-    return (Tuple21){late, (Vector32){{times.v[0], times.v[1], times.v[2], times.v[3], times.v[4], times.v[5],
+    return (Tuple22){late, (Vector32){{times.v[0], times.v[1], times.v[2], times.v[3], times.v[4], times.v[5],
         times.v[6], times.v[7], times.v[8], times.v[9], times.v[10], times.v[11], times.v[12], times.v[13],
         times.v[14], times.v[15], forces.v[0], forces.v[1], forces.v[2], forces.v[3], forces.v[4], forces.v[5],
         forces.v[6], forces.v[7], forces.v[8], forces.v[9], forces.v[10], forces.v[11], forces.v[12], forces.v[13],
@@ -1059,18 +1119,18 @@ static Tuple21 force_lag_delayed(double signal, Instant instant, Vector35 state,
 
 /* effects.force_lag.py: Return the measured force [N] for a solver: the states are the output and its slope; the
    delay is memory. */
-static Tuple23 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
+static Tuple24 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
 {
     Vector3 held;
     double tau = values.v[0], delta = values.v[1], quality = values.v[2];
     double reading = state.v[0];
     double slope = state.v[1];
-    const Tuple21 t1 = force_lag_delayed(signal, instant, state, delta);
+    const Tuple22 t1 = force_lag_delayed(signal, instant, state, delta);
     double late = t1.a;
     Vector32 samples = t1.b;
     if (instant.first) {
         held = (Vector3){{late, 0.0, late}};
-        return (Tuple23){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+        return (Tuple24){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
             samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
             samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
             samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
@@ -1079,7 +1139,7 @@ static Tuple23 force_lag_flow(double signal, Instant instant, Vector35 state, Ve
     }
     if (tau == 0.0) {
         held = (Vector3){{0.0, 0.0, late}};
-        return (Tuple23){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+        return (Tuple24){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
             samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
             samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
             samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
@@ -1088,7 +1148,7 @@ static Tuple23 force_lag_flow(double signal, Instant instant, Vector35 state, Ve
     }
     if (quality * tau < NO_TIME) {
         held = (Vector3){{(late - reading) / tau, 0.0, late}};
-        return (Tuple23){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+        return (Tuple24){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
             samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
             samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
             samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
@@ -1096,7 +1156,7 @@ static Tuple23 force_lag_flow(double signal, Instant instant, Vector35 state, Ve
             samples.v[30], samples.v[31]}}};
     }
     held = (Vector3){{slope, (late - reading - tau * slope) / pow(quality * tau, 2.0), late}};
-    return (Tuple23){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
+    return (Tuple24){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
         samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8], samples.v[9],
         samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15], samples.v[16],
         samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22], samples.v[23],
@@ -1156,13 +1216,13 @@ static Vector2 force_lag_low_passed(Vector3 before, double late, double interval
 
 /* effects.force_lag.py: Return the measured force [N]; the state: output, its slope, its last input, and the stored
    samples. */
-static Tuple23 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
+static Tuple24 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
 {
     double tau = values.v[0], delta = values.v[1], quality = values.v[2];
     double reading = state.v[0];
     double slope = state.v[1];
     double last = state.v[2];
-    const Tuple21 t1 = force_lag_delayed(signal, instant, state, delta);
+    const Tuple22 t1 = force_lag_delayed(signal, instant, state, delta);
     double late = t1.a;
     Vector32 samples = t1.b;
     if (instant.first) {
@@ -1179,7 +1239,7 @@ static Tuple23 force_lag_respond(double signal, Instant instant, Vector35 state,
         slope = t3.v[1];
     }
     Vector3 held = (Vector3){{reading, slope, late}};
-    return (Tuple23){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
+    return (Tuple24){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
         samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8], samples.v[9],
         samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15], samples.v[16],
         samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22], samples.v[23],
@@ -1216,101 +1276,101 @@ static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[75] != 0.0 && p[3] != 0.0) {
-        const Tuple23 t1 = force_lag_flow(signal, at, (Vector35){{s[23], s[24], s[25], s[26], s[27], s[28], s[29],
-            s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44],
-            s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57]}},
-            (Vector3){{p[76], p[77], p[78]}});
+    if (p[81] != 0.0 && p[3] != 0.0) {
+        const Tuple24 t1 = force_lag_flow(signal, at, (Vector35){{s[24], s[25], s[26], s[27], s[28], s[29], s[30],
+            s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44], s[45],
+            s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57], s[58]}},
+            (Vector3){{p[82], p[83], p[84]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
-        n[23] = flowed.v[0];
-        n[24] = flowed.v[1];
-        n[25] = flowed.v[2];
-        n[26] = flowed.v[3];
-        n[27] = flowed.v[4];
-        n[28] = flowed.v[5];
-        n[29] = flowed.v[6];
-        n[30] = flowed.v[7];
-        n[31] = flowed.v[8];
-        n[32] = flowed.v[9];
-        n[33] = flowed.v[10];
-        n[34] = flowed.v[11];
-        n[35] = flowed.v[12];
-        n[36] = flowed.v[13];
-        n[37] = flowed.v[14];
-        n[38] = flowed.v[15];
-        n[39] = flowed.v[16];
-        n[40] = flowed.v[17];
-        n[41] = flowed.v[18];
-        n[42] = flowed.v[19];
-        n[43] = flowed.v[20];
-        n[44] = flowed.v[21];
-        n[45] = flowed.v[22];
-        n[46] = flowed.v[23];
-        n[47] = flowed.v[24];
-        n[48] = flowed.v[25];
-        n[49] = flowed.v[26];
-        n[50] = flowed.v[27];
-        n[51] = flowed.v[28];
-        n[52] = flowed.v[29];
-        n[53] = flowed.v[30];
-        n[54] = flowed.v[31];
-        n[55] = flowed.v[32];
-        n[56] = flowed.v[33];
-        n[57] = flowed.v[34];
-    } else if (p[75] != 0.0) {
-        const Tuple23 t2 = force_lag_respond(signal, at, (Vector35){{s[23], s[24], s[25], s[26], s[27], s[28],
-            s[29], s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43],
-            s[44], s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57]}},
-            (Vector3){{p[76], p[77], p[78]}});
+        n[24] = flowed.v[0];
+        n[25] = flowed.v[1];
+        n[26] = flowed.v[2];
+        n[27] = flowed.v[3];
+        n[28] = flowed.v[4];
+        n[29] = flowed.v[5];
+        n[30] = flowed.v[6];
+        n[31] = flowed.v[7];
+        n[32] = flowed.v[8];
+        n[33] = flowed.v[9];
+        n[34] = flowed.v[10];
+        n[35] = flowed.v[11];
+        n[36] = flowed.v[12];
+        n[37] = flowed.v[13];
+        n[38] = flowed.v[14];
+        n[39] = flowed.v[15];
+        n[40] = flowed.v[16];
+        n[41] = flowed.v[17];
+        n[42] = flowed.v[18];
+        n[43] = flowed.v[19];
+        n[44] = flowed.v[20];
+        n[45] = flowed.v[21];
+        n[46] = flowed.v[22];
+        n[47] = flowed.v[23];
+        n[48] = flowed.v[24];
+        n[49] = flowed.v[25];
+        n[50] = flowed.v[26];
+        n[51] = flowed.v[27];
+        n[52] = flowed.v[28];
+        n[53] = flowed.v[29];
+        n[54] = flowed.v[30];
+        n[55] = flowed.v[31];
+        n[56] = flowed.v[32];
+        n[57] = flowed.v[33];
+        n[58] = flowed.v[34];
+    } else if (p[81] != 0.0) {
+        const Tuple24 t2 = force_lag_respond(signal, at, (Vector35){{s[24], s[25], s[26], s[27], s[28], s[29],
+            s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44],
+            s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57], s[58]}},
+            (Vector3){{p[82], p[83], p[84]}});
         signal = t2.a;
         Vector35 after = t2.b;
-        n[23] = after.v[0];
-        n[24] = after.v[1];
-        n[25] = after.v[2];
-        n[26] = after.v[3];
-        n[27] = after.v[4];
-        n[28] = after.v[5];
-        n[29] = after.v[6];
-        n[30] = after.v[7];
-        n[31] = after.v[8];
-        n[32] = after.v[9];
-        n[33] = after.v[10];
-        n[34] = after.v[11];
-        n[35] = after.v[12];
-        n[36] = after.v[13];
-        n[37] = after.v[14];
-        n[38] = after.v[15];
-        n[39] = after.v[16];
-        n[40] = after.v[17];
-        n[41] = after.v[18];
-        n[42] = after.v[19];
-        n[43] = after.v[20];
-        n[44] = after.v[21];
-        n[45] = after.v[22];
-        n[46] = after.v[23];
-        n[47] = after.v[24];
-        n[48] = after.v[25];
-        n[49] = after.v[26];
-        n[50] = after.v[27];
-        n[51] = after.v[28];
-        n[52] = after.v[29];
-        n[53] = after.v[30];
-        n[54] = after.v[31];
-        n[55] = after.v[32];
-        n[56] = after.v[33];
-        n[57] = after.v[34];
+        n[24] = after.v[0];
+        n[25] = after.v[1];
+        n[26] = after.v[2];
+        n[27] = after.v[3];
+        n[28] = after.v[4];
+        n[29] = after.v[5];
+        n[30] = after.v[6];
+        n[31] = after.v[7];
+        n[32] = after.v[8];
+        n[33] = after.v[9];
+        n[34] = after.v[10];
+        n[35] = after.v[11];
+        n[36] = after.v[12];
+        n[37] = after.v[13];
+        n[38] = after.v[14];
+        n[39] = after.v[15];
+        n[40] = after.v[16];
+        n[41] = after.v[17];
+        n[42] = after.v[18];
+        n[43] = after.v[19];
+        n[44] = after.v[20];
+        n[45] = after.v[21];
+        n[46] = after.v[22];
+        n[47] = after.v[23];
+        n[48] = after.v[24];
+        n[49] = after.v[25];
+        n[50] = after.v[26];
+        n[51] = after.v[27];
+        n[52] = after.v[28];
+        n[53] = after.v[29];
+        n[54] = after.v[30];
+        n[55] = after.v[31];
+        n[56] = after.v[32];
+        n[57] = after.v[33];
+        n[58] = after.v[34];
     }
-    if (p[79] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[80]}});
+    if (p[85] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[86]}});
         signal = t3.a;
     }
-    if (p[81] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[82]}});
+    if (p[87] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[88]}});
         signal = t4.a;
     }
-    if (p[83] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[84], p[85]}});
+    if (p[89] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[90], p[91]}});
         signal = t5.a;
     }
     return signal;
@@ -1318,7 +1378,7 @@ static double through_reading(double signal, Instant at, const double *p, const 
 
 /* flat_step.py: Return the radial force [N] and the tire's deflection [m], and write the state after the step into
    `n`. */
-Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s, double *n)
+Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s, double *n)
 {
     Tuple3 reading;
     Tuple3 compression;
@@ -1328,7 +1388,7 @@ Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s,
     double above;
     double A = law.v[0], B = law.v[1];
     double deflection = motion.v[0], surface_radius = motion.v[1], time = motion.v[2], rate = motion.v[3],
-        acceleration = motion.v[4];
+        acceleration = motion.v[4], pressure = motion.v[5], temperature = motion.v[6];
     double bend = fabs(surface_radius) >= FLAT_RADIUS ? 0.0 : 1.0 / surface_radius;
     bool first = s[4] == 0.0;
     double start = first ? time : s[5];
@@ -1339,7 +1399,8 @@ Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s,
         rate = tracking_rate(reading);
         acceleration = tracking_acceleration(reading);
     }
-    Tuple4 moment = (Tuple4){time - start, interval, first};
+    bool held = p[4] != 0.0;
+    Tuple4 moment = (Tuple4){time - start, interval, first, pressure, temperature, held};
     Vector3 surface = (Vector3){{A, B, bend}};
     double x = compressed((Vector3){{deflection, rate, acceleration}}, moment, surface, p, s);
     double v = rate;
@@ -1356,12 +1417,14 @@ Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s,
             v = (above - compressed(sooner, moment, surface, p, s)) / (2.0 * h);
         }
     }
-    double bare = tire_elastic(x, A, B);
-    Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend};
+    double bare = held ? p[5] + power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
+    Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure,
+        temperature, held};
     double elastic = through_scale(1.0, at, p, s, n) * bare;
-    at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend};
+    at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature,
+        held};
     double force = through_parallel(elastic, at, p, s, n);
-    if (force < 0.0) {
+    if (force < 0.0 && !held) {
         force = 0.0;
     }
     force = through_inertia(force, at, p, s, n);
@@ -1377,19 +1440,21 @@ Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s,
 
 /* flat_step.py: Return the tangent dF/dx [N/m], everything but the deflection held constant; arguments as of
    `step`. */
-double tire_stiffness(Vector2 law, Vector5 motion, const double *p, const double *s, double *n)
+double tire_stiffness(Vector2 law, Vector7 motion, const double *p, const double *s, double *n)
 {
-    double x = motion.v[0], R = motion.v[1], t = motion.v[2], v = motion.v[3], a = motion.v[4];
-    const Vector2 t1 = tire_step(law, (Vector5){{x, R, t, v, a}}, p, s, n);
+    double x = motion.v[0], R = motion.v[1], t = motion.v[2], v = motion.v[3], a = motion.v[4], P = motion.v[5], T =
+        motion.v[6];
+    const Vector2 t1 = tire_step(law, (Vector7){{x, R, t, v, a, P, T}}, p, s, n);
     double force = t1.v[0], here = t1.v[1];
-    const Vector2 t2 = tire_step(law, (Vector5){{x + TANGENT_STEP, R, t, v, a}}, p, s, n);
+    const Vector2 t2 = tire_step(law, (Vector7){{x + TANGENT_STEP, R, t, v, a, P, T}}, p, s, n);
     double above = t2.v[0], higher = t2.v[1];
-    const Vector2 t3 = tire_step(law, (Vector5){{x - TANGENT_STEP, R, t, v, a}}, p, s, n);
+    const Vector2 t3 = tire_step(law, (Vector7){{x - TANGENT_STEP, R, t, v, a, P, T}}, p, s, n);
     double below = t3.v[0], lower = t3.v[1];
-    if (here <= 0.0 && higher > 0.0) {
+    bool one_sided = p[4] == 0.0;
+    if (one_sided && here <= 0.0 && higher > 0.0) {
         return (force - below) / TANGENT_STEP;
     }
-    if (here > 0.0 && lower <= 0.0) {
+    if (one_sided && here > 0.0 && lower <= 0.0) {
         return (above - force) / TANGENT_STEP;
     }
     return (above - below) / (2.0 * TANGENT_STEP);

@@ -2,14 +2,15 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "92c65f2033152fd9" /* what stands where in p and s */
+#define LAYOUT "a267355780809288" /* what stands where in p and s */
 enum {
-    PARAMETERS = 86,
-    STATES = 180,
+    PARAMETERS = 92,
+    STATES = 181,
     S_TIME = 0,
     S_STARTED = 4,
     P_TRACKED = 0, /* p: rate and acceleration follow from the readings */
     P_CONTINUOUS = 3, /* p: effects that are differential equations are a solver's */
+    CHANNELS = 2, /* quantities after the first five of a motion */
     LAW_TABLES = 19 /* q: number of tables after the law's parameters */
 };
 
@@ -17,12 +18,13 @@ enum {
 extern const double REST[STATES];
 
 typedef struct { double v[2]; } Vector2;
-typedef struct { double v[5]; } Vector5;
+typedef struct { double v[7]; } Vector7;
+typedef Vector7 Motion;
 
 double tire_elastic(double deflection, double coefficient, double exponent);
 double tire_elastic_tangent(double deflection, double coefficient, double exponent);
-Vector2 tire_step(Vector2 law, Vector5 motion, const double *p, const double *s, double *n);
-double tire_stiffness(Vector2 law, Vector5 motion, const double *p, const double *s, double *n);
+Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s, double *n);
+double tire_stiffness(Vector2 law, Vector7 motion, const double *p, const double *s, double *n);
 Vector2 tire_law(const double *q, double surface_radius);
 
 #endif

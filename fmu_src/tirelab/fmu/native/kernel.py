@@ -10,14 +10,24 @@ from __future__ import annotations
 import hashlib
 from functools import cache
 
-from radialtire import CATALOGUE, Effect, TireModel, flat_law, flat_step, power_law
+from radialtire import CATALOGUE, CHANNELS, Effect, TireModel, flat_law, flat_step, power_law
 from radialtire.effect import PLACES
-from radialtire.flat_step import CONTINUOUS, FOLLOWED, NOISE, PARAMETERS, TRACKED, SignalPath, laid_out
+from radialtire.flat_step import (
+    CONTINUOUS,
+    FOLLOWED,
+    NOISE,
+    PARAMETERS,
+    PRELOAD,
+    TRACKED,
+    TWO_SIDED,
+    SignalPath,
+    laid_out,
+)
 
 from .translate import DOUBLE, OUT, ROW, Expression, Program, Tuple, number
 
 PAIR = Tuple((DOUBLE, DOUBLE))
-MOTION = Tuple((DOUBLE,) * 5)
+MOTION = Tuple((DOUBLE,) * (5 + len(CHANNELS)))
 
 
 @cache
@@ -36,7 +46,7 @@ def parameters_of(tire: TireModel) -> list[float]:
     row[TRACKED] = float(tire.differentiates)
     follows = any(effect.place in ("deflection", "series") for effect, _ in tire.effects)
     row[FOLLOWED] = float(tire.differentiates and follows)
-    row[NOISE] = tire.reading_noise
+    row[NOISE], row[TWO_SIDED], row[PRELOAD] = tire.reading_noise, float(tire.two_sided), tire.preload
     at = PARAMETERS
     values = {effect.name: given for effect, given in tire.effects}
     for effect in effects:
@@ -47,9 +57,9 @@ def parameters_of(tire: TireModel) -> list[float]:
 
 
 def places() -> dict[str, int]:
-    """Return the index in the kernel's parameters of each parameter EFFECT.NAME, and of reading_noise."""
+    """Return the index in the kernel's parameters of each parameter EFFECT.NAME, of reading_noise and preload."""
     effects, *_ = universal()
-    found, at = {"reading_noise": NOISE}, PARAMETERS
+    found, at = {"reading_noise": NOISE, "preload": PRELOAD}, PARAMETERS
     for effect in effects:
         for i, parameter in enumerate(effect.parameters):
             found[f"{effect.name}.{parameter.name}"] = at + 1 + i
@@ -61,6 +71,7 @@ def layout() -> str:
     """Return a short name for what stands where: data laid out in another way is not this kernel's."""
     effects, _, parameters, state = universal()
     words = [f"{effect.name}({', '.join(p.name for p in effect.parameters)})" for effect in effects]
+    words += [channel.name for channel in CHANNELS]
     text = "; ".join([*words, f"{len(parameters)} {len(state)}", f"{flat_law.LAW_VALUES}"])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -80,8 +91,9 @@ def sources() -> dict[str, str]:
     program.function(
         flat_law.coefficients, [Expression("q", ROW), Expression("R", DOUBLE)], name="tire_law", public=True
     )
+    moved = program.structs[MOTION]
     public = [head for head, _ in program.texts if not head.startswith("static ")]
-    shared = [text for text in program.definitions if text.endswith((" Vector2;", " Vector5;"))]
+    shared = [text for text in program.definitions if text.endswith((" Vector2;", f" {moved};"))]
     own = [text for text in program.definitions if text not in shared]
     header = [
         "/* The step of a bicycle tire. Made from the Python of radialtire; change that, not this. */",
@@ -96,6 +108,7 @@ def sources() -> dict[str, str]:
         f"    S_STARTED = {flat_step.STARTED},",
         f"    P_TRACKED = {TRACKED}, /* p: rate and acceleration follow from the readings */",
         f"    P_CONTINUOUS = {CONTINUOUS}, /* p: effects that are differential equations are a solver's */",
+        f"    CHANNELS = {len(CHANNELS)}, /* quantities after the first five of a motion */",
         f"    LAW_TABLES = {flat_law.TABLES} /* q: number of tables after the law's parameters */",
         "};",
         "",
@@ -103,6 +116,7 @@ def sources() -> dict[str, str]:
         "extern const double REST[STATES];",
         "",
         *shared,
+        f"typedef {moved} Motion;",
         "",
         *(f"{head};" for head in public),
         "",

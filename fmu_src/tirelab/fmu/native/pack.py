@@ -103,7 +103,7 @@ def data(tire: TireModel, guid: str) -> bytes:
         _row("law", law),
         _row("effects", effects),
         _row("range", bounds),
-        f"bare {int(not tire.effects)}",
+        f"bare {int(tire.bare)}",
         " ".join(map(str, ["continuous", len(states), *(state.index for state in states)])),
         f"parameters {len(parameters_of(tire))}",
     ]
@@ -112,6 +112,10 @@ def data(tire: TireModel, guid: str) -> bytes:
     for name, (parameter, _) in parameters_of(tire).items():
         row, index = ("q", of_law[name]) if name in of_law else ("p", places[name])
         lines.append(f"{name} {row} {index} {_bits(parameter.minimum)} {_bits(parameter.maximum)}")
+    lines.append(f"channels {len(tire.channels)}")
+    for number, channel, start in tire.channels:
+        values = (start, channel.minimum, channel.maximum, channel.unknown)
+        lines.append(" ".join([channel.variable, str(number), *map(_bits, values)]))
     text = "\n".join(lines) + "\n"
     return f"{text}end {checksum(text.encode()):016x}\n".encode()
 

@@ -221,6 +221,17 @@ static bool parse(Tire *tire, char *at)
             return false;
         one->index = (int)index;
     }
+    if (!is(&at, "channels") || !count(&at, CHANNELS, &number))
+        return false;
+    tire->channel_count = (int)number;
+    for (int i = 0; i < tire->channel_count; i++) {
+        Channel *one = tire->channels + i;
+        snprintf(one->name, sizeof one->name, "%s", word(&at));
+        if (!*one->name || !count(&at, CHANNELS - 1, &index) || !bits(&at, &one->start) || !bits(&at, &one->minimum)
+            || !bits(&at, &one->maximum) || !bits(&at, &one->unknown))
+            return false;
+        one->number = (int)index;
+    }
     tire->moves = tire->p[P_TRACKED] != 0;
     if (*word(&at) || !(tire->start = malloc(sizeof(double) * (tire->law + PARAMETERS))))
         return false;
@@ -343,6 +354,33 @@ static bool checked(Tire *tire, char trouble[TROUBLE])
     return true;
 }
 
+/* The motion as the kernel takes it; a channel that the tire does not read, or that is not known, is not a number. */
+static Motion moving(const Tire *tire, double time)
+{
+    const Inputs *u = &tire->m.inputs;
+    Motion motion = {{u->deflection, u->radius, time, u->rate, u->acceleration}};
+    for (int i = 0; i < CHANNELS; i++)
+        motion.v[5 + i] = NAN;
+    for (int i = 0; i < tire->channel_count; i++)
+        if (u->channels[i] != tire->channels[i].unknown)
+            motion.v[5 + tire->channels[i].number] = u->channels[i];
+    return motion;
+}
+
+static bool channels_fit(const Tire *tire, char trouble[TROUBLE])
+{
+    for (int i = 0; i < tire->channel_count; i++) {
+        const Channel *one = tire->channels + i;
+        const double value = tire->m.inputs.channels[i];
+        if (!(one->minimum <= value && value <= one->maximum)) {
+            snprintf(trouble, TROUBLE, "%s = %.17g is not allowed; it must lie between %g and %g", one->name, value,
+                     one->minimum, one->maximum);
+            return false;
+        }
+    }
+    return true;
+}
+
 bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
 {
     const Inputs u = tire->m.inputs;
@@ -358,6 +396,8 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
                  "(concave), or infinite (flat)", u.radius);
         return false;
     }
+    if (!channels_fit(tire, trouble))
+        return false;
     if (tire->unchecked && !checked(tire, trouble))
         return false;
     if (u.radius != tire->surface) {
@@ -376,8 +416,7 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
         }
         tire->p[P_TRACKED] = tire->moves && !given;
         tire->p[P_CONTINUOUS] = tire->exchange;
-        const Vector5 motion = {{u.deflection, u.radius, time, u.rate, u.acceleration}};
-        const Vector2 answer = tire_step(tire->coefficients, motion, tire->p, tire->m.s, tire->n);
+        const Vector2 answer = tire_step(tire->coefficients, moving(tire, time), tire->p, tire->m.s, tire->n);
         force = answer.v[0];
         compression = answer.v[1];
     }
@@ -425,6 +464,8 @@ void tire_reset(Tire *tire)
     memcpy(tire->m.s, REST, sizeof tire->m.s);
     memcpy(tire->n, REST, sizeof tire->n);
     tire->m.inputs.radius = FLAT;
+    for (int i = 0; i < tire->channel_count; i++)
+        tire->m.inputs.channels[i] = tire->channels[i].start;
     tire->m.stage = INSTANTIATED;
     tire->current = false;
     tire->unchecked = true;
@@ -440,13 +481,22 @@ double tire_tangent(Tire *tire)
     if (tire->bare)
         return tire_elastic_tangent(u.deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
     double scratch[STATES];
-    const Vector5 motion = {{u.deflection, u.radius, tire->m.time, u.rate, u.acceleration}};
-    return tire_stiffness(tire->coefficients, motion, tire->p, tire->m.s, scratch);
+    return tire_stiffness(tire->coefficients, moving(tire, tire->m.time), tire->p, tire->m.s, scratch);
+}
+
+/* The number of the channel that a reference is, or -1. */
+static int channel_variable(const Tire *tire, unsigned reference)
+{
+    const unsigned first = FIRST_PARAMETER + (unsigned)tire->count;
+    return reference >= first && reference - first < (unsigned)tire->channel_count ? (int)(reference - first) : -1;
 }
 
 /* How far a variable is moved for a difference: of its usual size 1e-7 to 1e-5, so that rounding is 1e-9 of it. */
 static double reach(const Tire *tire, unsigned reference)
 {
+    const int channel = channel_variable(tire, reference);
+    if (channel >= 0)
+        return 1e-6 * fmax(1, fabs(tire->m.inputs.channels[channel]));
     if (reference == DEFLECTION)
         return 1e-7;
     if (reference == SURFACE_RADIUS)
@@ -462,6 +512,8 @@ static double *moved(Tire *tire, unsigned reference)
         return &tire->m.inputs.deflection;
     if (reference == SURFACE_RADIUS)
         return &tire->m.inputs.radius;
+    if (channel_variable(tire, reference) >= 0)
+        return tire->m.inputs.channels + channel_variable(tire, reference);
     if (motion == DEFLECTION_RATE)
         return &tire->m.inputs.rate;
     if (motion == DEFLECTION_ACCELERATION)
@@ -528,7 +580,7 @@ bool tire_in_range(const Tire *tire)
 
 int tire_motion_variable(const Tire *tire, unsigned reference)
 {
-    const unsigned first = FIRST_PARAMETER + (unsigned)tire->count;
+    const unsigned first = FIRST_PARAMETER + (unsigned)(tire->count + tire->channel_count);
     return tire->moves && reference >= first && reference - first < MOTION_VARIABLES ? (int)(reference - first) : -1;
 }
 
@@ -539,7 +591,8 @@ bool tire_is_motion_given(const Tire *tire, unsigned reference)
 
 int tire_state_variable(const Tire *tire, unsigned reference)
 {
-    const unsigned first = FIRST_PARAMETER + (unsigned)tire->count + (tire->moves ? MOTION_VARIABLES : 0);
+    const unsigned first =
+        FIRST_PARAMETER + (unsigned)(tire->count + tire->channel_count) + (tire->moves ? MOTION_VARIABLES : 0);
     const bool known = reference >= first && reference - first < 2 * (unsigned)tire->continuous_count;
     return known ? (int)(reference - first) : -1;
 }
@@ -554,6 +607,8 @@ static double *variable(Tire *tire, unsigned reference)
     if (reference >= FIRST_PARAMETER && reference - FIRST_PARAMETER < (unsigned)tire->count) {
         return place(tire, tire->parameters + (reference - FIRST_PARAMETER));
     }
+    if (channel_variable(tire, reference) >= 0)
+        return u->channels + channel_variable(tire, reference);
     const int motion = tire_motion_variable(tire, reference);
     return motion == DEFLECTION_RATE ? &u->rate : motion == DEFLECTION_ACCELERATION ? &u->acceleration : NULL;
 }
@@ -586,7 +641,7 @@ bool tire_set(Tire *tire, unsigned reference, double value)
         return false;
     *found = value;
     tire->current = false;
-    if (reference >= FIRST_PARAMETER && tire_motion_variable(tire, reference) < 0)
+    if (reference >= FIRST_PARAMETER && reference - FIRST_PARAMETER < (unsigned)tire->count)
         tire->unchecked = true;
     tire->surface = NAN;
     return true;

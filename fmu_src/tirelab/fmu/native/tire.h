@@ -18,15 +18,24 @@ typedef struct {
     double minimum, maximum;
 } Parameter;
 
-/* The value references: the variables of every tire, then its parameters, then those of a tire that knows its motion. */
+/* The value references: the variables of every tire, then its parameters, then its channels, then those of a tire that
+   knows its motion. */
 enum { DEFLECTION, SURFACE_RADIUS, RADIAL_FORCE, RADIAL_STIFFNESS, IN_TESTED_RANGE, FIRST_PARAMETER };
-/* after the parameters: */
+/* after the channels: */
 enum { DEFLECTION_RATE, DEFLECTION_ACCELERATION, MOTION_GIVEN, MOTION_VARIABLES };
 enum { MOST_CONTINUOUS = 8 };
 
 typedef struct {
     double deflection, radius, rate, acceleration;
+    double channels[CHANNELS]; /* of the tire, in the order of their references */
 } Inputs;
+
+/* An input beside the motion, such as the pressure: its number among all, and the value that stands for none. */
+typedef struct {
+    char name[32];
+    int number;
+    double start, minimum, maximum, unknown;
+} Channel;
 
 /* What an FMU state holds beside the rows of law and effects. */
 typedef struct {
@@ -43,6 +52,8 @@ typedef struct {
     char guid[64];
     Parameter *parameters;
     int count;
+    Channel channels[CHANNELS];
+    int channel_count;
     double *q, *p;       /* numbers of the law and of the effects */
     double *start;       /* the same as they were read, one after the other */
     size_t law;          /* how many of the law */
