@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .channels import recognised
 from .choices import Choices
 from .description import surface_text
 from .formats.delimited import DelimitedTable
@@ -217,6 +218,8 @@ def _settings(found: Understood) -> dict[str, Any]:
         columns[name] = {1: "+", -1: "-", 0: ""}[sign] + (text if plain else f"#{match.index + 1}")
     if not recording.timed:
         columns["time"] = ""
+    if plan.radius is not None and "radius" in recognised(found.table.headers, {}):
+        columns["radius"] = ""  # or the column would go over the radius that was given
     settings["columns"] = columns
     settings["units"] = dict(found.found.units)
     if plan.radius is not None:
