@@ -126,7 +126,7 @@ def works(python: Path, version: str, repository: Path, folder: Path) -> None:
     assert told.split()[-1] == version
     words = ("diagnose", "press", "--out", "out", "--json", "--quiet")
     found = json.loads(done(python, "-I", "-m", "tirelab", *words, cwd=folder))
-    assert "rate_independent_hysteresis" in [effect["name"] for effect in found["effects"]]
+    assert "rate_independent_hysteresis" in [effect["name"] for effect in found["verdict"]["effects"]]
     for name in ("report.html", "tire.json", "BicycleTire.fmu", "diagnosis.json", "plots.csv"):
         assert (folder / "out" / name).stat().st_size > 100
     assert "uPlot" in (folder / "out" / "report.html").read_text(encoding="utf-8")
