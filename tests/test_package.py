@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import tirelab
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -35,6 +36,27 @@ def test_every_file_beside_the_code_is_installed(repository: Path, settings: Any
         if file.is_file() and file.suffix not in (".py", ".pyc")
     }
     assert beside == listed
+
+
+def test_it_says_how_to_be_cited(settings: Any) -> None:
+    """The keys that CITATION.cff 1.2.0 requires; version and licence stand in one place."""
+    cited = settings["tool"]["citation"]
+    assert {"cff-version", "message", "title", "authors"} <= set(cited)
+    assert {"version", "license"}.isdisjoint(cited)
+    assert cited["title"] == settings["project"]["name"]
+    assert [a["name"] for a in cited["authors"]] == [a["name"] for a in settings["project"]["authors"]]
+    assert all({"type", "authors", "title"} <= set(reference) for reference in cited["references"])
+
+
+def test_the_version_is_written_once(repository: Path, settings: Any) -> None:
+    version = settings["project"]["version"]
+    assert tirelab.__version__ == version
+    holding = [
+        path.name
+        for path in (repository / "fmu_src").rglob("*.py")
+        if f'"{version}"' in path.read_text(encoding="utf-8")
+    ]
+    assert holding == []
 
 
 def test_the_packages_say_that_they_are_typed(repository: Path, settings: Any) -> None:

@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..computing.staging import staged
 from ..computing.workers import Cores, work
 from ..diagnosis.diagnosis_file import DiagnosisFileError, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, run_diagnosis
@@ -79,13 +80,14 @@ def diagnose_batch(batch: Batch, cores: Cores, show: Callable[[str], None]) -> B
             "fingerprint": _fingerprint(item.recordings, settings_hash),
         }
         path = _outcome_file(out, item)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        with staged(path.parent) as folder:
+            (folder / path.name).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
         show(f"{done.key}: {outcome['error'] or verdict_text(read_stated(_verdict_folder(out, item)))}")
     result = BatchResult(tuple(_row(out, item) for item in items), skipped)
-    # with a byte order mark, or Excel reads it in another encoding
-    (out / "summary.csv").write_text(summary_csv(result, out), encoding="utf-8-sig", newline="")
-    (out / "summary.html").write_text(summary_html(result, out), encoding="utf-8")
+    with staged(out) as folder:
+        # with a byte order mark, or Excel reads it in another encoding
+        (folder / "summary.csv").write_text(summary_csv(result, out), encoding="utf-8-sig", newline="")
+        (folder / "summary.html").write_text(summary_html(result, out), encoding="utf-8")
     return result
 
 

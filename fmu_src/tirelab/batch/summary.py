@@ -8,6 +8,7 @@ import io
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 import jinja2
@@ -106,6 +107,33 @@ def summary_csv(result: BatchResult, out: Path) -> str:
         files = "; ".join(str(path) for path in row.item.recordings)
         lines.writerow([_safe(v) for v in (row.item.name, *known, files, _report(row, out), row.error or "")])
     return text.getvalue()
+
+
+def summary_content(result: BatchResult, out: Path) -> dict[str, Any]:
+    """Return the summary as one JSON document; forces in N, None where there is no verdict."""
+    items = []
+    for row in result.rows:
+        s = row.verdict
+        known = s and {
+            "effects": sorted(s.names - NOTHING),
+            "unexplained": s.unexplained,
+            "confidence": s.confidence,
+            "alternatives": [sorted(names - NOTHING) for names in s.alternatives],
+            "fit": {name: s.fit.get(name) for name in ("noise", "before", "after")},
+        }
+        files = [str(path) for path in row.item.recordings]
+        report = _report(row, out) or None
+        items.append(
+            {
+                "name": row.item.name,
+                "recordings": files,
+                "verdict": known,
+                "report": report,
+                "error": row.error,
+            }
+        )
+    counts = [{"effect": c.name, "times": c.times, "confidence": c.confidence} for c in result.counts]
+    return {"items": items, "missing": counts, "skipped": [str(path) for path in result.skipped]}
 
 
 def summary_html(result: BatchResult, out: Path) -> str:

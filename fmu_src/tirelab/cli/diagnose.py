@@ -109,10 +109,8 @@ def _ranged(recordings: tuple[Path, ...], given: Path, option: str = "--held-out
 
 def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     output: Output = options["output"]
-    if options["held_out"] or output.as_json:
-        raise TirelabError(
-            "--each cannot be combined with --held-out or --json; read its summary.csv instead"
-        )
+    if options["held_out"]:
+        raise TirelabError("--each cannot be combined with --held-out; diagnose that recording alone")
     if options["native"]:
         raise TirelabError(
             "--each writes Python FMUs only; build one with tirelab build --native --tire FILE"
@@ -120,15 +118,19 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     from rich.console import Console
 
     from ..batch.batch import Batch, diagnose_batch
-    from ..batch.summary import summary_table
+    from ..batch.summary import summary_content, summary_table
     from ..computing.workers import Cores
 
     folder = output.out
-    cores = Cores(options["jobs"], options["dask"])
+    cores = Cores(options["jobs"], options["dask"], output.quiet)
     batch = Batch(recordings, folder, options["tire"], options["reading"])
-    result = diagnose_batch(batch, cores, (lambda line: None) if output.quiet else click.echo)
+    result = diagnose_batch(batch, cores, output.stage)
+    written = [str(folder / "summary.csv"), str(folder / "summary.html")]
+    if output.as_json:
+        output.result((), {**summary_content(result, folder), "written": written})
+        return
     Console(highlight=False).print(summary_table(result))
-    click.echo(f"summary: {folder / 'summary.csv'}, {folder / 'summary.html'}")
+    echo(f"summary: {', '.join(written)}")
 
 
 def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
@@ -155,12 +157,12 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if output.as_json:
         click.echo(json.dumps(run.content, indent=2, allow_nan=False))
         for warning in run.warnings:
-            click.echo(f"note: {printable(warning)}", err=True)
+            echo(f"warning: {printable(warning)}", err=True)
         return
     for note in run.notes:
         output.note(note)
     for warning in run.warnings:
-        echo(f"note: {printable(warning)}")
+        echo(f"warning: {printable(warning)}")
     _print(run, folder)
 
 

@@ -89,8 +89,9 @@ def _given(output: Output) -> Path | None:
 
 
 def _write(found: list[Inspection], out: Path | None) -> dict[Path, bool]:
-    """Write the settings; return each file that was written, and whether it was there before."""
-    from ..recordings.settings_file import write_settings
+    """Write the settings, each file whole; return each that was written, and whether it was there before."""
+    from ..computing.staging import staged
+    from ..recordings.settings_file import settings_text
 
     by_file: dict[Path, dict[str, Inspection]] = {}
     for one in found:
@@ -98,7 +99,9 @@ def _write(found: list[Inspection], out: Path | None) -> dict[Path, bool]:
     written = {}
     for target, ones in by_file.items():
         written[target] = target.exists()
-        write_settings(target, {key: one.settings for key, one in ones.items()})
+        text = settings_text(target, {key: one.settings for key, one in ones.items()})
+        with staged(target.parent) as folder:
+            (folder / target.name).write_text(text, encoding="utf-8")
     return written
 
 

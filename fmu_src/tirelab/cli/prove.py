@@ -51,7 +51,7 @@ def command(
         if not output.quiet:
             click.echo(line, err=output.as_json)
 
-    proof = prove(BlindTrials(Folders(output.out), seed, trials, kind), Cores(jobs, dask), show)
+    proof = prove(BlindTrials(Folders(output.out), seed, trials, kind), Cores(jobs, dask, output.quiet), show)
     if output.as_json:
         output.result((), numbers(proof))
         return

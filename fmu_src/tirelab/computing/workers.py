@@ -27,11 +27,14 @@ TASKS_PER_PROCESS = 2
 class Cores:
     """Where tasks run: in `jobs` processes of this machine (1: in this one), or on the Dask cluster at `dask`.
 
+    quiet: whether no progress is shown, in a terminal either
+
     The workers of a cluster must see the same folders under the same names as this machine.
     """
 
     jobs: int | None = None
     dask: str | None = None
+    quiet: bool = False
 
     def __post_init__(self) -> None:
         if self.jobs is not None and self.jobs < 1:
@@ -64,7 +67,7 @@ def work(
     Raises TirelabError where the Dask cluster cannot be reached.
     """
     deaths = _deaths(cores)
-    with _progress() as bar, _backend(cores) as parallel:
+    with _progress(cores.quiet) as bar, _backend(cores) as parallel:
         row = bar.add_task(title, total=len(tasks))
         left = dict(tasks)
         while left:
@@ -160,7 +163,7 @@ def _client(address: str) -> Iterator[None]:
         yield
 
 
-def _progress() -> Progress:
+def _progress(quiet: bool) -> Progress:
     console = Console(stderr=True)
     return Progress(
         TextColumn("{task.description}"),
@@ -168,5 +171,5 @@ def _progress() -> Progress:
         MofNCompleteColumn(),
         TimeRemainingColumn(),
         console=console,
-        disable=not console.is_terminal,
+        disable=quiet or not console.is_terminal,
     )

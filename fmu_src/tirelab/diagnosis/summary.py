@@ -108,7 +108,10 @@ def _listed(sentence: str, alternatives: Sequence[Alternative], sets: Sequence[S
     titles = [set_title(names) for names in sets]
     if len({r.reason for r in alternatives}) == 1:
         return [f"{sentence.format(listed(titles, 'or'))}.", f"{_capital(alternatives[0].reason)}."]
-    reasoned = [f"{t} ({r.reason})" for t, r in zip(titles, alternatives, strict=True)]
+    by_reason: dict[str, list[str]] = {}
+    for title, alternative in zip(titles, alternatives, strict=True):
+        by_reason.setdefault(alternative.reason, []).append(title)
+    reasoned = [f"{listed(group, 'or')} ({reason})" for reason, group in by_reason.items()]
     return [f"{sentence.format(listed(reasoned, 'or'))}."]
 
 

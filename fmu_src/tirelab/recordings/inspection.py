@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import UNIT_OF
+from .channels import UNIT_OF, recognised
 from .choices import Choices
 from .description import surface_text
 from .formats.delimited import DelimitedTable
@@ -123,7 +123,7 @@ def _facts(found: Understood) -> list[tuple[str, str]]:
     begins = (
         "not seen in these readings"
         if zero is None
-        else f"the force begins at {1e3 * zero.begins + 0.0:.1f} mm"
+        else f"the force begins at {round(1e3 * zero.begins, 1) + 0.0:.1f} mm"
     )
     return [
         ("table", _table_text(found)),
@@ -172,7 +172,7 @@ def _channels(found: Understood) -> list[ChannelFound]:
     for name, values in found.recording.channels():
         unit, factor = SHOWN_IN.get(name, (_si(name), 1.0))
         finite = values[np.isfinite(values)] * factor
-        span = "flat" if not len(finite) else f"{finite.min():.5g} to {finite.max():.5g} {unit}"
+        span = _span(finite, unit, flat=len(finite) < len(values))
         step = None if name in ("time", "radius") or not len(finite) else step_of(finite)
         header, made = (
             found.plan.headers.get(name),
@@ -190,6 +190,14 @@ def _channels(found: Understood) -> list[ChannelFound]:
             )
         )
     return rows
+
+
+def _span(finite: FloatArray, unit: str, flat: bool) -> str:
+    """Return the range of values as text; flat: whether there are others, without end."""
+    if not len(finite):
+        return "flat"
+    low, high = f"{finite.min():.5g}", f"{finite.max():.5g}"
+    return f"{low}{f' to {high}' if high != low else ''} {unit}{', flat' if flat else ''}"
 
 
 def _si(name: str) -> str:
@@ -218,6 +226,8 @@ def _settings(found: Understood) -> dict[str, Any]:
         columns[name] = {1: "+", -1: "-", 0: ""}[sign] + (text if plain else f"#{match.index + 1}")
     if not recording.timed:
         columns["time"] = ""
+    if plan.radius is not None and "radius" in recognised(found.table.headers, {}):
+        columns["radius"] = ""  # or the column would go over the radius that was given
     settings["columns"] = columns
     settings["units"] = dict(found.found.units)
     for name, value in plan.constants.items():

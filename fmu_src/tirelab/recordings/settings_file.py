@@ -1,4 +1,4 @@
-"""recording.toml as `tirelab inspect` writes it: what was understood of each file; what others wrote there stays."""
+"""The text of recording.toml, as `tirelab inspect` writes it: what was understood of each file; all else stays."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ HEAD = (
 )
 
 
-def write_settings(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> None:
-    """Write what was understood of each recording, by the name of its file, into a file of settings.
+def settings_text(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the text of a file of settings with what was understood of each recording, by the name of its file.
 
     Where the file is there, the tables of these recordings are written anew, and all else in it stays as it is.
-    Errors: RecordingError where it is no TOML, or cannot be written.
+    Nothing is written. Errors: RecordingError where the file is no TOML, or cannot be read.
     """
     try:
         if file.exists():
@@ -34,16 +34,13 @@ def write_settings(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> N
         files = document.setdefault("files", tomlkit.table(is_super_table=True))
         for name, settings in understood.items():
             files[name] = _table(settings)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(tomlkit.dumps(document), encoding="utf-8")
+        return tomlkit.dumps(document)
     except (TOMLKitError, UnicodeDecodeError) as error:
         raise RecordingError(
             f"{file}: is not TOML ({error}); correct it, or name another with --out"
         ) from None
     except OSError as error:
-        raise RecordingError(
-            f"{file} cannot be written ({error.strerror}); name another with --out"
-        ) from None
+        raise RecordingError(f"{file} cannot be read ({error.strerror}); name another with --out") from None
 
 
 def _table(settings: Mapping[str, Any]) -> Table:

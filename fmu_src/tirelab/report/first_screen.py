@@ -176,7 +176,12 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
 def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     own = [e["name"] for e in verdict["effects"]] + ([UNKNOWN] if verdict["unexplained"] else [])
     sets = [titles.short_set(own)]
-    for names in verdict["alternatives"]:
+    alternatives = verdict["alternatives"]
+    details = verdict.get("alternative_details") or []
+    if len(details) == len(alternatives):
+        pairs = [{**d, "names": names} for d, names in zip(details, alternatives, strict=True)]
+        alternatives = [pair["names"] for pair in words.likeliest(pairs)]
+    for names in alternatives:
         added = [name for name in names if name not in own]
         beside = bool(own) and set(own) < set(names)
         sets.append(f"+ {titles.short_set(added)}" if beside else titles.short_set(names))

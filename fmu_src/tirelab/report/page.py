@@ -132,6 +132,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         verdict=verdict,
         effects=[_effect(effect, diagnosis["sketches"] or {}) for effect in verdict["effects"]],
         alternatives=_alternatives(verdict),
+        unseen=any(d["probability"] is None for d in verdict.get("alternative_details") or ()),
         law_curves=draw_law_changes(diagnosis["law_changes"], "law") if diagnosis["law_changes"] else None,
         fit=_fit(diagnosis["fit"], diagnosis.get("held_out_by", ""), fitted, held_out),
         loops=_loops(fitted, held_out),
@@ -248,7 +249,7 @@ def _alternatives(verdict: Mapping[str, Any]) -> list[dict[str, Any]]:
         for other in verdict["alternatives"]
     ]
     groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
-    for d in details:
+    for d in words.likeliest(details):
         chance = "not seen" if d["probability"] is None else words.percent(d["probability"])
         groups.setdefault((d["reason"], d["action"]), []).append((d["difference"], chance))
     return [

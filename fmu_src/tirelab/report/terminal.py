@@ -87,7 +87,7 @@ def print_diagnosis(
 
     if verdict.get("alternative_details"):
         others = _table("cannot be ruled out", "probability", "what decides")
-        for other in verdict["alternative_details"]:
+        for other in words.likeliest(verdict["alternative_details"]):
             chance = "not seen" if other["probability"] is None else words.percent(other["probability"])
             others.add_row(other["difference"], chance, other["action"] or other["reason"])
         console.print(others)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from radialtire import CATALOGUE, FLAT_RADIUS
@@ -146,6 +146,11 @@ def of_load(size: float | None, load: float | None) -> str:
         return ""
     share = size / load
     return f"{100.0 * share:.1f} %" if 0.005 <= share < 0.0095 else percent(share)
+
+
+def likeliest(details: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Return alternatives with the likeliest first, those without a probability last."""
+    return sorted(details, key=lambda d: math.inf if d["probability"] is None else -float(d["probability"]))
 
 
 def confidence_word(confidence: float) -> str:

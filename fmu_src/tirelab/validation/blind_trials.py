@@ -13,6 +13,7 @@ from typing import Any
 import concealed
 from radialtire import read_tire
 
+from ..computing.staging import staged
 from ..computing.workers import Cores, work
 from ..diagnosis.diagnosis_file import Stated, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, diagnose_files
@@ -77,9 +78,10 @@ def prove(trials: BlindTrials, cores: Cores, show: Show) -> Proof:
     _run_tests(trials, cores)
     _diagnose_all(trials, cores, second=True)
     proof = Proof(trials.seed, _score_all(trials, commitments, cores), trials.kind)
-    write_json(trials.folders.root / "proof.json", numbers(proof))
-    (trials.folders.root / "proof.html").write_text(page(proof), encoding="utf-8")
-    overview(proof.scores, proof.command).savefig(trials.folders.root / "proof.png", dpi=110)
+    with staged(trials.folders.root) as folder:
+        write_json(folder / "proof.json", numbers(proof))
+        (folder / "proof.html").write_text(page(proof), encoding="utf-8")
+        overview(proof.scores, proof.command).savefig(folder / "proof.png", dpi=110)
     return proof
 
 

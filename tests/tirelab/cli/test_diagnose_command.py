@@ -330,9 +330,23 @@ def test_each_gives_a_verdict_for_every_recording(rides: Path, tmp_path: Path) -
     assert [row["missing"] for row in rows] == ["viscous damping", "viscous damping", ""]
     assert "broken.csv: no comma" in summary
     assert (tmp_path / "out" / "summary.html").is_file()
+    again = run("--each", rides, tmp_path / "broken.csv", "--out", tmp_path / "out", "--json", "--quiet")
+    told = json.loads(again.stdout)
+    assert again.stderr == ""  # nothing is diagnosed again, and nothing but the document is said
+    assert [item["verdict"] and item["verdict"]["effects"] for item in told["items"]] == [
+        ["viscous_damping"],
+        ["viscous_damping"],
+        None,
+    ]
+    assert "no comma" in told["items"][2]["error"]
+    assert told["missing"][0]["times"] == 2
+    assert [Path(p).name for p in told["written"]] == ["summary.csv", "summary.html"]
+    assert all((tmp_path / "out" / item["report"]).is_file() for item in told["items"][:2])
 
 
-@pytest.mark.parametrize("options", [("--each", "--json"), ("--jobs", "2"), ("--dask", "tcp://nowhere:1")])
+@pytest.mark.parametrize(
+    "options", [("--each", "--held-out", __file__), ("--jobs", "2"), ("--dask", "tcp://nowhere:1")]
+)
 def test_options_that_cannot_be_combined_are_refused(
     rides: Path, tmp_path: Path, options: tuple[str, ...]
 ) -> None:

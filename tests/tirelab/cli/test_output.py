@@ -176,6 +176,56 @@ def test_interrupted_while_it_writes_it_leaves_the_last_diagnosis_whole(
     assert (out / "diagnosis.json").read_text() == "of an earlier diagnosis"
 
 
+def test_interrupted_while_it_writes_inspect_leaves_the_settings_whole(
+    pressed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "recording.toml"
+    target.write_text('radius = "flat"\n')
+    write = Path.write_text
+
+    def interrupted(path: Path, text: str, **options: Any) -> int:
+        write(path, text[: len(text) // 2], **options)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "write_text", interrupted)
+    result = run("inspect", sorted(pressed.glob("*.csv"))[0], "--out", target)
+    assert result.exit_code == 1
+    assert [(f.name, f.read_text()) for f in tmp_path.iterdir()] == [("recording.toml", 'radius = "flat"\n')]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["open", __file__], "cannot be written"),
+        (["inspect", "none.csv"], "there is no such file"),
+        (["identify", "none.csv"], "no such file"),
+        (["build", "--tire", "none.json"], "name a tire file that can be read"),
+        (["compare", "none.csv"], "no such file"),
+        (["diagnose", "none.csv"], "there is no such file"),
+        (["ride", "none.csv"], "none.csv"),
+        (["rig", "--tire", "none.json"], "name a tire file that can be read"),
+        (["article", "--out", __file__], "cannot be written"),
+        (["prove", "--seed", "1", "--trials", "1", "--out", __file__], "cannot be written"),
+    ],
+    ids=lambda value: value[0] if isinstance(value, list) else "",
+)
+def test_bad_input_of_every_command_ends_with_status_2_and_one_sentence(
+    arguments: list[str], sentence: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+    assert "Traceback" not in result.output
+    assert result.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_every_command_is_asked_for_its_refusal() -> None:
+    (mark,) = test_bad_input_of_every_command_ends_with_status_2_and_one_sentence.pytestmark
+    assert [arguments[0] for arguments, _ in mark.args[1]] == list(COMMANDS)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is not a signal there")
 def test_ctrl_c_ends_the_program_with_one_line_and_no_files(damped_run: Any, tmp_path: Path) -> None:
     words = [

@@ -9,9 +9,9 @@ from click.testing import CliRunner
 from house_form import loading, write_rows
 from tirelab.cli import main
 from tirelab.recordings.choices import Choices
-from tirelab.recordings.inspection import inspect_recording
+from tirelab.recordings.inspection import Inspection, inspect_recording
 from tirelab.recordings.recording import RecordingError, read_recording
-from tirelab.recordings.settings_file import write_settings
+from tirelab.recordings.settings_file import settings_text
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -31,6 +31,28 @@ def press(tmp_path: Path) -> Path:
     return path
 
 
+def keep(file: Path, found: Inspection) -> None:
+    file.write_text(settings_text(file, {found.key: found.settings}), encoding="utf-8")
+
+
+def test_a_radius_that_was_given_goes_over_the_column_in_the_file_of_settings_too(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    path = write_rows(
+        tmp_path / "a.csv",
+        "time [s],deflection [cm],radius [cm],F [N]",
+        time,
+        deflection,
+        12.7 + 0.0 * time,
+        force,
+    )
+    found = inspect_recording(path, Choices(radius="flat"))
+    keep(path.with_name("recording.toml"), found)
+    again = read_recording(path)
+    assert np.all(np.isinf(found.recording.surface_radius))
+    assert np.all(np.isinf(again.surface_radius))
+    assert inspect_recording(path, Choices()).settings == found.settings
+
+
 def test_the_facts_are_those_of_the_file(press: Path) -> None:
     found = inspect_recording(press, Choices(radius="25.4cm"))
     rows = {row.channel: row for row in found.channels}
@@ -47,7 +69,7 @@ def test_the_facts_are_those_of_the_file(press: Path) -> None:
 
 def test_what_is_kept_reads_the_same(press: Path) -> None:
     first = inspect_recording(press, Choices(radius="flat"))
-    write_settings(press.with_name("recording.toml"), {first.key: first.settings})
+    keep(press.with_name("recording.toml"), first)
     again = read_recording(press)
     for (_, one), (_, other) in zip(first.recording.channels(), again.channels(), strict=True):
         np.testing.assert_array_equal(one, other)
@@ -63,7 +85,7 @@ def test_what_others_wrote_there_stays(press: Path) -> None:
     file = press.with_name("recording.toml")
     file.write_text('# by hand\nradius = "25.4 cm"  # the bump\n', encoding="utf-8")
     found = inspect_recording(press, Choices())
-    write_settings(file, {found.key: found.settings})
+    keep(file, found)
     text = file.read_text(encoding="utf-8")
     assert text.startswith('# by hand\nradius = "25.4 cm"  # the bump\n')
     content = tomllib.loads(text)

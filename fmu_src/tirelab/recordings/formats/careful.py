@@ -15,6 +15,7 @@ from ..units import FLAT_WORDS
 from .clock import Clock, ClockError
 from .layout import Layout
 from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS
+from .spaced import with_tabs
 from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
 
 LONGEST_LINE = 1_048_576
@@ -65,6 +66,8 @@ class RowReader:
                 if row and is_comment(row[0]):
                     self.comments.append(start)
                     continue
+                if self.layout.spaced and len(row) != expected and any(map(str.strip, row)):
+                    raise self._other_width(start, row)
                 if len(row) > expected:
                     self._refuse_extra_fields(start, row)
                 lines.append(start)
@@ -117,7 +120,14 @@ class RowReader:
                     f"{self.path.name}, row {number}: the line does not end in {LONGEST_LINE} characters; "
                     "the file is damaged there: export it anew"
                 )
-            yield line
+            yield with_tabs(line, len(self.layout.headers)) if self.layout.spaced else line
+
+    def _other_width(self, line: int, row: Sequence[str]) -> RecordingError:
+        cells = sum(len(cell.split()) for cell in row)
+        return RecordingError(
+            f"{self.path.name}, row {line}: has {cells} cells where the table has {len(self.layout.headers)} columns "
+            "between spaces, so nobody can tell which is which; correct the row or delete it"
+        )
 
     def _refuse_extra_fields(self, line: int, row: Sequence[str]) -> None:
         expected = len(self.layout.headers)

@@ -15,6 +15,7 @@ from .clock import ClockError
 from .encoding import BY_BYTES
 from .layout import Layout, find_layout
 from .number_style import NumberStyle
+from .spaced import block_with_tabs
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed
 
 BLOCK = 2 * 2**20
@@ -191,6 +192,8 @@ def _blocks(path: Path, layout: Layout) -> Iterator[bytes]:
     blocks = _byte_blocks if layout.encoding in BY_BYTES else _decoded_blocks
     previous = b""
     for block in blocks(path, layout):
+        if layout.spaced:
+            block = block_with_tabs(block, len(layout.headers))
         if previous:
             yield previous
         previous = block

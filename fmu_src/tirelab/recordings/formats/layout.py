@@ -14,6 +14,7 @@ from ..units import split_header
 from .clock import is_clock
 from .encoding import find_encoding
 from .number_style import NumberStyle, style_of
+from .spaced import TAB, spaced_columns, with_tabs
 from .table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
 from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value
 
@@ -32,7 +33,8 @@ class Layout:
     """What the head of a text file says about the whole.
 
     table_line: of the header, from 1, or of the first numbers where there is no header; provenance: the lines above it
-    plain: whether lines end as they usually do, so that a parser by columns may be tried
+    plain: whether lines end as they usually do, so that a parser by columns may be tried; spaced: whether its columns
+    stand between spaces, which are read as tabs
     """
 
     encoding: str
@@ -45,6 +47,7 @@ class Layout:
     notes: tuple[str, ...]
     table_line: int = 1
     provenance: tuple[str, ...] = ()
+    spaced: bool = False
 
 
 def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
@@ -61,6 +64,11 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     first, declared = _preamble(lines)
     if skip_rows is not None:
         first = skip_rows + _preamble(lines[skip_rows:])[0]
+    spaced = 0 if declared else spaced_columns(lines[first:])
+    if spaced:
+        lines = [with_tabs(line, spaced) for line in lines]
+        declared = TAB
+        notes = (*notes, "columns read between spaces")
     if first >= len(lines):
         raise RecordingError(_no_table(path, len(lines), skip_rows))
     place = find_table(lines, first, declared) if skip_rows is None else None
@@ -100,6 +108,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         (*notes, *said),
         start + 1,
         _provenance(lines[:start], separator, declared),
+        spaced > 0,
     )
 
 
@@ -225,14 +234,9 @@ def _separator(path: Path, lines: Sequence[str]) -> str:
             agreeing = sum(count == fields[0] for count in fields[1:])
             likely.append((2 * agreeing >= len(fields) - 1, fields[0], candidate))
     if not likely:
-        spaced = len(sample[0].split()) > 1
-        seen = (
-            "its columns seem to stand between spaces"
-            if spaced
-            else f"its first line is {quoted(sample[0].strip())}"
-        )
         raise RecordingError(
-            f"{path.name}: no comma, semicolon or tab separates columns ({seen}); export it as CSV"
+            f"{path.name}: no comma, semicolon, tab or spaces separate columns of numbers (its first line is "
+            f"{quoted(sample[0].strip())}); export it as CSV"
         )
     # A separator that the rows confirm comes first; then tab before semicolon before comma.
     return next((mark for agreed, _, mark in likely if agreed), max(likely, key=lambda found: found[1])[2])
