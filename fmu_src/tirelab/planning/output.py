@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
+from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -24,6 +25,9 @@ PICTURE = "plan.png"
 
 DRAWN = 4000
 """So many samples of a drive are drawn."""
+
+READABLE = 0.75
+"""Probability whose shade is dark enough for white figures."""
 
 _SHADES = LinearSegmentedColormap.from_list("told", ["#ffffff", PLAIN.after])
 
@@ -53,7 +57,7 @@ def draw_plan(plan: RecordingPlan, path: Path) -> None:
     table, truths, rivals = _matrix(plan)
     height = max(1.15 * count + 0.8, 0.3 * len(truths) + 2.4)
     figure = Figure(figsize=(13.5, height), layout="constrained", facecolor="white")
-    left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.25))
+    left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.25), squeeze=False)[0]
     axes = left.subplots(count, 1, squeeze=False)[:, 0]
     for axis, (number, drive) in zip(axes, enumerate(plan.drives, 1), strict=False):
         step = max(1, drive.time.size // DRAWN)
@@ -95,17 +99,15 @@ def _rival(truth: str, rival: frozenset[str]) -> str:
 
 
 def _draw_matrix(
-    axis: object, table: FloatArray, truths: list[str], rivals: list[str], plan: RecordingPlan
+    axis: Axes, table: FloatArray, truths: list[str], rivals: list[str], plan: RecordingPlan
 ) -> None:
-    from matplotlib.axes import Axes
-
-    assert isinstance(axis, Axes)
     image = axis.imshow(table, cmap=_SHADES, vmin=0.5, vmax=1.0, aspect="auto")
     axis.set_yticks(range(len(truths)), [short_title(n) for n in truths], fontsize=8)
     axis.set_xticks(range(len(rivals)), [short_title(n) for n in rivals], fontsize=8, rotation=60, ha="right")
     for (i, j), value in np.ndenumerate(table):
         if math.isfinite(value) and value < TOLD:
-            axis.text(j, i, f"{100.0 * value:.0f}", ha="center", va="center", fontsize=7, color=PLAIN.before)
+            colour = PLAIN.ink if value < READABLE else "white"
+            axis.text(j, i, f"{100.0 * value:.0f}", ha="center", va="center", fontsize=7, color=colour)
     axis.set_ylabel("true")
     axis.set_xlabel("taken for")
     axis.set_title(

@@ -31,8 +31,8 @@ class Row:
     """What is told of one effect.
 
     named: with which probability it is named and nothing else, at each of the sizes; confused: names that it is not
-    told from in nineteen of twenty recordings at the size of the plan ("" for nothing at all); hopeless: those of them
-    from which no motion of the menu tells it
+    told from in nineteen of twenty recordings at the size of the plan ("" for nothing at all), a refitted law alone
+    where that can follow it; hopeless: those of them from which no motion of the menu tells it
     """
 
     effect: str
@@ -218,6 +218,8 @@ def _rows(
             for q, p, possible in zip(questions, choice.answers, choice.possible, strict=True)
             if q.truth == truth and p < TOLD
         ]
+        if (LAW, False) in missed:  # a refitted law follows it, so it does beside every other effect too
+            missed = [(LAW, False)]
         confused = tuple(dict.fromkeys(name for name, _ in missed))
         hopeless = tuple(dict.fromkeys(name for name, possible in missed if not possible))
         rows.append(Row(truth, tuple(values), confused, hopeless))

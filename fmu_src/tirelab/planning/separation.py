@@ -105,7 +105,7 @@ class _Model:
         """Return c' (V + W W')^-1 c of each column c at `place`, with its own V."""
         total = np.diag(self.gram)[place]
         taken = np.sum(self.turned[:, place] ** 2 / (variance + self.values[:, None]), axis=0)
-        return np.maximum((total - taken) / variance, 0.0)
+        return np.asarray(np.maximum((total - taken) / variance, 0.0))
 
     def between(self, place: slice, variance: float) -> FloatArray:
         """Return the products of the columns at `place` with each other, as `left` has those with themselves."""
