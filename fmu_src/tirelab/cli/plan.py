@@ -74,7 +74,8 @@ def _share(context: click.Context, parameter: click.Parameter, text: str) -> flo
     "diagnosis",
     type=FILE,
     metavar="DIAGNOSIS",
-    help="Tell the verdict of this diagnosis.json, or folder, from its alternatives.",
+    help="Tell the verdict of this diagnosis.json, or folder, from its alternatives. Stroke, surfaces and noise are "
+    "those recorded if not said.",
 )
 @click.option(
     "--size",
@@ -98,16 +99,17 @@ def command(
     from ..planning.follow_up import follow_up, read_diagnosed
     from ..planning.output import write_plan
     from ..planning.plan import plan_recordings
-    from ..planning.rig import read_rig
+    from ..planning.rig import Rig, read_rig
 
     typed = asdict(limits)
-    rig = read_rig(typed.pop("rig"), typed)
+    diagnosed = None if diagnosis is None else read_diagnosed(diagnosis)
+    rig = read_rig(typed.pop("rig"), typed, Rig() if diagnosed is None else diagnosed.rig)
     model = TireModel() if tire is None else read_tire(tire)
     with progress(output.quiet) as show:
-        if diagnosis is None:
+        if diagnosed is None:
             plan = plan_recordings(model, rig, size, show)
         else:
-            plan = follow_up(read_diagnosed(diagnosis), model, rig, size, show)
+            plan = follow_up(diagnosed, model, rig, size, show)
         if not plan.drives:
             raise TirelabError(
                 "no motion within these limits tells any two of them apart; give a larger --stroke, a faster --speed, "

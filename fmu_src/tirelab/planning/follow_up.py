@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,13 +20,16 @@ from radialtire import TireModel
 from ..errors import TirelabError
 from ..names import UNKNOWN
 from ..regressors.law import LAW
-from .menu import FEWEST, Drive, menu
-from .plan import Progress, RecordingPlan, planned
+from .menu import FEWEST, Drive
+from .plan import Progress, RecordingPlan, motions_within, planned
 from .responses import responses_of
 from .rig import Rig
 from .separation import Question
 
 FloatArray = NDArray[np.float64]
+
+MOST_SURFACES = 3
+"""Recorded surfaces that are taken for those that can be mounted, the flattest first."""
 
 MOST_SAMPLES = 20_000
 """Samples of each recorded motion that are simulated."""
@@ -40,6 +43,17 @@ class Diagnosed:
     alternatives: tuple[frozenset[str], ...]
     noise: float
     recorded: tuple[Drive, ...]
+
+    @property
+    def rig(self) -> Rig:
+        """What is known of the rig that recorded: its noise, and the surfaces and the stroke that it reached."""
+        rig = replace(Rig(), noise=self.noise)
+        if not self.recorded:
+            return rig
+        radii = np.unique(np.concatenate([d.surface_radius for d in self.recorded]))
+        surfaces = sorted((float(r) for r in radii), key=lambda r: abs(1.0 / r))[:MOST_SURFACES]
+        stroke = max(float(d.deflection.max()) for d in self.recorded)
+        return replace(rig, surfaces=tuple(surfaces), stroke=stroke)
 
 
 def read_diagnosed(path: Path) -> Diagnosed:
@@ -97,7 +111,7 @@ def follow_up(
     """
     if not diagnosed.alternatives:
         raise TirelabError("the diagnosis has no alternatives: nothing is left to tell apart")
-    possible = menu(rig)
+    possible = motions_within(rig)
     responses = responses_of((*possible, *diagnosed.recorded), tire, rig, progress)
     known, recorded = responses.first(len(possible))
     questions = alternatives_asked(diagnosed, responses.names, size)

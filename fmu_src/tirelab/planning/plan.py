@@ -149,12 +149,13 @@ def plan_recordings(
     size: of the effects, largest response over the peak force; progress: called with a sentence for each stage
     Raises TirelabError where no motion fits into the rig's limits.
     """
-    responses = responses_of(_menu(rig), tire, rig, progress)
+    responses = responses_of(motions_within(rig), tire, rig, progress)
     questions = questions_of(responses.names, size)
     return planned(tire, rig, responses, questions, np.zeros_like(responses.grams[0]), progress)
 
 
-def _menu(rig: Rig) -> tuple[Drive, ...]:
+def motions_within(rig: Rig) -> tuple[Drive, ...]:
+    """Return the menu of a rig; raises TirelabError where it is empty."""
     drives = menu(rig)
     if not drives:
         raise TirelabError("no motion fits into these limits; give more --time or a faster --speed")

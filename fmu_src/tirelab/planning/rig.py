@@ -15,7 +15,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +76,11 @@ _EXAMPLES = {
 }
 
 
-def read_rig(file: Path | None, given: Mapping[str, str | None]) -> Rig:
+def read_rig(
+    file: Path | None,
+    given: Mapping[str, str | None],
+    defaults: Rig = Rig(),
+) -> Rig:
     """Return the rig of a file (None: of the defaults), with what is `given`, key by key, over it.
 
     Raises TirelabError, one sentence, for a file that cannot be read, an unknown key, or a value without its unit.
@@ -85,7 +89,7 @@ def read_rig(file: Path | None, given: Mapping[str, str | None]) -> Rig:
     if file is not None:
         texts |= {key: (f"{file}: {key}", value) for key, value in _content(file).items()}
     texts |= {key: (f"--{key}", value) for key, value in given.items() if value is not None}
-    rig = Rig(**{key: _READERS[key](where, value) for key, (where, value) in texts.items()})
+    rig = replace(defaults, **{key: _READERS[key](where, value) for key, (where, value) in texts.items()})
     if rig.time / rig.sampling < FEWEST:
         raise TirelabError(
             f"{rig.time:g} s at {1.0 / rig.sampling:g} Hz are {int(rig.time / rig.sampling)} samples, and a plan needs "

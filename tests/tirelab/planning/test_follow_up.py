@@ -46,6 +46,11 @@ def test_verdict_alternatives_and_recorded_motions_are_read(tmp_path: Path) -> N
         assert slow.name == "slow"
         assert slow.deflection.max() == pytest.approx(9.9e-3)
         assert np.isinf(slow.surface_radius).all()
+        assert (found.rig.noise, found.rig.stroke, found.rig.surfaces) == (
+            6.0,
+            slow.deflection.max(),
+            (np.inf,),
+        )
 
 
 @pytest.mark.parametrize(
