@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .diagnosis.diagnose import diagnose as diagnose
-    from .diagnosis.discriminating_test import Limits as Limits
     from .diagnosis.verdict import Verdict as Verdict
     from .errors import TirelabError as TirelabError
     from .fmu.build import build_fmu as build_fmu
     from .fmu.replay import replay as replay
     from .identification.identify import identify as identify
+    from .planning.waveforms import Limits as Limits
     from .recordings.recording import Recording as Recording
     from .recordings.recording import read_recording as read_recording
     from .report.comparison import compare as compare
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     __version__: str
 
 _PUBLIC = {
-    "Limits": "diagnosis.discriminating_test",
+    "Limits": "planning.waveforms",
     "Recording": "recordings.recording",
     "build_fmu": "fmu.build",
     "compare": "report.comparison",

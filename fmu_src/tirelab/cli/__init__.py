@@ -15,6 +15,7 @@ if sys.prefix != sys.base_prefix:
 
 COMMANDS = {
     "open": "Open a page on this machine: drop recordings, diagnose, take the tire.",
+    "plan": "Choose what to record, within a rig's limits.",
     "inspect": "Show what is understood of recordings, and keep it in recording.toml.",
     "identify": "Identify a tire from recordings of it.",
     "build": "Pack a tire as an FMU and validate it.",

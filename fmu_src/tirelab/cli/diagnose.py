@@ -65,6 +65,7 @@ STAGES = MappingProxyType(
     metavar="COLUMN",
     help="Look for effects beside a simulation: the recordings' column of its force.",
 )
+@click.option("--rig", type=FILE, help="TOML file of your rig's limits, for the test that it recommends.")
 @click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")
 @click.option(
     "--each",
@@ -83,7 +84,7 @@ def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     options["held_out"] = tuple(_ranged(recordings, file) for file in options["held_out"])
     if fit is not None:
         recordings = (_ranged(recordings, Path(fit), "--fit"),)
-    check_files((*recordings, *options["held_out"]))
+    check_files((*recordings, *options["held_out"], *([options["rig"]] if options["rig"] else [])))
     if each:
         _batch(recordings, options)
     else:
@@ -111,6 +112,8 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     output: Output = options["output"]
     if options["held_out"]:
         raise TirelabError("--each cannot be combined with --held-out; diagnose that recording alone")
+    if options["rig"] is not None:
+        raise TirelabError("--each recommends no test, so --rig has no use; leave it out")
     if options["native"]:
         raise TirelabError(
             "--each writes Python FMUs only; build one with tirelab build --native --tire FILE"
@@ -136,20 +139,14 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
 def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     if options["jobs"] is not None or options["dask"] is not None:
         raise TirelabError("--jobs and --dask need --each; add --each, or remove them")
-    from ..diagnosis.diagnosis_run import run_diagnosis
+    from ..diagnosis.diagnosis_run import Request, run_request
 
     output: Output = options["output"]
     folder = output.out
     how: Reading = options["reading"]
     with progress(output.quiet, STAGES) as show:
-        run = run_diagnosis(
-            recordings,
-            folder,
-            tire=options["tire"],
-            held_out=options["held_out"],
-            reading=how,
-            progress=show,
-        )
+        asked = Request(recordings, folder, options["tire"], options["held_out"], how, rig=options["rig"])
+        run = run_request(asked, show)
     if options["native"]:
         from ..fmu.native.pack import build_native_fmu
 

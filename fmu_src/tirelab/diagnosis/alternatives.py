@@ -9,6 +9,7 @@ import numpy as np
 from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
+from ..planning.waveforms import Limits
 from ..preprocessing.dataset import Dataset
 from ..preprocessing.kinematics import BoolArray, FloatArray
 
@@ -41,8 +42,11 @@ class Alternative:
     probability: float
 
 
-def alternatives_of(explanation: Explanation, dataset: Dataset, confidence: float) -> tuple[Alternative, ...]:
-    """Return the sets that the recordings cannot rule out; confidence: the calibrated probability of the verdict.
+def alternatives_of(
+    explanation: Explanation, dataset: Dataset, confidence: float, limits: Limits | None = None
+) -> tuple[Alternative, ...]:
+    """Return the sets that the recordings cannot rule out; confidence: the calibrated probability of the verdict;
+    limits: of the rig, where they are known.
 
     First those in which an effect that this motion cannot tell from one of the verdict's stands in its place, then the
     likeliest others until they and the verdict hold the probability CREDIBLE: what the confidence leaves is shared by
@@ -61,7 +65,7 @@ def alternatives_of(explanation: Explanation, dataset: Dataset, confidence: floa
             continue
         share = (1.0 - confidence) * e.probability / whole
         covered += share
-        reason = reason_of(best, e.names, explanation, dataset)
+        reason = reason_of(best, e.names, explanation, dataset, limits)
         found.append(Alternative(e.names, own - e.log_evidence, reason, share))
     found.sort(key=lambda a: a.names not in explanation.confounded)
     unseen = [
@@ -70,31 +74,40 @@ def alternatives_of(explanation: Explanation, dataset: Dataset, confidence: floa
     return (*found[:MOST], *unseen)
 
 
-def reason_of(names: Sequence[str], other: Sequence[str], explanation: Explanation, dataset: Dataset) -> str:
+def reason_of(
+    names: Sequence[str],
+    other: Sequence[str],
+    explanation: Explanation,
+    dataset: Dataset,
+    limits: Limits | None = None,
+) -> str:
     """Return what the recordings lack to tell two sets apart, as an action."""
     differing = [set(_traits(n)) for n in set(names) ^ set(other)]
     common = set.intersection(*differing) if differing else set()
-    lacks = insufficient_excitation(explanation, dataset)
+    lacks = insufficient_excitation(explanation, dataset, limits)
     if "static" in common:
         return "they depend on deflection and surface only: repeat at a second pressure (2 bar, say)"
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):
         loops = [text for text in lacks if "surface" not in text]
-        another = f"repeat at {1e3 * _another_speed(dataset):.2g} mm/s"
+        another = f"repeat at {1e3 * _another_speed(dataset, limits):.2g} mm/s"
         return "; ".join(loops) or f"their loops are alike at the recorded rates: {another}"
     return "; ".join(lacks) or "the difference is smaller than these recordings can show"
 
 
-def insufficient_excitation(explanation: Explanation, dataset: Dataset) -> list[str]:
+def insufficient_excitation(
+    explanation: Explanation, dataset: Dataset, limits: Limits | None = None
+) -> list[str]:
     """Return what the recordings lack that tells effects apart, each as an action."""
     timed = explanation.excitation.timed
     lacks = []
     if not timed:
         lacks.append("no time: record it")
     elif explanation.excitation.one_speed:
-        lacks.append(f"one speed only: repeat at {1e3 * _another_speed(dataset):.2g} mm/s")
-    if len(dataset.radii) == 1:
+        lacks.append(f"one speed only: repeat at {1e3 * _another_speed(dataset, limits):.2g} mm/s")
+    mountable = set() if limits is None else set(limits.surfaces)
+    if len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):
         lacks.append("one surface only: press on a second surface")
     rates = [np.abs(e.motion.rate) for e in dataset.experiments]
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
@@ -106,11 +119,12 @@ def insufficient_excitation(explanation: Explanation, dataset: Dataset) -> list[
     return lacks
 
 
-def _another_speed(dataset: Dataset) -> float:
-    """Return a speed [m/s] far from those recorded: ten times the typical one where the rig is sure to reach that."""
+def _another_speed(dataset: Dataset, limits: Limits | None) -> float:
+    """Return a speed [m/s] far from those recorded: ten times the typical one where the rig reaches that."""
     speeds = np.concatenate([np.abs(e.motion.rate) for e in dataset.experiments])
     typical, fastest = float(np.sqrt(np.mean(speeds**2))), float(speeds.max())
-    return FASTER * typical if FASTER * typical <= max(2.0 * fastest, REACHED) else typical / FASTER
+    reached = max(2.0 * fastest, REACHED) if limits is None else limits.fastest
+    return FASTER * typical if FASTER * typical <= reached else typical / FASTER
 
 
 def _traits(name: str) -> tuple[str, ...]:

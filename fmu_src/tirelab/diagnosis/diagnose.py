@@ -11,6 +11,7 @@ from radialtire import TireModel
 from ..computing.threads import one_thread
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect
+from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
@@ -19,7 +20,7 @@ from .acceptance import accept
 from .alternatives import Alternative, alternatives_of
 from .confidence import grounds_of_effect, grounds_of_verdict, probability
 from .contradiction import Contradiction, contradiction_of
-from .discriminating_test import DiscriminatingTest, Limits, discriminate
+from .discriminating_test import DiscriminatingTest, discriminate
 from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
 from .residual_model import residual_models, unexplained_by
@@ -68,7 +69,7 @@ def diagnose(
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
     grounds = grounds_of_verdict(explanation, validation)
     confidence = probability("verdict", grounds)
-    alternatives = alternatives_of(explanation, dataset, confidence)
+    alternatives = alternatives_of(explanation, dataset, confidence, limits)
     effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
     left = remainder_told(explanation.remainder, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)

@@ -24,6 +24,7 @@ from ..computing.staging import staged
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
 from ..fmu.replay import replay
+from ..planning.rig import read_rig
 from ..recordings.files import recording_files
 from ..recordings.metadata import read_sidecar
 from ..recordings.pieces import split_piece
@@ -75,12 +76,14 @@ def run_diagnosis(
 
     Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
     """
-    return _run(_Request(tuple(recordings), out, tire, tuple(held_out), reading), progress)
+    return run_request(Request(tuple(recordings), out, tire, tuple(held_out), reading), progress)
 
 
 @dataclass(frozen=True)
-class _Request:
-    """What `run_diagnosis` is asked for; samples: whether the data behind the plots is written."""
+class Request:
+    """What `run_diagnosis` is asked for; samples: whether the data behind the plots is written; rig: file of the limits
+    of the rig that would drive the next test.
+    """
 
     recordings: tuple[Path, ...]
     out: Path
@@ -88,11 +91,14 @@ class _Request:
     held_out: tuple[Path, ...] = ()
     reading: Reading = Reading()  # noqa: RUF009
     samples: bool = True
+    rig: Path | None = None
 
 
-def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
+def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRun:
+    """Diagnose as it is asked; see `run_diagnosis`."""
     report = progress or (lambda sentence: None)
     baseline = _baseline(asked.tire)
+    limits = None if asked.rig is None else read_rig(asked.rig, {}).test_limits
     files, skipped = recording_files(asked.recordings, asked.reading.columns)
     kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
     _check_once([*files, *kept_files])
@@ -101,7 +107,9 @@ def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
     kept = [_read(file, asked.reading, report) for file in kept_files]
     _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
     origin = {
-        "command": command_line(asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading),
+        "command": command_line(
+            asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading, asked.rig
+        ),
         "date": datetime.now().astimezone().isoformat(timespec="seconds"),
         "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], asked)],
     }
@@ -111,7 +119,7 @@ def _run(asked: _Request, progress: Progress | None) -> DiagnosisRun:
             raise TirelabError("--tire and --believed-force both name a simulation; give one of them")
         baseline, fitted, kept = believed.tire, list(believed.fitted), list(believed.kept)
     try:
-        verdict = diagnose(fitted, baseline, held_out=kept, progress=report)
+        verdict = diagnose(fitted, baseline, held_out=kept, limits=limits, progress=report)
     except PoorRecording as error:
         doubts = [f"{r.name}: {doubt}" for r in fitted for doubt in r.doubts]
         raise PoorRecording("; ".join([str(error), *doubts])) from None
@@ -174,7 +182,7 @@ def _delivered(
     return content, [*more, *warnings]
 
 
-def _files_read(recordings: Sequence[Path], asked: _Request) -> list[Path]:
+def _files_read(recordings: Sequence[Path], asked: Request) -> list[Path]:
     """Return the files that a diagnosis depends on: the recordings, their settings, and the tire file."""
     named = asked.reading.settings
     parts = [split_piece(given) for given in recordings]
@@ -184,7 +192,7 @@ def _files_read(recordings: Sequence[Path], asked: _Request) -> list[Path]:
     else:
         for file, piece in parts:
             found += [file.parent / name for name in read_sidecar(file, trial=piece.trial).sources]
-    return list(dict.fromkeys([*found, *([] if asked.tire is None else [asked.tire])]))
+    return list(dict.fromkeys([*found, *(file for file in (asked.tire, asked.rig) if file is not None)]))
 
 
 def _sha256(file: Path) -> str:
@@ -200,15 +208,21 @@ def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> 
 
     The data behind the plots is not written: hundreds of blind trials would fill a disk with it.
     """
-    _run(_Request(tuple(recordings), out, tire, samples=False), None)
+    run_request(Request(tuple(recordings), out, tire, samples=False), None)
 
 
 def command_line(
-    recordings: Sequence[Path], out: Path, tire: Path | None, held_out: Sequence[Path], reading: Reading
+    recordings: Sequence[Path],
+    out: Path,
+    tire: Path | None,
+    held_out: Sequence[Path],
+    reading: Reading,
+    rig: Path | None = None,
 ) -> str:
     """Return the command that repeats a diagnosis."""
     words = ["tirelab", "diagnose", *map(str, recordings)]
     words += [] if tire is None else ["--tire", str(tire)]
+    words += [] if rig is None else ["--rig", str(rig)]
     words += ["--out", str(out), *reading.words()]
     words += [word for file in held_out for word in ("--held-out", str(file))]
     return shlex.join(words)

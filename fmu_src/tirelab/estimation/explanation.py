@@ -20,14 +20,13 @@ from ..regressors.excitation import Excitation, excitation_of
 from ..regressors.law import LAW, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.signature import in_other_noise, signatures_of
-from ..selection.discrepancy import discrepancy_of
+from ..selection.discrepancy import discrepancy_of, usual_form_error
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import search
 from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .findings import Estimate, Evidence, FittedModel, NamedEffect, Refitted
 from .fit import Fit, fitted
-from .form_error import usual_form_error
 from .noise import with_saturated_noise
 from .ranking import BEGUN, Ranking, ranked
 from .remainder import Remainder, remainder_of

@@ -51,11 +51,6 @@ def form_error(name: str) -> float:
     return CATALOGUE[SHAPE if name == LAW else name].form_error
 
 
-def usual_form_error() -> float:
-    """Return the root mean square of all form errors: what a set may miss of a misfit before its effects are known."""
-    return float(np.sqrt(np.mean([effect.form_error**2 for effect in CATALOGUE.values()])))
-
-
 def form_errors(curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray) -> FloatArray:
     """Return the columns (m, k) of the discrepancy at scale 1, in units of the noise.
 

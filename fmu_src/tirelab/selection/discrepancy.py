@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire import CATALOGUE
 
 FloatArray = NDArray[np.float64]
 
@@ -78,3 +79,8 @@ def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
     effective = min(EFFECTIVE, n / 3.0)
     lowest = 1.0 + floor**2 * max(power - n, 0.0) / effective
     return Discrepancy(n, effective, lowest, max(2.0 * power / effective, 2.0 * lowest))
+
+
+def usual_form_error() -> float:
+    """Return the root mean square of all form errors: what a set may miss of a misfit before its effects are known."""
+    return float(np.sqrt(np.mean([effect.form_error**2 for effect in CATALOGUE.values()])))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from fits import model_of
 from scipy.stats import norm
-from tirelab.diagnosis.discriminating_test import DECISIVE, WAVEFORMS, Limits, discriminate
+from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate
+from tirelab.planning.waveforms import Limits
 
 SLIPPING = {"rate_independent_hysteresis": {"slip_force": 30.0, "reach": 1e-3}}
 
@@ -30,16 +31,6 @@ def test_friction_and_viscosity_are_told_apart_by_more_than_one_rate():
 
 def test_the_separation_is_in_units_of_the_noise():
     assert fitted(3.0).separation == pytest.approx(2.0 * fitted(6.0).separation, rel=1e-6)
-
-
-@pytest.mark.parametrize("name", sorted(WAVEFORMS))
-def test_every_waveform_keeps_within_the_rig(name):
-    limits = Limits(deepest=0.02, fastest=0.15, step=0.005, longest=40.0)
-    path = WAVEFORMS[name](limits)
-    assert path.min() >= -1e-12
-    assert path.max() <= 0.02 + 1e-12
-    # A difference of samples may exceed a sine's own rate by rounding only; a corner never does.
-    assert np.abs(np.diff(path)).max() / limits.step <= 0.15 * 1.02
 
 
 def test_the_contract_of_a_test():
@@ -76,3 +67,8 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     )
     assert "5.7 times are needed" in found.sentence
     assert fitted(6.0).sufficient
+
+
+def test_it_is_driven_on_a_recorded_surface_that_can_be_mounted():
+    limits = Limits(deepest=0.02, fastest=0.1, longest=60.0, surfaces=(-0.381, 0.254))
+    assert set(discriminate(viscous(), friction(-0.381), 6.0, limits).test.surface_radius) == {-0.381}

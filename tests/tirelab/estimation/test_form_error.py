@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
-from tirelab.estimation.form_error import form_error, form_errors, smooth_functions, usual_form_error
+from tirelab.estimation.form_error import form_error, form_errors, smooth_functions
 from tirelab.names import REFITTED_LAW
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, dataset_of
@@ -55,8 +55,3 @@ def test_the_discrepancy_of_the_law_is_sized_by_what_the_law_changes_and_shaped_
 def test_nothing_has_no_discrepancy() -> None:
     dataset = driven()
     assert form_errors({}, dataset, smooth_functions(dataset)).shape == (dataset.misfit.size, 0)
-
-
-def test_the_usual_error_lies_between_the_least_and_the_largest_declared() -> None:
-    declared = [effect.form_error for effect in CATALOGUE.values()]
-    assert min(declared) < usual_form_error() < max(declared)

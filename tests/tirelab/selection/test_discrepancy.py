@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from radialtire import CATALOGUE
 from scipy.optimize import minimize_scalar
 from scipy.stats import norm
-from tirelab.selection.discrepancy import Discrepancy, discrepancy_of
+from tirelab.selection.discrepancy import Discrepancy, discrepancy_of, usual_form_error
 
 
 def test_likelihood_is_that_of_as_many_normal_samples_as_are_effective() -> None:
@@ -29,3 +30,8 @@ def test_form_error_lifts_the_lowest_variance() -> None:
     lifted = plain.above(0.5)
     assert plain.lowest == 1.0
     assert lifted.size(lifted.lowest) == pytest.approx(0.5)
+
+
+def test_the_usual_error_lies_between_the_least_and_the_largest_declared() -> None:
+    declared = [effect.form_error for effect in CATALOGUE.values()]
+    assert min(declared) < usual_form_error() < max(declared)

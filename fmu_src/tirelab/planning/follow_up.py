@@ -1,0 +1,136 @@
+"""After a diagnosis: what to record so that its verdict is told from its alternatives.
+
+For each alternative, every effect that it has and the verdict has not is asked for against the verdict's set, and every
+effect that only the verdict has against the alternative's. What was recorded already counts: its motions stand in
+plots.csv beside the diagnosis.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+from radialtire import TireModel
+
+from ..errors import TirelabError
+from ..names import UNKNOWN
+from ..regressors.law import LAW
+from .menu import FEWEST, Drive
+from .plan import Progress, RecordingPlan, motions_within, planned
+from .responses import responses_of
+from .rig import Rig
+from .separation import Question
+
+FloatArray = NDArray[np.float64]
+
+MOST_SURFACES = 3
+"""Recorded surfaces that are taken for those that can be mounted, the flattest first."""
+
+MOST_SAMPLES = 20_000
+"""Samples of each recorded motion that are simulated."""
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """What a diagnosis.json states: the verdict's names, its alternatives, the noise [N], and the recorded motions."""
+
+    names: frozenset[str]
+    alternatives: tuple[frozenset[str], ...]
+    noise: float
+    recorded: tuple[Drive, ...]
+
+    @property
+    def rig(self) -> Rig:
+        """What is known of the rig that recorded: its noise, and the surfaces and the stroke that it reached."""
+        rig = replace(Rig(), noise=self.noise)
+        if not self.recorded:
+            return rig
+        radii = np.unique(np.concatenate([d.surface_radius for d in self.recorded]))
+        surfaces = sorted((float(r) for r in radii), key=lambda r: abs(1.0 / r))[:MOST_SURFACES]
+        stroke = max(float(d.deflection.max()) for d in self.recorded)
+        return replace(rig, surfaces=tuple(surfaces), stroke=stroke)
+
+
+def read_diagnosed(path: Path) -> Diagnosed:
+    """Return what the diagnosis.json at `path`, or in that folder, states; raises TirelabError if it is none."""
+    file = path / "diagnosis.json" if path.is_dir() else path
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        verdict = content["verdict"]
+        names = frozenset(str(e["name"]) for e in verdict["effects"]) - {UNKNOWN}
+        others = tuple(frozenset(map(str, other)) - {UNKNOWN} for other in verdict["alternatives"])
+        noise = float(content["fit"]["noise"])
+        data = content.get("data")
+    except OSError as error:
+        raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise TirelabError(
+            f"{file}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
+        ) from None
+    table = None if data is None else file.parent / str(data)
+    return Diagnosed(
+        names,
+        tuple(dict.fromkeys(o for o in others if o != names)),
+        noise,
+        () if table is None or not table.is_file() else _recorded(table),
+    )
+
+
+def _recorded(file: Path) -> tuple[Drive, ...]:
+    try:
+        table = pl.read_csv(file).filter(pl.col("used") == "fitted")
+        drives = []
+        for (name,), part in table.group_by("recording", maintain_order=True):
+            rows = part[:: max(1, len(part) // MOST_SAMPLES)]
+            time, mm, cm = (
+                rows[c].cast(pl.Float64).to_numpy() for c in ("time [s]", "deflection [mm]", "radius [cm]")
+            )
+            if time.size >= FEWEST:
+                drives.append(Drive(str(name), time, mm / 1e3, cm / 100.0))
+    except (OSError, pl.exceptions.PolarsError) as error:
+        raise TirelabError(f"{file}: no motion can be read from it ({error}); diagnose again") from None
+    return tuple(drives)
+
+
+def follow_up(
+    diagnosed: Diagnosed,
+    tire: TireModel,
+    rig: Rig,
+    size: float = 0.02,
+    progress: Progress = lambda sentence: None,
+) -> RecordingPlan:
+    """Return the shortest set of recordings that tells a verdict from its alternatives.
+
+    tire: the baseline; size: of an effect that an alternative adds, largest response over the peak force
+    Raises TirelabError where there are no alternatives, or none of an effect that responds within the limits.
+    """
+    if not diagnosed.alternatives:
+        raise TirelabError("the diagnosis has no alternatives: nothing is left to tell apart")
+    possible = motions_within(rig)
+    responses = responses_of((*possible, *diagnosed.recorded), tire, rig, progress)
+    known, recorded = responses.first(len(possible))
+    questions = alternatives_asked(diagnosed, responses.names, size)
+    if not questions:
+        raise TirelabError(
+            "no effect of the alternatives responds within these limits; give a larger --stroke or a faster --speed"
+        )
+    return planned(tire, rig, known, questions, recorded, progress)
+
+
+def alternatives_asked(diagnosed: Diagnosed, heard: Sequence[str], size: float) -> tuple[Question, ...]:
+    """Return the questions between a verdict and its alternatives, of effects that respond."""
+    verdict, found = diagnosed.names, list[Question]()
+    for other in diagnosed.alternatives:
+        for one, rival in ((verdict, other), (other, verdict)):
+            rest = (rival & frozenset(heard)) | (rival & {LAW})
+            found += [
+                Question(name, rest, size, nested=rival < one)
+                for name in sorted(one - rival)
+                if name in heard
+            ]
+    return tuple(dict.fromkeys(found))

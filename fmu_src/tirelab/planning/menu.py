@@ -1,0 +1,128 @@
+"""The motions that a plan chooses from: every waveform in a few lengths on every surface of the rig."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import TireModel
+
+from ..recordings.description import surface_text
+from ..regressors.dataset import Experiment
+from ..regressors.noise_floor import NoiseFloor
+from ..simulation.simulate import simulate
+from .rig import Rig
+from .waveforms import MENU, sample_times
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+LENGTHS = (1 / 16, 1 / 8, 1 / 4)
+"""Lengths of a motion, as parts of the rig's time."""
+
+FINENESS = 15
+"""Rows in which a whole stroke at the fastest rate of a motion is simulated."""
+
+CORNER = 0.3
+"""Change of the rate from row to row, over the fastest rate, from which on the motion turns too fast to be compared."""
+
+ALLOWED = 1.02
+"""A difference of samples exceeds a sine's own rate by rounding only."""
+
+FEWEST = 32
+"""Samples of a motion at least."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One recording to be made: arrays of one length; pressure [Pa] that is held, None: as it is."""
+
+    name: str
+    time: FloatArray
+    deflection: FloatArray
+    surface_radius: FloatArray
+    pressure: float | None = None
+
+    @property
+    def duration(self) -> float:
+        """Time [s] that it takes."""
+        return float(self.time[-1] - self.time[0]) + float(self.time[1] - self.time[0])
+
+    @property
+    def fastest(self) -> float:
+        """Largest rate [m/s]."""
+        return float(np.abs(np.diff(self.deflection) / np.diff(self.time)).max())
+
+    @property
+    def surface(self) -> str:
+        """The surface in words."""
+        return surface_text(self.surface_radius)
+
+
+def drive_of(waveform: str, part: float, radius: float, rig: Rig, pressure: float | None = None) -> Drive:
+    """Return a motion of MENU that takes a part of the rig's time on a surface [m]."""
+    limits = rig.limits(part * rig.time)
+    path = MENU[waveform](limits)
+    return Drive(waveform, sample_times(limits), path, np.full(path.size, radius), pressure)
+
+
+def menu(rig: Rig) -> tuple[Drive, ...]:
+    """Return all motions that keep within the limits of the rig."""
+    pressure = rig.pressures[0] if rig.pressures else None
+    found = []
+    for radius in rig.surfaces:
+        for waveform in MENU:
+            for part in LENGTHS:
+                if part * rig.time / rig.sampling < FEWEST:
+                    continue
+                drive = drive_of(waveform, part, radius, rig, pressure)
+                if drive.fastest <= ALLOWED * rig.speed:
+                    found.append(drive)
+    return tuple(found)
+
+
+def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
+    """Return a drive as it would be compared: in rows that follow it, without misfit; noise [N] of a row's mean."""
+    rate = np.gradient(drive.deflection, drive.time)
+    acceleration = np.gradient(rate, drive.time)
+    step = float(drive.time[1] - drive.time[0])
+    fastest = max(float(np.abs(rate).max()), 1e-12)
+    stroke = max(float(np.ptp(drive.deflection)), 1e-12)
+    stride = int(max(1.0, stroke / (FINENESS * fastest * step)))
+    away = _away(np.abs(acceleration) * step > CORNER * fastest, stride)
+    rows = slice(stride // 2, None, stride)
+    moved = Drive(drive.name, drive.time[rows], drive.deflection[rows], drive.surface_radius[rows])
+    return Experiment(
+        drive.name,
+        moved.time,
+        moved.deflection,
+        rate[rows],
+        acceleration[rows],
+        moved.surface_radius,
+        simulate(tire, moved, _Kinematics(rate[rows], acceleration[rows])),
+        np.zeros(moved.time.size),
+        away[rows],
+        noise / float(np.sqrt(stride)),
+        NoiseFloor(noise, 0.0, 0.0, 0.0),
+        0.0,
+        stride,
+    )
+
+
+@dataclass(frozen=True)
+class _Kinematics:
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+def _away(corner: BoolArray, reach: int) -> BoolArray:
+    """Return where no corner lies within `reach` samples; everywhere where corners are everywhere."""
+    away = np.asarray(np.convolve(corner, np.ones(2 * reach + 1), "same") < 0.5)
+    return away if away.mean() > 0.5 else np.ones_like(away)
+
+
+def peak_force(drives: Sequence[Drive], tire: TireModel) -> float:
+    """Return the largest force [N] of the tire over all drives."""
+    return max(float(simulate(tire, d).max()) for d in drives)

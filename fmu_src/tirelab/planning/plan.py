@@ -1,0 +1,233 @@
+"""A plan: what to record within a rig's limits, and what can be told from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import TireModel
+
+from ..errors import TirelabError
+from ..regressors.law import LAW
+from .choice import TOLD, Choice, Menu, chosen_of
+from .menu import LENGTHS, Drive, drive_of, menu
+from .responses import Responses, responses_of
+from .rig import Rig
+from .separation import Question, probabilities, questions_of
+
+FloatArray = NDArray[np.float64]
+
+SIZES = (0.01, 0.02, 0.05)
+"""Sizes of an effect in the table: its largest response over the peak force."""
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is told of one effect.
+
+    named: with which probability it is named and nothing else, at each of the sizes; confused: names that it is not
+    told from in nineteen of twenty recordings at the size of the plan ("" for nothing at all), a refitted law alone
+    where that can follow it; hopeless: those of them from which no motion of the menu tells it
+    """
+
+    effect: str
+    named: tuple[float, ...]
+    confused: tuple[str, ...]
+    hopeless: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was asked, the probability of the right answer after the plan, and whether the whole menu answers it."""
+
+    question: Question
+    probability: float
+    possible: bool
+
+
+@dataclass(frozen=True)
+class RecordingPlan:
+    """Drives in the order in which they were chosen, and what is told after them.
+
+    size: for which the drives were chosen; peak [N]: the tire's largest force within the limits
+    """
+
+    rig: Rig
+    tire: str
+    size: float
+    drives: tuple[Drive, ...]
+    rows: tuple[Row, ...]
+    answers: tuple[Answer, ...]
+    silent: tuple[str, ...]
+    peak: float
+
+    @property
+    def seconds(self) -> float:
+        """Time [s] of all drives."""
+        return sum(d.duration for d in self.drives)
+
+    @property
+    def told(self) -> tuple[int, int, int]:
+        """How many of the questions are answered, how many the whole menu would answer, how many there are."""
+        told = sum(a.probability >= TOLD for a in self.answers)
+        return told, sum(a.possible for a in self.answers), len(self.answers)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of plan.json."""
+        return {
+            "tire": self.tire,
+            "rig": {
+                "stroke": self.rig.stroke,
+                "speed": self.rig.speed,
+                "surfaces": ["inf" if np.isinf(r) else r for r in self.rig.surfaces],
+                "pressures": list(self.rig.pressures),
+                "time": self.rig.time,
+                "sampling": self.rig.sampling,
+                "noise": self.rig.noise,
+            },
+            "size": self.size,
+            "peak_force": self.peak,
+            "seconds": self.seconds,
+            "recordings": [
+                {
+                    "file": file_name(number, drive),
+                    "motion": drive.name,
+                    "surface_radius": "inf"
+                    if np.isinf(drive.surface_radius[0])
+                    else float(drive.surface_radius[0]),
+                    "pressure": drive.pressure,
+                    "duration": drive.duration,
+                    "deflection_max": float(drive.deflection.max()),
+                    "rate_max": drive.fastest,
+                }
+                for number, drive in enumerate(self.drives, 1)
+            ],
+            "sizes": list(SIZES),
+            "effects": [
+                {
+                    "name": row.effect,
+                    "named": list(row.named),
+                    "confused_with": [name or "nothing" for name in row.confused],
+                    "whatever_is_driven": [name or "nothing" for name in row.hopeless],
+                }
+                for row in self.rows
+            ],
+            "no_response": list(self.silent),
+            "pairs": [
+                {
+                    "true": a.question.truth,
+                    "against": sorted(a.question.rival),
+                    "probability": a.probability,
+                    "possible": a.possible,
+                }
+                for a in self.answers
+            ],
+        }
+
+
+def file_name(number: int, drive: Drive) -> str:
+    """Return the name of a drive's file: 01_slow_triangles_flat.csv."""
+    words = [drive.name, drive.surface.replace("radius ", ""), _pressure(drive)]
+    text = "_".join(word for word in words if word).replace(",", "").replace(" ", "_")
+    return f"{number:02d}_{text}.csv"
+
+
+def _pressure(drive: Drive) -> str:
+    return "" if drive.pressure is None else f"{drive.pressure / 1e5:.3g}bar"
+
+
+def plan_recordings(
+    tire: TireModel, rig: Rig, size: float = 0.02, progress: Progress = lambda sentence: None
+) -> RecordingPlan:
+    """Return the shortest set of recordings that tells the catalogue's effects apart on a believed tire.
+
+    size: of the effects, largest response over the peak force; progress: called with a sentence for each stage
+    Raises TirelabError where no motion fits into the rig's limits.
+    """
+    responses = responses_of(motions_within(rig), tire, rig, progress)
+    questions = questions_of(responses.names, size)
+    return planned(tire, rig, responses, questions, np.zeros_like(responses.grams[0]), progress)
+
+
+def motions_within(rig: Rig) -> tuple[Drive, ...]:
+    """Return the menu of a rig; raises TirelabError where it is empty."""
+    drives = menu(rig)
+    if not drives:
+        raise TirelabError("no motion fits into these limits; give more --time or a faster --speed")
+    return drives
+
+
+def planned(
+    tire: TireModel,
+    rig: Rig,
+    responses: Responses,
+    questions: Sequence[Question],
+    recorded: FloatArray,
+    progress: Progress,
+) -> RecordingPlan:
+    """Return the plan that answers the questions; recorded (n, n): products of what was recorded already."""
+    drives = responses.drives
+    others = _at_other_pressures(rig)
+    seconds = rig.time - sum(d.duration for d in others)
+    options = Menu(
+        responses.grams, tuple(d.duration for d in drives), responses.places, tuple(questions), recorded
+    )
+    choice = chosen_of(options, seconds, progress)
+    progress("working out what is told")
+    gram = options.gram(choice.chosen)
+    pairs = zip(questions, choice.answers.tolist(), choice.possible.tolist(), strict=True)
+    return RecordingPlan(
+        rig,
+        tire.name,
+        max(q.size for q in questions),
+        (*(drives[i] for i in choice.chosen), *others),
+        _rows(questions, choice, gram, responses),
+        tuple(Answer(*pair) for pair in pairs),
+        responses.silent,
+        responses.peak,
+    )
+
+
+def _at_other_pressures(rig: Rig) -> tuple[Drive, ...]:
+    """Return the shortest slow triangles at every pressure but the first.
+
+    What depends on the deflection alone shows itself there, whatever the law's own change with the pressure.
+    """
+    part = min(LENGTHS)
+    return tuple(drive_of("slow triangles", part, rig.surfaces[0], rig, p) for p in rig.pressures[1:])
+
+
+def _rows(
+    questions: Sequence[Question], choice: Choice, gram: FloatArray, responses: Responses
+) -> tuple[Row, ...]:
+    named: dict[str, list[float]] = {}
+    for size in SIZES:
+        resized = [replace(q, size=size) for q in questions]
+        found = probabilities(gram, responses.places, resized)
+        for truth in dict.fromkeys(q.truth for q in questions):
+            own = [p for q, p in zip(questions, found, strict=True) if q.truth == truth]
+            named.setdefault(truth, []).append(float(np.mean(np.prod(own, axis=0))))
+    rows = []
+    for truth, values in named.items():
+        missed = [
+            (_against(q), bool(possible))
+            for q, p, possible in zip(questions, choice.answers, choice.possible, strict=True)
+            if q.truth == truth and p < TOLD
+        ]
+        if (LAW, False) in missed:  # a refitted law follows it, so it does beside every other effect too
+            missed = [(LAW, False)]
+        confused = tuple(dict.fromkeys(name for name, _ in missed))
+        hopeless = tuple(dict.fromkeys(name for name, possible in missed if not possible))
+        rows.append(Row(truth, tuple(values), confused, hopeless))
+    return tuple(rows)
+
+
+def _against(question: Question) -> str:
+    """Return the name that stands for a rival: the other effect, else the law, else "" for nothing."""
+    effects = sorted(question.rival - {LAW})
+    return " + ".join(effects) if effects else next(iter(question.rival), "")

@@ -1,0 +1,156 @@
+"""What every effect would add to the force on each motion of a menu, and the products of all of it.
+
+Each effect is drawn a few times from its priors; a draw is made so strong that its largest response within the limits
+of the rig is a stated part of the peak force, and taken as linear in that size. Everything that a plan needs to know of
+a motion are the products of these curves with each other over its rows, in units of the noise: products of several
+motions add up, since the tire begins each recording at rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE, Effect, TireModel
+
+from ..regressors.dataset import Dataset, Experiment, arranged
+from ..regressors.draws import drawn
+from ..regressors.law import FACTOR, LAW, candidates, law_signature
+from ..regressors.scales import Scales
+from ..regressors.signature import SILENT, size_of, strengthened
+from ..simulation.simulate import simulate
+from .menu import Drive, experiment_of, peak_force
+from .rig import Rig
+
+FloatArray = NDArray[np.float64]
+
+DRAWS = 8
+"""Draws of an effect."""
+
+SIZED_AT = 0.02
+"""Size at which responses are computed, largest response over peak force: in the middle of 1 to 5 %."""
+
+PRIOR_OF_LAW = "prior of the law"
+"""The columns of the law's signature at its declared standard deviations."""
+
+
+@dataclass(frozen=True)
+class Responses:
+    """Products (n, n) of all columns on each drive, in units of the noise.
+
+    places: of each effect its draws, at the size 1 (largest response: the peak force), and of the law its prior
+    silent: effects that have no response within these limits; peak [N]: the largest force
+    """
+
+    drives: tuple[Drive, ...]
+    grams: tuple[FloatArray, ...]
+    places: Mapping[str, slice]
+    silent: tuple[str, ...]
+    peak: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Effects that respond, and the law."""
+        return tuple(name for name in self.places if name != PRIOR_OF_LAW)
+
+    def first(self, count: int) -> tuple[Responses, FloatArray]:
+        """Return the first drives alone, and the products over all others."""
+        others = sum(self.grams[count:], start=np.zeros_like(self.grams[0]))
+        return replace(self, drives=self.drives[:count], grams=self.grams[:count]), others
+
+
+def responses_of(
+    drives: Sequence[Drive], tire: TireModel, rig: Rig, progress: Callable[[str], None]
+) -> Responses:
+    """Return the products of the responses of all effects and of a refitted law on the drives."""
+    experiments = [experiment_of(d, tire, rig.noise) for d in drives]
+    peak = peak_force(drives, tire)
+    dataset = Dataset(tuple(experiments), tire, _scales(experiments, rig, peak))
+    progress("sizing the effects")
+    first = [e for e in experiments if e.surface_radius[0] == rig.surfaces[0]]
+    sets = _sized_sets(replace(dataset, experiments=tuple(first)), peak)
+    progress("simulating the effects on every motion")
+    law = law_signature(dataset)
+    prior = law.basis * size_of(FACTOR * dataset.stacked([e.baseline for e in experiments]))
+    changes = _law_draws(prior, dataset, peak)
+    places = _places({name: len(values) for name, values in sets.items()}, changes.shape[1], prior.shape[1])
+    grams, begin = [], 0
+    for experiment in experiments:
+        part = replace(dataset, experiments=(experiment,))
+        end = begin + int(experiment.counts.sum())
+        columns = [
+            part.response(arranged(tire, [(name, values)])) / size
+            for name, found in sets.items()
+            for values, size in found
+        ]
+        whole = np.column_stack([*columns, changes[begin:end], prior[begin:end]])
+        grams.append(whole.T @ whole)
+        begin = end
+    silent = tuple(name for name in candidates() if name not in sets)
+    return Responses(tuple(drives), tuple(grams), places, silent, peak)
+
+
+def _places(draws: Mapping[str, int], changes: int, prior: int) -> dict[str, slice]:
+    places, begin = {}, 0
+    for name, width in (*draws.items(), (LAW, changes), (PRIOR_OF_LAW, prior)):
+        places[name] = slice(begin, begin + width)
+        begin += width
+    return places
+
+
+Sized = list[tuple[tuple[float, ...], float]]
+
+
+def _sized_sets(dataset: Dataset, peak: float) -> dict[str, Sized]:
+    """Return of each effect its draws and their sizes: largest response on any motion over the peak force."""
+    found = {}
+    for name in candidates():
+        sets, _ = drawn(CATALOGUE[name], dataset.scales, DRAWS)
+        sized = [_sized(CATALOGUE[name], values, dataset, peak) for values in sets]
+        heard = [(tuple(values), size) for values, size in sized if size > SILENT]
+        if len(heard) > 1:
+            found[name] = heard
+    return found
+
+
+def _sized(effect: Effect, values: list[float], dataset: Dataset, peak: float) -> tuple[list[float], float]:
+    roles = [p.role for p in effect.parameters]
+    if "limit" in roles:  # a ceiling acts by what is above it
+        values = [(1.0 - SIZED_AT) * peak if r == "limit" else v for r, v in zip(roles, values, strict=True)]
+    size = 0.0
+    for _ in range(3):
+        size = _largest(arranged(dataset.tire, [(effect.name, tuple(values))]), dataset.experiments) / peak
+        if not np.isfinite(size):
+            return values, 0.0
+        if size <= 0.0 or "strength" not in roles or 0.5 < size / SIZED_AT < 2.0:
+            break
+        values = strengthened(effect, values, SIZED_AT / size)
+    return values, size
+
+
+def _largest(tire: TireModel, experiments: Sequence[Experiment]) -> float:
+    """Return the largest change of the force [N] at any compared row."""
+    return max(float(np.abs(simulate(tire, e, e) - e.baseline)[e.counts].max()) for e in experiments)
+
+
+def _law_draws(prior: FloatArray, dataset: Dataset, peak: float) -> FloatArray:
+    """Return changes of the law drawn from its prior, of the size 1."""
+    draws = prior @ np.random.default_rng(1).standard_normal((prior.shape[1], DRAWS))
+    noise = dataset.gathered([np.full(e.time.size, e.noise) for e in dataset.experiments])
+    return np.asarray(draws / (np.abs(draws * noise[:, None]).max(axis=0) / peak))
+
+
+def _scales(experiments: Sequence[Experiment], rig: Rig, peak: float) -> Scales:
+    rate = np.concatenate([e.rate[e.counts] for e in experiments])
+    acceleration = np.concatenate([e.acceleration[e.counts] for e in experiments])
+    return Scales(
+        force=peak,
+        travel=rig.stroke,
+        duration=max(float(e.time[-1] - e.time[0]) for e in experiments),
+        interval=rig.sampling,
+        rate=max(float(np.sqrt(np.mean(rate**2))), 1e-12),
+        acceleration=max(float(np.sqrt(np.mean(acceleration**2))), 1e-12),
+        gauge=1e-12,
+    )

@@ -1,0 +1,150 @@
+"""Score recording plans: verdicts after a planned set against verdicts after as much time of slow triangles.
+
+Run: python -m tirelab.validation.plans --seed SEED --trials N
+
+The independent rig hides something in a tire. On its surfaces and within its depth a plan is made from the baseline
+tire and the noise alone; the rig drives it, and it drives slow triangles of the same number, lengths and surfaces. Both
+sets are diagnosed. A verdict is right where it is the hidden set, wrong where it is another one, and undecided where
+its confidence is below a half.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tempfile
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import click
+import concealed
+import numpy as np
+from concealed.__main__ import trial_seed
+from radialtire import TireModel
+
+from ..computing.workers import Cores, work
+from ..diagnosis.diagnose import diagnose
+from ..names import UNKNOWN
+from ..planning.menu import Drive
+from ..planning.plan import plan_recordings
+from ..planning.rig import Rig
+from ..planning.waveforms import slow_triangles
+from ..recordings.recording import Recording
+from .baseline import baseline_tire
+from .folders import read_json
+
+SPEED, SAMPLING, TIME = 0.2, 0.005, 120.0
+"""Fastest motion [m/s], sampling step [s] and time [s] of the rig: a servo-hydraulic one for two minutes."""
+
+MOST_SURFACES = 2
+"""Surfaces of a trial that are mounted."""
+
+DECIDED = 0.5
+"""Least confidence of a verdict that decides."""
+
+Outcome = Literal["right", "wrong", "undecided"]
+
+
+def compare_plan(seed: int, number: int, kind: str | None) -> dict[str, Any]:
+    """Return what was hidden in one trial, and verdict, confidence and outcome after each set of recordings."""
+    trial = concealed.draw(trial_seed(seed, number), kind=kind)
+    truth = frozenset(trial.answer.right[0]) - {"none"}
+    tire = _baseline(trial)
+    rig = rig_of(trial)
+    plan = plan_recordings(tire, rig)
+    slow = [slow_instead(drive, rig) for drive in plan.drives]
+    first, second = (_verdict(trial, drives, tire, truth) for drives in (plan.drives, slow))
+    return {
+        "truth": sorted(truth),
+        "planned": first,
+        "triangles": second,
+        "seconds": plan.seconds,
+        "motions": [drive.name for drive in plan.drives],
+    }
+
+
+def _baseline(trial: concealed.Trial) -> TireModel:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "baseline.json"
+        concealed.write_baseline(trial, path)
+        return baseline_tire(read_json(path))
+
+
+def rig_of(trial: concealed.Trial) -> Rig:
+    """Return the limits of a rig that mounts the trial's surfaces, as deep as all of them allow."""
+    radii = np.concatenate([record.radius for record in trial.train])
+    depth = np.concatenate([record.deflection for record in trial.train])
+    surfaces = sorted(set(radii.tolist()), key=lambda r: abs(1.0 / r))[:MOST_SURFACES]
+    stroke = min(float(depth[radii == r].max()) for r in surfaces)
+    return Rig(stroke, SPEED, tuple(surfaces), (), TIME, SAMPLING, trial.noise)
+
+
+def slow_instead(drive: Drive, rig: Rig) -> Drive:
+    """Return slow triangles of the length and on the surface of a drive."""
+    path = slow_triangles(rig.limits(drive.duration))[: drive.time.size]
+    return replace(drive, name="slow triangles", deflection=np.resize(path, drive.time.size))
+
+
+def _verdict(
+    trial: concealed.Trial, drives: Sequence[Drive], tire: TireModel, truth: frozenset[str]
+) -> tuple[list[str], float, Outcome]:
+    recordings = []
+    for number, drive in enumerate(drives):
+        record = concealed.rerun(
+            trial, drive.time, drive.deflection, drive.surface_radius, seed=number + 1, name=f"test_{number}"
+        )
+        recordings.append(Recording(record.name, record.time, record.deflection, record.radius, record.force))
+    verdict = diagnose(recordings, tire)
+    names = {effect.name for effect in verdict.effects} | ({UNKNOWN} if verdict.unexplained_by else set())
+    outcome: Outcome = "right" if names == truth else "wrong"
+    if verdict.confidence < DECIDED:
+        outcome = "undecided"
+    return sorted(names), verdict.confidence, outcome
+
+
+def summary(found: Sequence[dict[str, Any]]) -> list[str]:
+    """Return the counts of both sets, and how many of the missed verdicts the plan leaves."""
+    lines, missed = [], {}
+    for arm in ("planned", "triangles"):
+        counts = Counter(row[arm][2] for row in found)
+        missed[arm] = counts["wrong"] + counts["undecided"]
+        lines.append(
+            f"{arm:10s} {counts['right']} right, {counts['wrong']} wrong, {counts['undecided']} undecided "
+            f"of {len(found)}"
+        )
+    ratio = missed["planned"] / missed["triangles"] if missed["triangles"] else math.nan
+    lines.append(
+        f"wrong or undecided after the plan over after the triangles: {ratio:.2f} (wanted: at most 0.33)"
+    )
+    return lines
+
+
+@click.command()
+@click.option("--seed", type=click.IntRange(min=0), required=True)
+@click.option("--trials", type=click.IntRange(min=1), default=12, show_default=True)
+@click.option("--kind", type=click.Choice(list(concealed.KINDS)), default="single", show_default=True)
+@click.option("--jobs", type=int, default=1, show_default=True, help="Number of processes.")
+@click.option("--out", type=click.Path(path_type=Path), help="File for the trials, one JSON line each.")
+def main(seed: int, trials: int, kind: str, jobs: int, out: Path | None) -> None:
+    """Print the verdicts of every trial after a planned set and after slow triangles, and their counts."""
+    found = []
+    tasks = {str(n): (seed, n, kind) for n in range(trials)}
+    for done in work(compare_plan, tasks, Cores(jobs, None), "comparing plans"):
+        if done.value is None:
+            click.echo(f"trial {done.key} failed: {done.error}")
+            continue
+        found.append(done.value)
+        line = json.dumps({"trial": int(done.key), **done.value})
+        click.echo(line)
+        if out is not None:
+            with out.open("a", encoding="utf-8") as stream:
+                stream.write(line + "\n")
+    for text in summary(found):
+        click.echo(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+"""A plan for a small rig and three effects."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from radialtire import TireModel
+from small_rig import EFFECTS, RIG, few_effects
+from tirelab.errors import TirelabError
+from tirelab.planning.plan import SIZES, RecordingPlan, file_name, plan_recordings
+from tirelab.regressors.law import LAW
+
+
+@pytest.fixture
+def plan(monkeypatch: pytest.MonkeyPatch) -> RecordingPlan:
+    few_effects(monkeypatch)
+    return plan_recordings(TireModel(), RIG, 0.05)
+
+
+def test_it_keeps_the_time_and_tells_what_the_rig_can_tell(plan: RecordingPlan) -> None:
+    told, possible, asked = plan.told
+    assert 0.0 < plan.seconds <= RIG.time
+    assert told <= possible <= asked == 3 * 3 + 1 + 3
+    assert told > 0.5 * asked
+
+
+def test_friction_and_damping_need_more_than_one_rate(plan: RecordingPlan) -> None:
+    rates = {round(math.log10(d.fastest)) for d in plan.drives}
+    mixed = {"triangles at three rates", "sweep", "ramp and hold", "small sines about two means"}
+    assert len(rates) > 1 or mixed & {d.name for d in plan.drives}
+
+
+def test_larger_effects_are_named_more_often(plan: RecordingPlan) -> None:
+    assert {row.effect for row in plan.rows} == {*EFFECTS, LAW}
+    for row in plan.rows:
+        assert len(row.named) == len(SIZES)
+        assert row.named[0] <= row.named[1] + 0.02 <= row.named[2] + 0.04
+        assert set(row.hopeless) <= set(row.confused)
+
+
+def test_less_noise_needs_less_time(plan: RecordingPlan) -> None:
+    quiet = plan_recordings(TireModel(), replace(RIG, noise=1.0), 0.05)
+    assert quiet.told[0] >= plan.told[0]
+    assert quiet.seconds <= plan.seconds + 1e-9
+
+
+def test_slow_triangles_at_each_other_pressure(plan: RecordingPlan) -> None:
+    at_two = plan_recordings(TireModel(), replace(RIG, pressures=(2e5, 3e5)), 0.05)
+    assert [d.pressure for d in at_two.drives] == [2e5] * (len(at_two.drives) - 1) + [3e5]
+    assert at_two.drives[-1].name == "slow triangles"
+    assert at_two.seconds <= RIG.time
+    assert file_name(7, at_two.drives[-1]) == "07_slow_triangles_flat_3bar.csv"
+
+
+def test_its_content_is_json(plan: RecordingPlan) -> None:
+    content = json.loads(json.dumps(plan.to_dict(), allow_nan=False))
+    assert content["rig"]["surfaces"] == ["inf"]
+    assert content["recordings"][0]["file"].startswith("01_")
+    assert len(content["pairs"]) == plan.told[2]
+
+
+def test_limits_without_any_motion_are_refused() -> None:
+    with pytest.raises(TirelabError, match="no motion fits into these limits"):
+        plan_recordings(TireModel(), replace(RIG, time=0.2))

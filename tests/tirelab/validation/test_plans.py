@@ -1,0 +1,40 @@
+"""The score of recording plans."""
+
+import concealed
+import numpy as np
+import pytest
+from concealed.__main__ import trial_seed
+from tirelab.planning.menu import drive_of
+from tirelab.planning.rig import Rig
+from tirelab.validation.plans import TIME, rig_of, slow_instead, summary
+
+
+def test_slow_triangles_take_the_same_time_on_the_same_surface() -> None:
+    rig = Rig(surfaces=(0.254,), time=60.0)
+    for name in ("ramp and hold", "sweep"):
+        drive = drive_of(name, 0.25, 0.254, rig)
+        slow = slow_instead(drive, rig)
+        assert slow.duration == drive.duration
+        assert np.array_equal(slow.surface_radius, drive.surface_radius)
+        assert slow.fastest < 0.1 * rig.speed
+        assert slow.deflection.max() > 0.95 * rig.stroke
+
+
+def test_the_rig_is_that_of_the_trial() -> None:
+    trial = concealed.draw(trial_seed(5, 1), kind="single")
+    rig = rig_of(trial)
+    radii = np.unique(np.concatenate([r.radius for r in trial.train]))
+    assert set(rig.surfaces) <= set(radii.tolist())
+    assert rig.stroke <= max(float(r.deflection.max()) for r in trial.train)
+    assert (rig.noise, rig.time) == (trial.noise, TIME)
+
+
+def test_the_summary_counts() -> None:
+    rows = [
+        {"planned": ([], 0.9, one), "triangles": ([], 0.9, other)}
+        for one, other in (("right", "wrong"), ("right", "undecided"), ("wrong", "wrong"), ("right", "right"))
+    ]
+    first, second, ratio = summary(rows)
+    assert "3 right, 1 wrong, 0 undecided of 4" in first
+    assert "1 right, 2 wrong, 1 undecided of 4" in second
+    assert pytest.approx(1 / 3, abs=0.01) == float(ratio.split(": ")[1].split()[0])
