@@ -71,5 +71,6 @@ def _packed(tire: TireModel, folder: Path) -> Path:
     from ..fmu.native.make import PLATFORMS
     from ..fmu.native.pack import build_native_fmu
 
-    native = fmpy.platform in {platform.fmi2 for platform in PLATFORMS}
-    return (build_native_fmu if native else build_fmu)(tire, folder).path
+    if fmpy.platform in {platform.fmi2 for platform in PLATFORMS}:
+        return build_native_fmu(tire, folder).path
+    return build_fmu(tire, folder).path
