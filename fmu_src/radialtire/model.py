@@ -148,6 +148,17 @@ class TireModel:
         )
         return force, tuple(after)
 
+    def tire_deflection(self, deflection: float, surface_radius: float, time: float, state: State) -> float:
+        """Return the tire's own deflection [m] at `time` [s]: the measured one after offset, lag and series springs."""
+        if not self.effects:
+            return deflection
+        path, parameters, _ = self._flat
+        law = self.law.coefficients(surface_radius)
+        _, x = flat_step.step(
+            path, law, (deflection, surface_radius, time, 0.0, 0.0), parameters, state, list(state)
+        )
+        return x
+
     def stiffness(self, deflection: float, surface_radius: float, state: State) -> float:
         """Return the tangent dF/dx [N/m] at the time of `state`, everything but the deflection held constant.
 
