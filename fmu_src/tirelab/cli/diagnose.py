@@ -69,7 +69,7 @@ STAGES = MappingProxyType(
 @click.option(
     "--fmu",
     type=FILE,
-    help="Look for effects beside a simulation: its FMU, of tirelab or of anybody. Native code: use only one you trust.",
+    help="Look for effects beside a simulation: its FMU, whoever made it. Native code: use one that you trust.",
 )
 @click.option(
     "--variables",

@@ -74,8 +74,8 @@ def run_diagnosis(
 ) -> DiagnosisRun:
     """Diagnose files or folders of recordings and write everything into `out`.
 
-    tire: file of the baseline tire, None for the article's, or the FMU of a simulation; held_out: recordings that are not fitted; reading: how
-    the files are read; progress: called with a sentence for each stage
+    tire: file of the baseline tire, None for the article's, or the FMU of a simulation; held_out: recordings that are
+    not fitted; reading: how the files are read; progress: called with a sentence for each stage
 
     Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
     """

@@ -145,9 +145,10 @@ def read_foreign(asked: Simulation) -> ForeignFmu:
     assert force is not None
     taken = {deflection.name, force.name, *([] if radius is None else [radius.name])}
     left = [name for name in inputs if name not in taken]
+    tool = description.generationTool or "an unknown tool"
     said = [
-        f"{path.name} (FMI {description.fmiVersion}, {kind}, of {description.generationTool or 'an unknown tool'}): its "
-        f"{deflection.name} is taken for the deflection, its {force.name} for the force"
+        f"{path.name} (FMI {description.fmiVersion}, {kind}, of {tool}): its {deflection.name} is "
+        f"taken for the deflection, its {force.name} for the force"
         + ("" if radius is None else f", its {radius.name} for the surface's radius")
         + (f"; left at their start: {', '.join(left)}" if left else "")
     ]

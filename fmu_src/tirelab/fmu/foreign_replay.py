@@ -24,6 +24,7 @@ from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire import FLAT_RADIUS
 
 from ..errors import TirelabError
 from .foreign import ForeignFmu
@@ -56,8 +57,8 @@ def replay_foreign(
     even = _evened(fmu, motion.time)
     inputs = {fmu.deflection: motion.deflection}
     if fmu.radius is not None:
-        inputs[fmu.radius] = motion.surface_radius
-    columns = [np.interp(even, motion.time, values) / terminal.factor for terminal, values in inputs.items()]
+        inputs[fmu.radius] = np.clip(motion.surface_radius, -FLAT_RADIUS, FLAT_RADIUS)
+    columns = [_at(even, motion.time, values) / terminal.factor for terminal, values in inputs.items()]
     table = np.column_stack([even, *columns])
     job = {
         "kind": fmu.kind,
@@ -93,6 +94,12 @@ def _evened(fmu: ForeignFmu, times: FloatArray) -> FloatArray:
     return np.asarray(times[0] + step * np.arange(count + 1))
 
 
+def _at(wanted: FloatArray, times: FloatArray, values: FloatArray) -> FloatArray:
+    """Return values on straight lines between `times` [s], and on the last of them beyond its end."""
+    beyond = 2.0 * times[-1] - times[-2], 2.0 * values[-1] - values[-2]
+    return np.asarray(np.interp(wanted, np.append(times, beyond[0]), np.append(values, beyond[1])))
+
+
 @dataclass(frozen=True)
 class _Watch:
     """What is known of a replay: the FMU, the recording and its samples, the time limit [s], and whom to tell."""
@@ -105,6 +112,7 @@ class _Watch:
 
     def refusal(self, what: str, said: str) -> TirelabError:
         """Return the error of an FMU that failed."""
+        said = " ".join(said.split())
         return TirelabError(f"{self.fmu} {what} on {self.recording}; its last message: {said}")
 
 

@@ -1,0 +1,232 @@
+"""Beside the FMU of somebody else the effects are found, and simulation and correction together run as stated."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import jsonschema
+import numpy as np
+import polars as pl
+import pytest
+from click.testing import CliRunner
+from drives import Drive, ride, saved
+from fmpy.ssp.simulation import simulate_ssp
+from radialtire import TireModel, read_tire
+from tirelab.cli import main
+from tirelab.fmu.build import build_fmu
+from tirelab.simulation.simulate import simulate
+
+SPRING, DAMPER, OFFSET, DRIFT, NOISE = 1e5, 300.0, -0.0015, 8.0, 4.0
+
+SPRING_DAMPER = Path(__file__).parents[1] / "fmu" / "foreign_models.py"
+
+
+@dataclass(frozen=True)
+class Done:
+    """A diagnosis that was written: its folder, its diagnosis.json, and what was printed."""
+
+    out: Path
+    content: Any
+    printed: str
+
+
+def recorded(folder: Path, name: str, seed: int, offset: float, drift: float) -> Path:
+    """A spring and a damper at a shifted deflection, and a drift [N/s] of the force, under 4 N of noise."""
+    time, x, _ = ride(seed, samples=3000)
+    force = SPRING * (x + offset) + DAMPER * np.append(0.0, np.diff(x) / np.diff(time))
+    force += drift * time + NOISE * np.random.default_rng(seed).standard_normal(x.size)
+    file = folder / f"{name}{seed}.csv"
+    pl.DataFrame({"time [s]": time, "deflection [m]": x, "force [N]": force}).write_csv(file)
+    return file
+
+
+def diagnosed(*words: str | Path) -> str:
+    done = CliRunner().invoke(main, ["diagnose", *map(str, words)])
+    assert done.exit_code == 0, done.output
+    return done.output
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    import importlib.util
+
+    spec = importlib.util.spec_from_file_location("foreign_models", SPRING_DAMPER)
+    assert spec is not None
+    assert spec.loader is not None
+    models = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(models)
+    return Path(models.spring_damper(tmp_path_factory.mktemp("model")))
+
+
+def beside(model: Path, folder: Path, offset: float, drift: float) -> Done:
+    files = [recorded(folder, "press", seed, offset, drift) for seed in (1, 2)]
+    words = [files[0], "--held-out", files[1], "--radius", "flat", "--fmu", model]
+    printed = diagnosed(*words, "--variables", "force=wheel_load", "--out", folder / "out")
+    content = json.loads((folder / "out" / "diagnosis.json").read_text(encoding="utf-8"))
+    return Done(folder / "out", content, printed)
+
+
+@pytest.fixture(scope="module")
+def shifted(model: Path, tmp_path_factory: pytest.TempPathFactory) -> Done:
+    """The simulation reads a deflection whose zero is 1.5 mm off: an effect before it."""
+    return beside(model, tmp_path_factory.mktemp("shifted"), OFFSET, 0.0)
+
+
+@pytest.fixture(scope="module")
+def drifting(model: Path, tmp_path_factory: pytest.TempPathFactory) -> Done:
+    """The simulation lacks a drift of the load cell of 8 N/s: an effect beside it."""
+    return beside(model, tmp_path_factory.mktemp("drifting"), 0.0, DRIFT)
+
+
+def names(done: Done) -> list[str]:
+    return [effect["name"] for effect in done.content["verdict"]["effects"]]
+
+
+def test_an_offset_before_the_simulation_is_found_and_given_to_it(shifted: Done) -> None:
+    assert names(shifted) == ["deflection_offset"]
+    entry = shifted.content["correction"]
+    assert entry["moves"] is True
+    assert (entry["fmu"], entry["system"], entry["simulation"]) == (
+        "Correction.fmu",
+        "Corrected.ssp",
+        "SpringDamper.fmu",
+    )
+    offset = shifted.content["verdict"]["effects"][0]["parameters"]["offset"]["value"]
+    assert offset == pytest.approx(OFFSET, rel=0.02)
+
+
+def test_a_drift_beside_the_simulation_is_found_and_added(drifting: Done) -> None:
+    assert names(drifting) == ["force_drift"]
+    assert drifting.content["correction"]["moves"] is False
+
+
+@pytest.mark.parametrize("which", ["shifted", "drifting"])
+def test_the_stated_errors_are_those_of_simulation_and_correction(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    """Before: all that was put in; after: the noise alone."""
+    done: Done = request.getfixturevalue(which)
+    fit = done.content["fit"]
+    for seed, key in ((1, ""), (2, "held_out_")):
+        table = pl.read_csv(done.out / f"press{seed}.corrected.csv")
+        force = table["force [N]"].to_numpy()
+        for column, error in (("believed_force [N]", "before"), ("corrected_force [N]", "after")):
+            difference = force - table[column].to_numpy()
+            assert np.sqrt(np.mean(difference**2)) == pytest.approx(fit[key + error], rel=1e-6)
+        assert fit[key + "after"] < 1.25 * NOISE
+        assert fit[key + "before"] > 10.0 * NOISE
+
+
+@pytest.mark.parametrize("which", ["shifted", "drifting"])
+def test_fmpy_runs_the_system_and_reaches_the_stated_force(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    """fmpy hands a value on one step later: three connections, so three steps of a twentieth of the sampling."""
+    done: Done = request.getfixturevalue(which)
+    samples, finer = 300, 20
+    table = pl.read_csv(done.out / "press2.corrected.csv")[:samples]
+    time, x, corrected = (
+        table[name].to_numpy() for name in ("time [s]", "deflection [m]", "corrected_force [N]")
+    )
+    step = float(time[1] - time[0]) / finer
+    result = simulate_ssp(
+        str(done.out / "Corrected.ssp"),
+        stop_time=time[-1] + 4 * step,
+        step_size=step,
+        input={"deflection": lambda t: float(np.interp(t, time, x))},
+    )
+    force = np.interp(time + 3 * step, result["time"], result["corrected_force"])
+    # the damper sees the rate of a twentieth of a sample where the replay saw that of a whole one; the ends are cut off
+    bends = np.abs(np.diff(x, 2)) / np.diff(time)[1:]
+    assert np.max(np.abs(force - corrected)[5:-2]) < DAMPER * np.max(bends) + 0.1
+    recorded_force = table["force [N]"].to_numpy()
+    reached = np.sqrt(np.mean((force - recorded_force)[5:-2] ** 2))
+    assert reached == pytest.approx(np.sqrt(np.mean((corrected - recorded_force)[5:-2] ** 2)), rel=0.05)
+
+
+def test_the_system_is_what_the_standard_says(shifted: Done, drifting: Done) -> None:
+    """SSP 1.0: fmpy's copy of the schema is checked as it is written; here what it connects."""
+    for done, through in ((shifted, True), (drifting, False)):
+        with zipfile.ZipFile(done.out / "Corrected.ssp") as archive:
+            assert set(archive.namelist()) == {
+                "SystemStructure.ssd",
+                "resources/Simulation.fmu",
+                "resources/Correction.fmu",
+            }
+            root = ElementTree.fromstring(archive.read("SystemStructure.ssd"))
+        space = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
+        assert root.get("version") == "1.0"
+        found = {
+            (c.get("startElement"), c.get("startConnector"), c.get("endElement"), c.get("endConnector"))
+            for c in root.iter(f"{space}Connection")
+        }
+        start = ("before", "tire_deflection") if through else (None, "deflection")
+        assert (*start, "simulation", "displacement") in found
+        assert ("simulation", "wheel_load", "correction", "simulated_force") in found
+        assert ("correction", "corrected_force", None, "corrected_force") in found
+
+
+def test_what_is_printed_says_what_was_taken_and_that_it_is_native_code(shifted: Done) -> None:
+    printed = shifted.printed
+    assert "its displacement is taken for the deflection" in printed
+    assert "is native code" in printed
+    assert printed.index("is native code") < printed.index("replaying SpringDamper.fmu")
+    assert "Corrected.ssp" in printed
+
+
+def test_the_file_follows_its_schema(shifted: Done, repository: Path) -> None:
+    schema = json.loads((repository / "examples/docs/diagnosis.schema.json").read_text(encoding="utf-8"))
+    jsonschema.validate(shifted.content, schema)
+
+
+def test_our_own_fmu_is_its_tire(tmp_path: Path) -> None:
+    time, x, rate = ride(1, samples=2000)
+    tire = TireModel(name="mine")
+    bare = Drive("a", time, x, np.full(x.size, np.inf), x)
+    force = simulate(tire, bare) + 500.0 * rate + NOISE * np.random.default_rng(1).standard_normal(x.size)
+    file = saved(Drive("a", time, x, np.full(x.size, np.inf), force), tmp_path / "a.csv")
+    fmu = build_fmu(tire, tmp_path / "fmu").path
+    printed = diagnosed(file, "--fmu", fmu, "--out", tmp_path / "out")
+    assert "the baseline is the tire inside BicycleTire.fmu: mine" in printed
+    assert "is native code" not in printed
+    corrected = read_tire(tmp_path / "out" / "tire.json")
+    assert [effect.name for effect, _ in corrected.effects] == ["viscous_damping"]
+    assert corrected.law == tire.law
+    assert (tmp_path / "out" / "BicycleTire.fmu").is_file()
+    assert not (tmp_path / "out" / "Correction.fmu").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "match"),
+    [
+        (["--tire", "{fmu}"], "both name a simulation"),
+        (["--fmu-timeout", "0"], "give seconds, more than 0"),
+        (["--each"], "--each takes a tire file"),
+        (["--variables", "force=weight"], "no real output 'weight'"),
+        (["--variables", "force=wheel_load", "--fmu-timeout", "0.01"], "was ended after 0.01 s"),
+    ],
+)
+def test_bad_options_are_refused_in_one_sentence(
+    words: list[str], match: str, model: Path, tmp_path: Path
+) -> None:
+    file = recorded(tmp_path, "a", 1, 0.0, 0.0)
+    given = [word.replace("{fmu}", str(model)) for word in words]
+    out = tmp_path / "out"
+    done = CliRunner().invoke(
+        main, ["diagnose", str(file), "--radius", "flat", "--fmu", str(model), "--out", str(out), *given]
+    )
+    assert done.exit_code == 2, done.output
+    assert match in done.output
+    assert not out.exists()
+
+
+def test_variables_without_an_fmu_are_refused(tmp_path: Path) -> None:
+    file = recorded(tmp_path, "a", 1, 0.0, 0.0)
+    done = CliRunner().invoke(main, ["diagnose", str(file), "--variables", "force=F"])
+    assert done.exit_code == 2
+    assert "those of --fmu" in done.output
