@@ -270,7 +270,7 @@ class BicycleTire(Fmi2Slave):
             return False
         self._state = state
         self._reached = current_time + step_size
-        if not self._tire.effects:
+        if self._tire.bare:
             self._surface, self._elastic = R, power_law.on_surface(*self._tire.law.coefficients(R))
         return True
 
@@ -321,7 +321,10 @@ class BicycleTire(Fmi2Slave):
         name = self._tire.name or MODEL
         root.set("modelName", name)
         source = f" ({self._tire.source})" if self._tire.source else ""
-        root.set("description", f"Radial force of a bicycle tire on flat or curved ground: {name}{source}")
+        learned = "" if self._tire.remainder is None else f"; with {self._tire.remainder}"
+        root.set(
+            "description", f"Radial force of a bicycle tire on flat or curved ground: {name}{source}{learned}"
+        )
         root.set("version", hashlib.sha256(to_text(self._tire).encode()).hexdigest()[:12])
         traits = dict(TRAITS)
         for vr, (parameter, _) in enumerate(parameters_of(self._tire).values(), FIRST_PARAMETER):
@@ -329,7 +332,7 @@ class BicycleTire(Fmi2Slave):
             finite = {key: repr(float(bound)) for key, bound in bounds.items() if math.isfinite(bound)}
             unit_of = {"unit": parameter.unit} if parameter.unit in BASE_UNITS else {}
             traits[vr] = {**unit_of, **finite}
-        if not self._tire.effects:  # damping, inertia or a wrong zero can make the force negative
+        if self._tire.bare:  # damping, inertia or a wrong zero can make the force negative
             for vr in (RADIAL_FORCE, RADIAL_STIFFNESS):
                 traits[vr] = {**traits[vr], "min": "0"}
         variables = root.find("ModelVariables")

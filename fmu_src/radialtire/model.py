@@ -8,8 +8,21 @@ from typing import ClassVar, Protocol
 
 from . import flat_step, hull1996, power_law
 from .effect import PLACES, Effect, State
-from .flat_step import FOLLOWED, NOISE, PARAMETERS, TIME, TRACK, TRACKED, SignalPath, laid_out
+from .flat_step import (
+    ACCELERATION,
+    FOLLOWED,
+    NOISE,
+    PARAMETERS,
+    RATE,
+    TANGENT_STEP,
+    TIME,
+    TRACK,
+    TRACKED,
+    SignalPath,
+    laid_out,
+)
 from .hull1996 import Hull1996
+from .learned_remainder import LearnedRemainder
 from .parameter import Parameter, ParameterError
 
 DEFLECTION_LOWEST = -1e3
@@ -86,6 +99,7 @@ class TireModel:
     tested_range: where the tire was measured, or None where that is not known
     reading_noise: [m] standard deviation of the noise in the measured deflection, which rate and acceleration must not
     follow (see `tracking`); 0 takes the deflection as exact
+    remainder: a force without physics that is added to all others, None where nobody asked for one
     """
 
     law: Law = Hull1996()
@@ -94,6 +108,7 @@ class TireModel:
     name: str = "Hull, Wang & Moore 1996"
     source: str = "Hull, Wang & Moore, Cycling Science, Spring 1996"
     reading_noise: float = 0.0
+    remainder: LearnedRemainder | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
@@ -109,7 +124,13 @@ class TireModel:
     @cached_property
     def differentiates(self) -> bool:
         """Whether an effect uses rate or acceleration."""
-        return any(effect.differentiates for effect, _ in self.effects)
+        learned = self.remainder is not None and self.remainder.differentiates
+        return learned or any(effect.differentiates for effect, _ in self.effects)
+
+    @property
+    def bare(self) -> bool:
+        """Whether the tire is its elastic law alone."""
+        return not self.effects and self.remainder is None
 
     @cached_property
     def _flat(self) -> tuple[SignalPath, State, State]:
@@ -139,13 +160,15 @@ class TireModel:
         At the time of the state itself, rate and acceleration are those of the state.
         """
         law = self.law.coefficients(surface_radius)
-        if not self.effects:
+        if self.bare:
             return power_law.force(deflection, *law), state
         path, parameters, _ = self._flat
         after = list(state)
         force, _ = flat_step.step(
             path, law, (deflection, surface_radius, time, 0.0, 0.0), parameters, state, after
         )
+        if self.remainder is not None:
+            force += self.remainder.added(deflection, surface_radius, after[RATE], after[ACCELERATION])
         return force, tuple(after)
 
     def tire_deflection(self, deflection: float, surface_radius: float, time: float, state: State) -> float:
@@ -165,11 +188,16 @@ class TireModel:
         Where the contact begins it is that of the side on which the tire is: in the air up to a deflection of 0.
         """
         law = self.law.coefficients(surface_radius)
-        if not self.effects:
+        if self.bare:
             return power_law.stiffness(deflection, *law)
         path, parameters, _ = self._flat
         motion = (deflection, surface_radius, state[TIME], 0.0, 0.0)
-        return flat_step.stiffness(path, law, motion, parameters, state, list(state))
+        tangent = flat_step.stiffness(path, law, motion, parameters, state, list(state))
+        if self.remainder is not None:
+            h, moving = TANGENT_STEP, (surface_radius, state[RATE], state[ACCELERATION])
+            above, below = (self.remainder.added(deflection + step, *moving) for step in (h, -h))
+            tangent += (above - below) / (2.0 * h)
+        return tangent
 
     def in_tested_range(self, deflection: float, surface_radius: float, force: float) -> bool:
         """Return whether surface, deflection and force lie in the tested range; False where that is not known."""

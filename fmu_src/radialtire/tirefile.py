@@ -7,7 +7,8 @@
      "tested_range": {"curvature_min": -2.62, "curvature_max": 78.7, "deflection_max": 0.0318, "force_max": 2240.0}}
 
 A parameter that is not given has its start value; an unknown name is an error, never passed over. `tested_range` may be
-null: then it is not known. `reading_noise` [m], 0 where it is not given, is that of `TireModel`.
+null: then it is not known. `reading_noise` [m], 0 where it is not given, is that of `TireModel`. A learned remainder,
+where somebody asked for one, is under `learned_remainder` with `by`, `at`, `force` and, over the force, `law`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
+from .learned_remainder import LearnedRemainder
 from .model import READING_NOISE, Law, TestedRange, TireModel
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
@@ -77,6 +79,10 @@ def to_text(tire: TireModel) -> str:
         "reading_noise": tire.reading_noise,
         "tested_range": None if tire.tested_range is None else asdict(tire.tested_range),
     }
+    if tire.remainder is not None:
+        learned = tire.remainder
+        law = {} if learned.law is None else {"law": _law_entry(learned.law)}
+        content["learned_remainder"] = {"by": learned.by, "at": learned.at, "force": learned.force, **law}
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -86,7 +92,16 @@ def from_text(text: str) -> TireModel:
         content = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
-    known = {"schema", "name", "source", "law", "effects", "reading_noise", "tested_range"}
+    known = {
+        "schema",
+        "name",
+        "source",
+        "law",
+        "effects",
+        "reading_noise",
+        "tested_range",
+        "learned_remainder",
+    }
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
         raise TireFileError(
@@ -100,6 +115,7 @@ def from_text(text: str) -> TireModel:
             name=_text(entry, "name"),
             source=_text(entry, "source"),
             reading_noise=entry.get("reading_noise", 0.0),
+            remainder=_remainder(entry.get("learned_remainder")),
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None
@@ -235,6 +251,23 @@ def _values(entry: dict[str, Any], owner: str, parameters: tuple[Parameter, ...]
     known = {p.name: p for p in parameters}
     given = _entry(given, f"the parameters of {owner}", set(known), set())
     return {name: p.checked(given.get(name, p.start)) for name, p in known.items()}
+
+
+def _remainder(value: Any) -> LearnedRemainder | None:
+    if value is None:
+        return None
+    needed = {"by", "at", "force"}
+    entry = _entry(value, "learned_remainder", {*needed, "law"}, needed)
+    rows = []
+    for name in ("at", "force"):
+        numbers = entry[name]
+        if not isinstance(numbers, list) or any(
+            isinstance(n, bool) or not isinstance(n, (int, float)) for n in numbers
+        ):
+            raise TireFileError(f"{name} of learned_remainder must be a list of numbers")
+        rows.append(tuple(map(float, numbers)))
+    law: Any = None if entry.get("law") is None else _law(entry["law"])
+    return LearnedRemainder(str(entry["by"]), rows[0], rows[1], law)
 
 
 def _tested_range(value: Any) -> TestedRange | None:

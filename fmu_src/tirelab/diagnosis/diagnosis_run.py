@@ -171,7 +171,8 @@ def _delivered(
     warnings += _without_time((*fitted, *kept))
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
-    content |= {"corrected_tire": json.loads(to_text(verdict.tire)), **of_correction}
+    tires = {"baseline_tire": verdict.baseline, "corrected_tire": verdict.tire}
+    content |= {name: json.loads(to_text(tire)) for name, tire in tires.items()} | of_correction
     if samples:
         _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
     else:
@@ -241,7 +242,7 @@ def _baseline(
     """Return the baseline tire, the FMU in whose place it will stand where that is no tire of ours, and notes."""
     try:
         if not isinstance(tire, Simulation):
-            return (TireModel() if tire is None else read_tire(tire)), None, ()
+            return _explained(TireModel() if tire is None else read_tire(tire)), None, ()
     except (TireFileError, ParameterError, InputError) as error:
         raise TirelabError(str(error)) from None
     inside = tire_inside(tire.fmu)
@@ -252,7 +253,16 @@ def _baseline(
         raise TirelabError(
             f"{tire.fmu} is a tire of tirelab, whose variables are known; leave out --variables"
         )
-    return inside, None, (f"the baseline is the tire inside {tire.fmu.name}: {inside.name}",)
+    return _explained(inside), None, (f"the baseline is the tire inside {tire.fmu.name}: {inside.name}",)
+
+
+def _explained(tire: TireModel) -> TireModel:
+    """Return a tire; raises TirelabError where it has a learned remainder, which would hide what is looked for."""
+    if tire.remainder is not None:
+        raise TirelabError(
+            f"{tire.name} has a learned remainder, which hides what is looked for; diagnose the tire without it"
+        )
+    return tire
 
 
 def _simulation(

@@ -50,6 +50,8 @@ def build_native_fmu(tire: TireModel, folder: Path) -> NativeFmu:
 
     Raises TirelabError where the folder cannot be written, the binaries are not there, or the FMU is not valid.
     """
+    if tire.remainder is not None:
+        raise TirelabError("a learned remainder runs in the Python FMU only; leave out --native")
     description = described(tire)
     members = documentation.pages(tire, description, None)
     members |= {f"sources/{name}": content for name, content in source_files().items()}
