@@ -140,7 +140,7 @@ def _learned(path: Path, content: Mapping[str, Any]) -> LearnedRemainder:
         raise DiagnosisFileError(
             f"{path}: was written before the remainder's curve was in it; diagnose again"
         )
-    law = from_text(json.dumps(content["baseline_tire"])).law if best["by"] == "force" else None
+    law: Any = from_text(json.dumps(content["baseline_tire"])).law if best["by"] == "force" else None
     return LearnedRemainder(best["by"], tuple(best["at"]), tuple(best["force"]), law)
 
 

@@ -124,14 +124,13 @@ def _followed(watch: _Watch, folder: Path) -> None:
             end = time.monotonic() + watch.timeout
             failed = None
             while True:
-                try:
-                    line = lines.get(timeout=max(end - time.monotonic(), 0.0))
-                except queue.Empty:
-                    raise watch.refusal(
-                        f"was ended after {watch.timeout:g} s (see --fmu-timeout)", last or _last(printed)
-                    ) from None
+                line = _next(lines, end)
                 if line is None:
                     break
+                if not line:
+                    raise watch.refusal(
+                        f"was ended after {watch.timeout:g} s (see --fmu-timeout)", last or _last(printed)
+                    )
                 content = json.loads(line)
                 if "sample" in content:
                     done = 100 * content["sample"] // watch.samples
@@ -181,6 +180,15 @@ def _started(
         process.wait()
         listener.join(timeout=5.0)
         stream.close()
+
+
+def _next(lines: queue.Queue[str | None], end: float) -> str | None:
+    """Return the next line; None where there will be no more, nothing where none came before `end` [s]."""
+    try:
+        line = lines.get(timeout=max(end - time.monotonic(), 0.0))
+    except queue.Empty:
+        return ""
+    return "" if line is not None and time.monotonic() > end else line
 
 
 def _last(printed: IO[str]) -> str:
