@@ -162,7 +162,7 @@ def _delivered(
         on_fitted, more = _replayed(fmu, fitted, verdict, report)
         on_kept, warnings = _replayed(fmu, kept, verdict, report)
     else:
-        corrected = deliver(folder, believed, verdict.tire)
+        corrected = deliver(folder, believed, verdict.tire, report)
         on_fitted, more = corrected.replayed(fitted, report), corrected.notes()
         on_kept, warnings = corrected.replayed(kept, report), []
         write_corrected(folder, believed, on_fitted)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -16,14 +17,22 @@ import pytest
 from click.testing import CliRunner
 from drives import Drive, ride, saved
 from fmpy.ssp.simulation import simulate_ssp
-from radialtire import TireModel, read_tire
+from numpy.typing import NDArray
+from radialtire import CATALOGUE, TireModel, read_tire
+from scipy.signal import lsim
 from tirelab.cli import main
+from tirelab.diagnosis.believed_force import Believed, simulated_by
+from tirelab.diagnosis.correction import deliver
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.foreign import Simulation, read_foreign
+from tirelab.recordings.recording import Recording
 from tirelab.simulation.simulate import simulate
+
+FloatArray = NDArray[np.float64]
 
 SPRING, DAMPER, OFFSET, DRIFT, NOISE = 1e5, 300.0, -0.0015, 8.0, 4.0
 
-SPRING_DAMPER = Path(__file__).parents[1] / "fmu" / "foreign_models.py"
+FOREIGN_MODELS = Path(__file__).parents[1] / "fmu" / "foreign_models.py"
 
 
 @dataclass(frozen=True)
@@ -51,16 +60,19 @@ def diagnosed(*words: str | Path) -> str:
     return done.output
 
 
-@pytest.fixture(scope="module")
-def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    import importlib.util
-
-    spec = importlib.util.spec_from_file_location("foreign_models", SPRING_DAMPER)
+def models() -> Any:
+    """The scripts of other exporters, which the tests of the FMUs have too."""
+    spec = importlib.util.spec_from_file_location("foreign_models", FOREIGN_MODELS)
     assert spec is not None
     assert spec.loader is not None
-    models = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(models)
-    return Path(models.spring_damper(tmp_path_factory.mktemp("model")))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return Path(models().spring_damper(tmp_path_factory.mktemp("model")))
 
 
 def beside(model: Path, folder: Path, offset: float, drift: float) -> Done:
@@ -198,6 +210,48 @@ def test_our_own_fmu_is_its_tire(tmp_path: Path) -> None:
     assert corrected.law == tire.law
     assert (tmp_path / "out" / "BicycleTire.fmu").is_file()
     assert not (tmp_path / "out" / "Correction.fmu").exists()
+
+
+def shifted_by(tire: TireModel, offset: float) -> TireModel:
+    return replace(tire, effects=((CATALOGUE["deflection_offset"], (offset,)),))
+
+
+@pytest.mark.parametrize(("kind", "within"), [("CoSimulation", 8.0), ("ModelExchange", 0.1)])
+def test_beside_a_maxwell_element_of_fmi_3(kind: str, within: float, tmp_path: Path) -> None:
+    """80 kN/m at rest, 100 kN/m in motion: no one law stands for it, so the better of the two ways is delivered."""
+    pytest.importorskip("pythonfmu3")
+    fmu = read_foreign(Simulation(models().maxwell(tmp_path, kind)))
+    time, x, _ = ride(1, samples=1000)
+
+    def maxwell(deflection: FloatArray) -> FloatArray:
+        return np.asarray(1e5 * deflection - lsim(([2e4], [0.5, 1.0]), deflection, time)[1])
+
+    flat = np.full(x.size, np.inf)
+    noise = NOISE * np.random.default_rng(1).standard_normal(x.size)
+    recording = Recording("a", time, x, flat, maxwell(x + OFFSET) + noise)
+    believed = simulated_by(fmu, 300.0, [recording], [], lambda sentence: None)
+    law = believed.tire.law.coefficients(np.inf)
+    found = []
+    for offset in (OFFSET, 0.6 * OFFSET):
+        done = deliver(tmp_path / "out", believed, shifted_by(believed.tire, offset), lambda sentence: None)
+        added = maxwell(x) + law[0] * ((100.0 * (x + offset)) ** law[1] - (100.0 * x) ** law[1])
+        forces = {True: maxwell(x + offset), False: added}
+        errors = {moves: np.sqrt(np.mean((recording.force - f) ** 2)) for moves, f in forces.items()}
+        moves = done.correction.moves
+        assert moves == (errors[True] < 1.1 * errors[False])
+        assert any("delivered as an additional force" in note for note in done.notes()) != moves
+        np.testing.assert_allclose(
+            done.force(recording_of(believed), lambda s: None), forces[moves], atol=within
+        )
+        found.append(moves)
+        with zipfile.ZipFile(tmp_path / "out" / "Corrected.ssp") as archive:
+            assert f'implementation="{kind}"'.encode() in archive.read("SystemStructure.ssd")
+    assert found[0], "the true offset before the simulation leaves the noise alone"
+
+
+def recording_of(believed: Believed) -> Recording:
+    (recording,) = believed.fitted
+    return recording
 
 
 @pytest.mark.parametrize(
