@@ -352,7 +352,10 @@ class BicycleTire(Fmi2Slave):
         name = self._tire.name or MODEL
         root.set("modelName", name)
         source = f" ({self._tire.source})" if self._tire.source else ""
-        root.set("description", f"Radial force of a bicycle tire on flat or curved ground: {name}{source}")
+        learned = "" if self._tire.remainder is None else f"; with {self._tire.remainder}"
+        root.set(
+            "description", f"Radial force of a bicycle tire on flat or curved ground: {name}{source}{learned}"
+        )
         root.set("version", hashlib.sha256(to_text(self._tire).encode()).hexdigest()[:12])
         traits = dict(TRAITS)
         for vr, (parameter, _) in enumerate(parameters_of(self._tire).values(), FIRST_PARAMETER):

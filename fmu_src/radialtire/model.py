@@ -9,10 +9,13 @@ from typing import ClassVar, Protocol
 from . import flat_step, hull1996, power_law
 from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
 from .flat_step import (
+    ACCELERATION,
     FOLLOWED,
     NOISE,
     PARAMETERS,
     PRELOAD,
+    RATE,
+    TANGENT_STEP,
     TIME,
     TRACK,
     TRACKED,
@@ -21,6 +24,7 @@ from .flat_step import (
     laid_out,
 )
 from .hull1996 import Hull1996
+from .learned_remainder import LearnedRemainder
 from .parameter import Parameter, ParameterError
 
 DEFLECTION_LOWEST = -1e3
@@ -120,6 +124,7 @@ class TireModel:
     two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
     and can pull. A tire on the ground can do neither.
     preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring
+    remainder: a force without physics that is added to all others, None where nobody asked for one
     """
 
     law: Law = Hull1996()
@@ -130,6 +135,7 @@ class TireModel:
     reading_noise: float = 0.0
     two_sided: bool = False
     preload: float = 0.0
+    remainder: LearnedRemainder | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
@@ -150,12 +156,13 @@ class TireModel:
     @cached_property
     def differentiates(self) -> bool:
         """Whether an effect uses rate or acceleration."""
-        return any(effect.differentiates for effect, _ in self.effects)
+        learned = self.remainder is not None and self.remainder.differentiates
+        return learned or any(effect.differentiates for effect, _ in self.effects)
 
     @property
     def bare(self) -> bool:
         """Whether it is an elastic law on the ground and nothing else, so that a step needs no state."""
-        return not self.effects and not self.two_sided
+        return not self.effects and not self.two_sided and self.remainder is None
 
     @cached_property
     def channels(self) -> tuple[tuple[int, Channel, float], ...]:
@@ -211,7 +218,26 @@ class TireModel:
         force, _ = flat_step.step(
             path, law, _motion(deflection, surface_radius, time, measured), parameters, state, after
         )
+        if self.remainder is not None:
+            force += self.remainder.added(deflection, surface_radius, after[RATE], after[ACCELERATION])
         return force, tuple(after)
+
+    def tire_deflection(
+        self,
+        deflection: float,
+        surface_radius: float,
+        time: float,
+        state: State,
+        measured: tuple[float, ...] = NONE_MEASURED,
+    ) -> float:
+        """Return the tire's own deflection [m] at `time` [s]: the measured one after offset, lag and series springs."""
+        if not self.effects:
+            return deflection
+        path, parameters, _ = self._flat
+        law = self.law.coefficients(surface_radius)
+        motion = _motion(deflection, surface_radius, time, measured)
+        _, x = flat_step.step(path, law, motion, parameters, state, list(state))
+        return x
 
     def stiffness(
         self,
@@ -230,7 +256,12 @@ class TireModel:
             return power_law.stiffness(deflection, *law)
         path, parameters, _ = self._flat
         motion = _motion(deflection, surface_radius, state[TIME], measured)
-        return flat_step.stiffness(path, law, motion, parameters, state, list(state))
+        tangent = flat_step.stiffness(path, law, motion, parameters, state, list(state))
+        if self.remainder is not None:
+            h, moving = TANGENT_STEP, (surface_radius, state[RATE], state[ACCELERATION])
+            above, below = (self.remainder.added(deflection + step, *moving) for step in (h, -h))
+            tangent += (above - below) / (2.0 * h)
+        return tangent
 
     def in_tested_range(self, deflection: float, surface_radius: float, force: float) -> bool:
         """Return whether surface, deflection and force lie in the tested range; False where that is not known."""

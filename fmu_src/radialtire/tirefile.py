@@ -7,7 +7,8 @@
      "tested_range": {"curvature_min": -2.62, "curvature_max": 78.7, "deflection_max": 0.0318, "force_max": 2240.0}}
 
 A parameter that is not given has its start value; an unknown name is an error, never passed over. `tested_range` may be
-null: then it is not known. `reading_noise` [m], 0 where it is not given, is that of `TireModel`.
+null: then it is not known. `reading_noise` [m], 0 where it is not given, is that of `TireModel`. A learned remainder,
+where somebody asked for one, is under `learned_remainder` with `by`, `at`, `force` and, over the force, `law`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from .curvature_law import CurvatureLaw
 from .effect import PLACES
 from .effects import CATALOGUE
 from .hull1996 import Hull1996
+from .learned_remainder import LearnedRemainder
 from .model import PRELOAD_FORCE, READING_NOISE, Law, TestedRange, TireModel
 from .parameter import Parameter, ParameterError
 from .power_law import PowerLaw
@@ -79,6 +81,10 @@ def to_text(tire: TireModel) -> str:
     }
     if tire.two_sided:
         content |= {"two_sided": True, "preload": tire.preload}
+    if tire.remainder is not None:
+        learned = tire.remainder
+        law = {} if learned.law is None else {"law": _law_entry(learned.law)}
+        content["learned_remainder"] = {"by": learned.by, "at": learned.at, "force": learned.force, **law}
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -98,6 +104,7 @@ def from_text(text: str) -> TireModel:
         "tested_range",
         "two_sided",
         "preload",
+        "learned_remainder",
     }
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
@@ -114,6 +121,7 @@ def from_text(text: str) -> TireModel:
             reading_noise=entry.get("reading_noise", 0.0),
             two_sided=_flag(entry, "two_sided"),
             preload=entry.get("preload", 0.0),
+            remainder=_remainder(entry.get("learned_remainder")),
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None
@@ -259,6 +267,23 @@ def _values(entry: dict[str, Any], owner: str, parameters: tuple[Parameter, ...]
     known = {p.name: p for p in parameters}
     given = _entry(given, f"the parameters of {owner}", set(known), set())
     return {name: p.checked(given.get(name, p.start)) for name, p in known.items()}
+
+
+def _remainder(value: Any) -> LearnedRemainder | None:
+    if value is None:
+        return None
+    needed = {"by", "at", "force"}
+    entry = _entry(value, "learned_remainder", {*needed, "law"}, needed)
+    rows = []
+    for name in ("at", "force"):
+        numbers = entry[name]
+        if not isinstance(numbers, list) or any(
+            isinstance(n, bool) or not isinstance(n, (int, float)) for n in numbers
+        ):
+            raise TireFileError(f"{name} of learned_remainder must be a list of numbers")
+        rows.append(tuple(map(float, numbers)))
+    law: Any = None if entry.get("law") is None else _law(entry["law"])
+    return LearnedRemainder(str(entry["by"]), rows[0], rows[1], law)
 
 
 def _tested_range(value: Any) -> TestedRange | None:

@@ -3,25 +3,58 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from radialtire import TireModel, read_tire
 
+from ..errors import TirelabError
 from .options import FILE, SentenceCommand
 from .output import Output, example, output_options
+
+if TYPE_CHECKING:
+    from ..fmu.build import Correction
 
 
 @click.command("build", cls=SentenceCommand, epilog=example("tirelab build --tire tire.json --out dist"))
 @click.option("--tire", type=FILE, help="The tire file.  [default: the article's tire]")
+@click.option(
+    "--from",
+    "diagnosis",
+    type=FILE,
+    metavar="DIAGNOSIS",
+    help="Build the corrected tire, or the correction, of this diagnosis.json.",
+)
+@click.option(
+    "--with-remainder",
+    is_flag=True,
+    help="With --from: add the force that no effect explains, as learned; outside the range of learning it fades out.",
+)
 @click.option(
     "--native",
     is_flag=True,
     help="Without Python inside: Co-Simulation and Model Exchange on Linux, Windows and macOS.",
 )
 @output_options("dist")
-def command(tire: Path | None, native: bool, output: Output) -> None:
+def command(
+    tire: Path | None, diagnosis: Path | None, with_remainder: bool, native: bool, output: Output
+) -> None:
     """Pack a tire as DIR/BicycleTire.fmu, an FMI 2.0 Co-Simulation unit, and validate it."""
-    model = TireModel() if tire is None else read_tire(tire)
+    if diagnosis is None:
+        if with_remainder:
+            raise TirelabError("--with-remainder is that of a diagnosis; name its diagnosis.json with --from")
+        model: TireModel | Correction = TireModel() if tire is None else read_tire(tire)
+    elif tire is not None:
+        raise TirelabError("--tire and --from both name a tire; give one of them")
+    else:
+        from ..diagnosis.diagnosis_file import read_corrected
+
+        model = read_corrected(diagnosis, with_remainder=with_remainder)
+    if not isinstance(model, TireModel):
+        _correction(model, native, output)
+        return
+    if model.remainder is not None:
+        output.note(f"the FMU has {model.remainder}")
     if native:
         _native(model, output)
         return
@@ -43,6 +76,24 @@ def command(tire: Path | None, native: bool, output: Output) -> None:
         lines.append(f"Linux binary: compiled by {built.compiler.name}, for {glibc}")
     compiler = None if built.compiler is None else built.compiler.name
     content = {"fmu": str(built.path), "tire": model.name, "guid": built.guid, "compiler": compiler}
+    output.result(lines, content)
+
+
+def _correction(correction: Correction, native: bool, output: Output) -> None:
+    if native:
+        raise TirelabError("a correction is written as a Python FMU only; leave out --native")
+    from ..fmu.build import build_correction
+
+    if correction.corrected.remainder is not None:
+        output.note(f"the FMU has {correction.corrected.remainder}")
+    output.stage("compiling and packing the FMU")
+    built = build_correction(correction, output.out)
+    named = correction.corrected.name
+    lines = [
+        f"{built.path}: what the simulation lacks, {named}, FMI 2.0 Co-Simulation, valid, guid {built.guid}"
+    ]
+    compiler = None if built.compiler is None else built.compiler.name
+    content = {"fmu": str(built.path), "tire": named, "guid": built.guid, "compiler": compiler}
     output.result(lines, content)
 
 

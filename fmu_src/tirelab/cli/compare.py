@@ -42,6 +42,7 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
             against = model.name
         else:
             against = str(fmu)
+            output.stage(f"{fmu} is native code: it now runs with your rights")
         output.stage(f"replaying {against} on {recorded.name}")
         result = compare(recorded, replay(fmu, recorded))
     picture = f"{recorded.name}.compare.png"

@@ -20,6 +20,7 @@ from .output import Output, echo, example, output_options, printable, progress
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnosis_run import DiagnosisRun
+    from ..fmu.foreign import Simulation
 
 COLUMNS = 100
 """Width of the report where the output is no terminal."""
@@ -66,6 +67,19 @@ STAGES = MappingProxyType(
     help="Look for effects beside a simulation: the recordings' column of its force.",
 )
 @click.option("--rig", type=FILE, help="TOML file of your rig's limits, for the test that it recommends.")
+@click.option(
+    "--fmu",
+    type=FILE,
+    help="Look for effects beside a simulation: its FMU, whoever made it. Native code: use one that you trust.",
+)
+@click.option(
+    "--variables",
+    metavar="NAME=VARIABLE,...",
+    help="Which of its variables is the deflection, the force (and the radius), with the unit where it has another.",
+)
+@click.option(
+    "--fmu-timeout", type=float, metavar="SECONDS", help="End the FMU after this time.  [default: 300]"
+)
 @click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")
 @click.option(
     "--each",
@@ -76,6 +90,7 @@ STAGES = MappingProxyType(
 @click.option("--dask", metavar="ADDRESS", help="With --each: address of the scheduler of a Dask cluster.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     """Find the physics that a tire model lacks to reproduce RECORDING... (files or folders), and correct it."""
+    options["tire"] = _simulation(options)
     believed = options.pop("believed_force")
     if believed is not None:
         reading: Reading = options["reading"]
@@ -89,6 +104,26 @@ def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
         _batch(recordings, options)
     else:
         _single(recordings, options)
+
+
+def _simulation(options: dict[str, Any]) -> Path | Simulation | None:
+    """Return the tire file or the FMU that the options name, and take the latter's options out."""
+    fmu, variables, timeout = (options.pop(name) for name in ("fmu", "variables", "fmu_timeout"))
+    tire: Path | None = options["tire"]
+    if fmu is None:
+        if variables is not None or timeout is not None:
+            raise TirelabError(
+                "--variables and --fmu-timeout are those of --fmu; name the FMU, or leave them out"
+            )
+        return tire
+    if tire is not None:
+        raise TirelabError("--fmu and --tire both name a simulation; give one of them")
+    check_files([fmu])
+    from ..fmu.foreign import TIMEOUT, Simulation, parse_variables
+
+    if timeout is not None and not timeout > 0.0:
+        raise TirelabError(f"--fmu-timeout {timeout:g} is not allowed; give seconds, more than 0")
+    return Simulation(fmu, parse_variables(variables or ""), TIMEOUT if timeout is None else timeout)
 
 
 def _ranged(recordings: tuple[Path, ...], given: Path, option: str = "--held-out") -> Path:
@@ -118,6 +153,8 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
         raise TirelabError(
             "--each writes Python FMUs only; build one with tirelab build --native --tire FILE"
         )
+    if not isinstance(options["tire"], Path | None):
+        raise TirelabError("--each takes a tire file; give --tire, or diagnose without --each")
     from rich.console import Console
 
     from ..batch.batch import Batch, diagnose_batch
@@ -147,7 +184,9 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     with progress(output.quiet, STAGES) as show:
         asked = Request(recordings, folder, options["tire"], options["held_out"], how, rig=options["rig"])
         run = run_request(asked, show)
-    if options["native"]:
+    if options["native"] and "correction" in run.content:
+        output.note("--native wrote nothing: a correction is written as a Python FMU only")
+    elif options["native"]:
         from ..fmu.native.pack import build_native_fmu
 
         build_native_fmu(run.verdict.tire, folder / "native")

@@ -229,7 +229,8 @@ def _summary(result: Ride, tire: TireModel, notes: tuple[str, ...]) -> list[str]
         f"deflection {1000.0 * touch.deflection.min():.1f} to {1000.0 * touch.deflection.max():.1f} mm",
         f"radial force {force.min():.0f} to {force.max():.0f} N, mean {force.mean():.0f} N",
     ]
-    if tire.effects:
-        names = ", ".join(effect.name for effect, _ in tire.effects)
+    if not tire.bare:
+        learned = [] if tire.remainder is None else ["learned remainder"]
+        names = ", ".join([*(effect.name for effect, _ in tire.effects), *learned])
         lines.insert(2, f"note: the tire's elastic law alone; its effects ({names}) act in the FMU")
     return lines + list(result.report.sentences())

@@ -1,4 +1,4 @@
-"""A simulated force that stands in the recordings, as the simulation beside which effects are looked for.
+"""A simulated force, of the recordings or of an FMU, as the simulation beside which effects are looked for.
 
 Its elastic law is identified from it as from a recording. What is diagnosed is
 
@@ -7,21 +7,21 @@ Its elastic law is identified from it as from a recording. What is diagnosed is
 with that law as the baseline: the misfit is that of the simulation, F - F_believed, whatever it holds beside
 its law, and effects that grow with the load know the load. The corrected simulation is
 
-    F_believed + corrected tire - law
+    F_believed + corrected tire - law        (see `correction`)
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
-import polars as pl
 from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..errors import TirelabError
+from ..fmu.foreign import TIMEOUT, ForeignFmu
+from ..fmu.foreign_replay import Progress, native_code, replay_foreign
 from ..identification.identify import identify
 from ..recordings.recording import Recording
 from ..simulation.simulate import simulate
@@ -34,21 +34,15 @@ class Believed:
     """The law of a believed force, and the recordings with it in the force's place.
 
     tire: of the law; rmse [N]: what it leaves of the believed force; fitted, kept: F - F_believed + law
+    model: the FMU that the force is of, None where it is a column of the recordings; timeout [s]: of its replay
     """
 
     tire: TireModel
     rmse: float
     fitted: tuple[Recording, ...]
     kept: tuple[Recording, ...]
-
-    def notes(self) -> list[str]:
-        """Return what a reader of the figures has to know."""
-        return [
-            "the effects are those beside the simulated force in the recordings: force stands for recorded minus "
-            f"simulated force plus the law of the latter ({self.tire.law.name}, which leaves {self.rmse:.3g} N of it); "
-            "the corrected simulation is in the files *.corrected.csv, and runs as the simulation plus the force of "
-            "BicycleTire.fmu less that of believed/BicycleTire.fmu"
-        ]
+    model: ForeignFmu | None = None
+    timeout: float = TIMEOUT
 
 
 def believed_of(fitted: Sequence[Recording], kept: Sequence[Recording]) -> Believed | None:
@@ -65,30 +59,37 @@ def believed_of(fitted: Sequence[Recording], kept: Sequence[Recording]) -> Belie
             f"{', '.join(without)}: has no simulated force; give its column in every recording"
         )
     try:
-        found = identify([replace(r, force=_believed(r)) for r in fitted], name="the believed simulation")
+        found = identify(
+            [replace(r, force=believed_force(r)) for r in fitted], name="the believed simulation"
+        )
     except TirelabError as error:
         raise TirelabError(f"the simulated force follows no law of a tire: {error}") from None
-    beside = [replace(r, force=r.force - _believed(r) + simulate(found.tire, r)) for r in every]
+    beside = [replace(r, force=r.force - believed_force(r) + simulate(found.tire, r)) for r in every]
     return Believed(found.tire, found.rmse, tuple(beside[: len(fitted)]), tuple(beside[len(fitted) :]))
 
 
-def write_corrected(folder: Path, believed: Believed, corrected: TireModel) -> None:
-    """Write each recording with its recorded, simulated and corrected force into `folder`, as NAME.corrected.csv."""
-    for r in (*believed.fitted, *believed.kept):
-        law = simulate(believed.tire, r)
-        simulated = _believed(r)
-        columns = {
-            "time [s]": r.time,
-            "deflection [m]": r.deflection,
-            "radius [m]": r.surface_radius,
-            "force [N]": r.force + simulated - law,
-            "believed_force [N]": simulated,
-            "corrected_force [N]": simulated + simulate(corrected, r) - law,
-        }
-        pl.DataFrame(columns).write_csv(folder / f"{r.name}.corrected.csv")
+def simulated_by(
+    model: ForeignFmu,
+    timeout: float,
+    fitted: Sequence[Recording],
+    kept: Sequence[Recording],
+    report: Progress,
+) -> Believed:
+    """Return the simulation of an FMU, replayed on every recording; timeout [s]: for each.
+
+    Raises TirelabError where the FMU fails or takes longer, or its force follows no law.
+    """
+    report(native_code(model))
+    with_force = [
+        replace(r, believed_force=replay_foreign(model, r, r.name, timeout, report)) for r in (*fitted, *kept)
+    ]
+    found = believed_of(with_force[: len(fitted)], with_force[len(fitted) :])
+    assert found is not None
+    return replace(found, model=model, timeout=timeout)
 
 
-def _believed(recording: Recording) -> FloatArray:
+def believed_force(recording: Recording) -> FloatArray:
+    """Return the simulated force [N] of a recording that has one."""
     force = recording.believed_force
     assert force is not None
     return force

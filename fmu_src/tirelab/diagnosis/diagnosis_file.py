@@ -5,11 +5,16 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from radialtire import TireFileError, TireModel, read_tire
+from radialtire.learned_remainder import COORDINATES, LearnedRemainder
+from radialtire.tirefile import from_text
+
 from ..errors import TirelabError
+from ..fmu.build import Correction
 from ..names import UNKNOWN
 
 SCHEMAS = (1, 2)
@@ -79,6 +84,64 @@ def read_stated(folder: Path) -> Stated:
         raise DiagnosisFileError(
             f"{path}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
         ) from None
+
+
+def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | Correction:
+    """Return what a diagnosis.json says to build: the corrected tire, or the correction of a simulation of others.
+
+    path: the file, or its folder; with_remainder: with the learned remainder that repeats best
+    Raises DiagnosisFileError where it cannot be read, or has no remainder that can be packed.
+    """
+    path = path / "diagnosis.json" if path.is_dir() else path
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content["schema"] not in SCHEMAS:
+            raise ValueError(f"schema {content['schema']!r} is none of {', '.join(map(str, SCHEMAS))}")
+        learned = _learned(path, content) if with_remainder else None
+        if "correction" in content:
+            entry = content["correction"]
+            return Correction(
+                from_text(json.dumps(entry["believed"])),
+                replace(from_text(json.dumps(entry["corrected"])), remainder=learned),
+                float(entry["surface_radius"]),
+                bool(entry["moves"]),
+            )
+        if "corrected_tire" in content:
+            tire = from_text(json.dumps(content["corrected_tire"]))
+        else:  # written before the file held the tire
+            tire = read_tire(path.parent / str(content["tire"]))
+        return replace(tire, remainder=learned)
+    except OSError as error:
+        raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
+    except TireFileError as error:
+        raise DiagnosisFileError(f"{path}: the corrected tire cannot be read: {error}") from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise DiagnosisFileError(
+            f"{path}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
+        ) from None
+
+
+def _learned(path: Path, content: Mapping[str, Any]) -> LearnedRemainder:
+    """Return the learned remainder that repeats best."""
+    found = content["verdict"].get("corrections", [])
+    if not found:
+        raise DiagnosisFileError(
+            f"{path}: nothing is unexplained, so no remainder was learned; leave out --with-remainder"
+        )
+    packed = [c for c in found if c["by"] in COORDINATES and (c["repeats"] or 0.0) > 0.0]
+    if not packed:
+        which = ", ".join(f"over the {c['by']}, repeats {c['repeats'] or 0.0:.2f}" for c in found)
+        raise DiagnosisFileError(
+            f"{path}: the remainder ({which}) does not repeat, or depends on the time alone, so it holds for these "
+            "recordings only; leave out --with-remainder"
+        )
+    best = max(packed, key=lambda c: float(c["repeats"]))
+    if "at" not in best:
+        raise DiagnosisFileError(
+            f"{path}: was written before the remainder's curve was in it; diagnose again"
+        )
+    law: Any = from_text(json.dumps(content["baseline_tire"])).law if best["by"] == "force" else None
+    return LearnedRemainder(best["by"], tuple(best["at"]), tuple(best["force"]), law)
 
 
 def _stated(content: Mapping[str, Any], folder: Path) -> Stated:

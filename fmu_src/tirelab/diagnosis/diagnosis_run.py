@@ -19,11 +19,14 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
+from radialtire.tirefile import to_text
 
 from ..computing.staging import staged
 from ..errors import TirelabError
 from ..fmu.build import build_fmu
+from ..fmu.foreign import ForeignFmu, Simulation, read_foreign, tire_inside
 from ..fmu.replay import replay
+from ..fmu.system import SYSTEM
 from ..planning.rig import read_rig
 from ..recordings.files import recording_files
 from ..recordings.metadata import read_sidecar
@@ -32,9 +35,10 @@ from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
-from .believed_force import Believed, believed_of, write_corrected
+from .believed_force import Believed, believed_of, simulated_by
+from .correction import CORRECTION, deliver, write_corrected
 from .diagnose import PoorRecording, diagnose
-from .outcome import DATA, DIAGNOSIS, REPORT, TEST, TIRE, Replayed, content_of
+from .outcome import DATA, DIAGNOSIS, FMU, REPORT, TEST, TIRE, Replayed, content_of
 from .verdict import Verdict
 
 AGREEMENT = 1e-9
@@ -64,15 +68,15 @@ def run_diagnosis(
     recordings: Sequence[Path],
     out: Path,
     *,
-    tire: Path | None = None,
+    tire: Path | Simulation | None = None,
     held_out: Sequence[Path] = (),
     reading: Reading = Reading(),  # noqa: B008
     progress: Progress | None = None,
 ) -> DiagnosisRun:
     """Diagnose files or folders of recordings and write everything into `out`.
 
-    tire: file of the baseline tire, None for the article's; held_out: recordings that are not fitted; reading: how
-    the files are read; progress: called with a sentence for each stage
+    tire: file of the baseline tire, None for the article's, or the FMU of a simulation; held_out: recordings that are
+    not fitted; reading: how the files are read; progress: called with a sentence for each stage
 
     Raises TirelabError with one sentence where a file cannot be read, diagnosed or written.
     """
@@ -87,18 +91,23 @@ class Request:
 
     recordings: tuple[Path, ...]
     out: Path
-    tire: Path | None = None
+    tire: Path | Simulation | None = None
     held_out: tuple[Path, ...] = ()
     reading: Reading = Reading()  # noqa: RUF009
     samples: bool = True
     rig: Path | None = None
 
+    @property
+    def simulation(self) -> Path | None:
+        """File of the baseline, None for the article's tire."""
+        return self.tire.fmu if isinstance(self.tire, Simulation) else self.tire
+
 
 def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRun:
     """Diagnose as it is asked; see `run_diagnosis`."""
     report = progress or (lambda sentence: None)
-    baseline = _baseline(asked.tire)
     limits = None if asked.rig is None else read_rig(asked.rig, {}).test_limits
+    baseline, model, said = _baseline(asked.tire)
     files, skipped = recording_files(asked.recordings, asked.reading.columns)
     kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
     _check_once([*files, *kept_files])
@@ -113,10 +122,8 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
         "date": datetime.now().astimezone().isoformat(timespec="seconds"),
         "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], asked)],
     }
-    believed = believed_of(fitted, kept)
+    believed = _simulation(asked, model, fitted, kept, report)
     if believed is not None:
-        if asked.tire is not None:
-            raise TirelabError("--tire and --believed-force both name a simulation; give one of them")
         baseline, fitted, kept = believed.tire, list(believed.fitted), list(believed.kept)
     try:
         verdict = diagnose(fitted, baseline, held_out=kept, limits=limits, progress=report)
@@ -127,10 +134,12 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
         found = _Found(verdict, tuple(fitted), tuple(kept), believed)
         content, warnings = _delivered(aside, found, origin, report, asked.samples)
     # What an earlier diagnosis wrote and this one does not have would seem to belong to it.
-    for name, written in ((TEST, verdict.test is not None), (DATA, asked.samples)):
+    there = {TEST: verdict.test is not None, DATA: asked.samples, FMU: believed is None}
+    there |= {CORRECTION: believed is not None, SYSTEM: believed is not None and believed.model is not None}
+    for name, written in there.items():
         if not written:
             (asked.out / name).unlink(missing_ok=True)
-    notes = [*map(str, (*skipped, *more_skipped))]
+    notes = [*said, *map(str, (*skipped, *more_skipped))]
     notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
     return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
 
@@ -155,17 +164,23 @@ def _delivered(
     """
     verdict, fitted, kept, believed = found.verdict, found.fitted, found.kept, found.believed
     report("building the corrected FMU")
-    fmu = build_fmu(verdict.tire, folder).path
-    on_fitted, more = _replayed(fmu, fitted, verdict, report)
-    on_kept, warnings = _replayed(fmu, kept, verdict, report)
+    of_correction: dict[str, Any] = {}
+    if believed is None:
+        fmu = build_fmu(verdict.tire, folder).path
+        on_fitted, more = _replayed(fmu, fitted, verdict, report)
+        on_kept, warnings = _replayed(fmu, kept, verdict, report)
+    else:
+        corrected = deliver(folder, believed, verdict.tire, report)
+        on_fitted, more = corrected.replayed(fitted, report), corrected.notes()
+        on_kept, warnings = corrected.replayed(kept, report), []
+        write_corrected(folder, believed, on_fitted)
+        write_corrected(folder, believed, on_kept)
+        of_correction = {"corrected_fmu": CORRECTION, "correction": corrected.to_dict()}
     warnings += _without_time((*fitted, *kept))
-    if believed is not None:
-        warnings += believed.notes()
-        report("building the FMU of the believed simulation's law")
-        build_fmu(believed.tire, folder / "believed")
-        write_corrected(folder, believed, verdict.tire)
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
+    tires = {"baseline_tire": verdict.baseline, "corrected_tire": verdict.tire}
+    content |= {name: json.loads(to_text(tire)) for name, tire in tires.items()} | of_correction
     if samples:
         _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
     else:
@@ -192,7 +207,7 @@ def _files_read(recordings: Sequence[Path], asked: Request) -> list[Path]:
     else:
         for file, piece in parts:
             found += [file.parent / name for name in read_sidecar(file, trial=piece.trial).sources]
-    return list(dict.fromkeys([*found, *(file for file in (asked.tire, asked.rig) if file is not None)]))
+    return list(dict.fromkeys([*found, *(f for f in (asked.simulation, asked.rig) if f is not None)]))
 
 
 def _sha256(file: Path) -> str:
@@ -214,25 +229,70 @@ def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> 
 def command_line(
     recordings: Sequence[Path],
     out: Path,
-    tire: Path | None,
+    tire: Path | Simulation | None,
     held_out: Sequence[Path],
     reading: Reading,
     rig: Path | None = None,
 ) -> str:
     """Return the command that repeats a diagnosis."""
     words = ["tirelab", "diagnose", *map(str, recordings)]
-    words += [] if tire is None else ["--tire", str(tire)]
+    if isinstance(tire, Simulation):
+        words += tire.words()
+    elif tire is not None:
+        words += ["--tire", str(tire)]
     words += [] if rig is None else ["--rig", str(rig)]
     words += ["--out", str(out), *reading.words()]
     words += [word for file in held_out for word in ("--held-out", str(file))]
     return shlex.join(words)
 
 
-def _baseline(tire: Path | None) -> TireModel:
+def _baseline(
+    tire: Path | Simulation | None,
+) -> tuple[TireModel, ForeignFmu | None, tuple[str, ...]]:
+    """Return the baseline tire, the FMU in whose place it will stand where that is no tire of ours, and notes."""
     try:
-        return TireModel() if tire is None else read_tire(tire)
+        if not isinstance(tire, Simulation):
+            return _explained(TireModel() if tire is None else read_tire(tire)), None, ()
     except (TireFileError, ParameterError, InputError) as error:
         raise TirelabError(str(error)) from None
+    inside = tire_inside(tire.fmu)
+    if inside is None:
+        model = read_foreign(tire)
+        return TireModel(), model, model.notes
+    if tire.variables:
+        raise TirelabError(
+            f"{tire.fmu} is a tire of tirelab, whose variables are known; leave out --variables"
+        )
+    return _explained(inside), None, (f"the baseline is the tire inside {tire.fmu.name}: {inside.name}",)
+
+
+def _explained(tire: TireModel) -> TireModel:
+    """Return a tire; raises TirelabError where it has a learned remainder, which would hide what is looked for."""
+    if tire.remainder is not None:
+        raise TirelabError(
+            f"{tire.name} has a learned remainder, which hides what is looked for; diagnose the tire without it"
+        )
+    return tire
+
+
+def _simulation(
+    asked: Request,
+    model: ForeignFmu | None,
+    fitted: Sequence[Recording],
+    kept: Sequence[Recording],
+    report: Progress,
+) -> Believed | None:
+    """Return the simulation beside which effects are looked for, None where the baseline is a tire."""
+    if model is None or not isinstance(asked.tire, Simulation):
+        believed = believed_of(fitted, kept)
+    elif all(r.believed_force is None for r in (*fitted, *kept)):
+        return simulated_by(model, asked.tire.timeout, fitted, kept, report)
+    else:
+        raise TirelabError("--fmu and --believed-force both name a simulation; give one of them")
+    if believed is not None and asked.tire is not None:
+        named = "--fmu" if isinstance(asked.tire, Simulation) else "--tire"
+        raise TirelabError(f"{named} and --believed-force both name a simulation; give one of them")
+    return believed
 
 
 def _read(file: Path, reading: Reading, progress: Progress) -> Recording:

@@ -49,13 +49,15 @@ class ResidualModel:
     held_out_after: float = float("nan")
 
     def to_dict(self) -> dict[str, object]:
-        """Return an entry of `corrections` in diagnosis.json; the curve itself is in the report."""
+        """Return an entry of `corrections` in diagnosis.json."""
         return {
             "by": self.by,
             "unit": self.unit,
             "repeats": self.r2,
             "after": self.after,
             "held_out_after": self.held_out_after,
+            "at": self.at.tolist(),
+            "force": self.force.tolist(),
         }
 
 

@@ -47,13 +47,21 @@ def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: st
         {**variable.attrib, **variable[0].attrib, "type": variable[0].tag}
         for variable in description.iterfind("ModelVariables/ScalarVariable")
     ]
-    tirelab_license = (here / "license.txt").read_text(encoding="utf-8")
     native = wrapper_license is None
-    found = {
+    return notices(wrapper_license) | {
         "documentation/index.html": page.render(tire=tire, variables=variables, native=native).encode(),
-        "documentation/externalDependencies.txt": (NATIVE_NEEDS if native else NEEDS).encode(),
-        "documentation/licenses/license.txt": tirelab_license.encode(),
         "model.png": (here / "model.png").read_bytes(),
+    }
+
+
+def notices(wrapper_license: str | None) -> dict[str, bytes]:
+    """Return the licences and what the FMU needs, by their names in the FMU; wrapper_license: as for `pages`."""
+    tirelab_license = (resources.files(__package__) / "license.txt").read_text(encoding="utf-8")
+    found = {
+        "documentation/externalDependencies.txt": (
+            NATIVE_NEEDS if wrapper_license is None else NEEDS
+        ).encode(),
+        "documentation/licenses/license.txt": tirelab_license.encode(),
     }
     if wrapper_license is not None:
         found["documentation/licenses/pythonfmu.txt"] = wrapper_license.encode()

@@ -21,6 +21,7 @@ from radialtire import CHANNELS
 
 from ..errors import TirelabError
 from ..simulation.channels import measured_of
+from .unpacking import unpack
 
 INPUTS = ("deflection", "surface_radius")
 OUTPUT = "radial_force"
@@ -79,7 +80,7 @@ def opened(fmu: Path) -> Iterator[OpenFmu]:
     folder = tempfile.mkdtemp(prefix="tirelab_")
     messages: list[str] = []
     try:
-        fmpy.extract(str(fmu), folder)
+        unpack(fmu, Path(folder))
         library = Path(folder, "binaries", fmpy.platform, kind.modelIdentifier + fmpy.sharedLibraryExtension)
         if not library.is_file():
             raise TirelabError(f"{fmu} has no binary for this machine ({fmpy.platform}); export it for that")
@@ -122,7 +123,7 @@ class _Stepper:
     """An instance led from sample to sample by its three functions, without the lists and copies that fmpy makes for
     each call: the FMU reads the inputs from where they lie and writes its output to where it belongs.
 
-    inputs (samples, 2); sample: the one that was reached
+    inputs (samples, number of inputs); sample: the one that was reached
     """
 
     def __init__(self, instance: FMU2Slave, inputs: NDArray[np.float64], references: Sequence[int]) -> None:
@@ -170,29 +171,48 @@ def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
     """Return the FMU's radial force [N] at every sample of `motion`, without a sample of delay.
 
     A channel that the motion holds and the FMU has an input for, such as the pressure, is set at every sample.
+    Raises TirelabError where the FMU lacks a variable or refuses a sample.
+    """
+    measured = measured_of(motion)
+    inputs = dict(zip(INPUTS, (motion.deflection, motion.surface_radius), strict=True))
+    inputs |= {c.variable: measured[c.name] for c in CHANNELS if c.name in measured}
+    force = driven(fmu, motion.time, inputs, OUTPUT, optional=[c.variable for c in CHANNELS])
+    if not np.isfinite(force[0]):
+        raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
+    return force
+
+
+def driven(
+    fmu: Path,
+    time: NDArray[np.float64],
+    inputs: Mapping[str, NDArray[np.float64]],
+    output: str,
+    optional: Sequence[str] = (),
+) -> NDArray[np.float64]:
+    """Return one output of the FMU at every time [s] for inputs that are given there, without a sample of delay.
+
+    optional: inputs that are left out where the FMU has none of the name.
 
     Each step sets the inputs of its end, steps, and reads the output (fmpy.simulate_fmu samples the output of a model
     with direct feed-through one communication step late).
     Raises TirelabError where the FMU lacks a variable or refuses a sample.
     """
     with opened(fmu) as unit:
-        for name in (*INPUTS, OUTPUT):
+        inputs = {n: v for n, v in inputs.items() if n not in optional or n in unit.references}
+        for name in (*inputs, output):
             if name not in unit.references:
                 raise TirelabError(
-                    f"{fmu} has no variable {name!r}; a tire has {', '.join((*INPUTS, OUTPUT))}"
+                    f"{fmu} has no variable {name!r}; a tire has {', '.join((*inputs, output))}"
                 )
         instance = unit.instance
-        times = motion.time.tolist()
-        measured = measured_of(motion)
-        read = {c.variable: measured[c.name] for c in CHANNELS if c.name in measured}
-        read = {name: values for name, values in read.items() if name in unit.references}
-        inputs = np.column_stack([motion.deflection, motion.surface_radius, *read.values()])
-        stepper = _Stepper(instance, inputs, [unit.references[n] for n in (*INPUTS, *read, OUTPUT)])
+        times = time.tolist()
+        columns = np.column_stack(list(inputs.values()))
+        stepper = _Stepper(instance, columns, [unit.references[name] for name in (*inputs, output)])
         try:
             instance.setupExperiment(startTime=times[0])
             instance.enterInitializationMode()
             stepper.access(0, instance.exitInitializationMode)
-            stepper.run(times[:-1], np.diff(motion.time).tolist())
+            stepper.run(times[:-1], np.diff(time).tolist())
             instance.terminate()
         except FMICallException as error:
             reason = unit.messages()[-1] if unit.messages() else str(error)
@@ -200,7 +220,4 @@ def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
             raise TirelabError(
                 f"{fmu} refused sample {sample} (after t = {times[max(sample - 1, 0)]:g} s): {reason}"
             ) from None
-    force = stepper.force
-    if not np.isfinite(force[0]):
-        raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
-    return force
+    return stepper.force

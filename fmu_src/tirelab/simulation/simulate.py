@@ -128,7 +128,23 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
     force = downstream(tire, history, force, ("parallel",))
     if not tire.two_sided:
         force = np.maximum(force, 0.0)
-    return downstream(tire, history, force, ("inertia", "reading"))
+    force = downstream(tire, history, force, ("inertia", "reading"))
+    return force if tire.remainder is None else force + learned_force(tire, recording, kinematics)
+
+
+def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
+    """Return the force [N] of the tire's learned remainder at every sample; arguments as of `simulate`."""
+    learned = tire.remainder
+    if learned is None:
+        return np.zeros_like(recording.deflection)
+    x, R = recording.deflection, recording.surface_radius
+    rate, acceleration = np.zeros_like(x), np.zeros_like(x)
+    if kinematics is not None:
+        rate, acceleration = kinematics.rate, kinematics.acceleration
+    elif learned.differentiates:
+        rate, acceleration = track(recording.time, x, tire.reading_noise)
+    each = zip(x.tolist(), R.tolist(), rate.tolist(), acceleration.tolist(), strict=True)
+    return np.array([learned.added(*values) for values in each])
 
 
 def elastic_stage(

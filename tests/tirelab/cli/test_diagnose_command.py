@@ -56,7 +56,7 @@ def known(damped_run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 def check_contract(content: Any) -> None:
     """The contract of diagnosis.json, schema 2, written out by hand."""
     top = {"schema", "verdict", "where", "fit", "tire", "corrected_fmu", "report", "data"}
-    assert content.keys() == top | {"held_out_by"}
+    assert content.keys() == top | {"held_out_by", "baseline_tire", "corrected_tire"}
     assert content["schema"] == 2
     assert (content["tire"], content["corrected_fmu"], content["report"], content["data"]) == (
         "tire.json",

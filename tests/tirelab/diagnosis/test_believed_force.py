@@ -11,6 +11,7 @@ from drives import ride
 from tirelab.cli import main
 from tirelab.diagnosis.believed_force import believed_of
 from tirelab.errors import TirelabError
+from tirelab.fmu import replay as fmu_replay
 from tirelab.recordings.recording import Recording, read_recording
 
 SHAPE = 700.0
@@ -68,14 +69,33 @@ def test_the_damper_is_found_and_the_corrected_simulation_written(tmp_path: Path
     assert done.exit_code == 0, done.output
     content = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [e["name"] for e in content["verdict"]["effects"]] == ["viscous_damping"]
-    assert (out / "believed" / "BicycleTire.fmu").is_file()
-    for seed in (1, 2):
+    assert content["corrected_fmu"] == content["correction"]["fmu"] == "Correction.fmu"
+    assert content["correction"]["system"] is None
+    assert {f.name for f in out.iterdir()} == {
+        *("diagnosis.json", "report.html", "tire.json", "plots.csv", "Correction.fmu"),
+        *("ride1.corrected.csv", "ride2.corrected.csv"),
+        *(["separating_test.csv"] if content["verdict"]["separating_test"] else []),
+    }
+    for seed, key in ((1, "after"), (2, "held_out_after")):
         corrected = pl.read_csv(out / f"ride{seed}.corrected.csv")
         error = (corrected["force [N]"] - corrected["corrected_force [N]"]).to_numpy()
         before = (corrected["force [N]"] - corrected["believed_force [N]"]).to_numpy()
         missing = DAMPING * ride(seed)[2] * (ride(seed)[1] > 0.0)
         assert np.sqrt(np.mean(before**2)) == pytest.approx(np.hypot(np.std(missing), 4.0), rel=0.05)
-        assert np.sqrt(np.mean(error**2)) < 5.0
+        assert np.sqrt(np.mean(error**2)) == pytest.approx(content["fit"][key], rel=1e-6)
+        assert np.sqrt(np.mean(error**2)) < 1.1 * 4.0
+        inputs = {
+            "deflection": corrected["deflection [m]"].to_numpy(),
+            "surface_radius": corrected["radius [m]"].to_numpy(),
+        }
+        added = fmu_replay.driven(
+            out / "Correction.fmu", corrected["time [s]"].to_numpy(), inputs, "additional_force"
+        )
+        np.testing.assert_allclose(
+            corrected["believed_force [N]"].to_numpy() + added,
+            corrected["corrected_force [N]"].to_numpy(),
+            atol=1e-6,
+        )
         recorded = read_recording(tmp_path / f"ride{seed}.csv", radius="flat")
         np.testing.assert_allclose(corrected["force [N]"].to_numpy(), recorded.force, atol=1e-8)
 

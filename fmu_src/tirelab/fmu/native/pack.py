@@ -16,6 +16,7 @@ from xml.etree.ElementTree import Element, SubElement
 import fmpy.validation
 from bicycle_tire_fmu import BASE_UNITS, BicycleTire
 from radialtire import Flow, TireModel, flat_law, parameters_of, write_tire
+from radialtire.tirefile import to_text
 
 from ...errors import TirelabError
 from .. import documentation
@@ -49,6 +50,8 @@ def build_native_fmu(tire: TireModel, folder: Path) -> NativeFmu:
 
     Raises TirelabError where the folder cannot be written, the binaries are not there, or the FMU is not valid.
     """
+    if tire.remainder is not None:
+        raise TirelabError("a learned remainder runs in the Python FMU only; leave out --native")
     description = described(tire)
     members = documentation.pages(tire, description, None)
     members |= {f"sources/{name}": content for name, content in source_files().items()}
@@ -60,6 +63,9 @@ def build_native_fmu(tire: TireModel, folder: Path) -> NativeFmu:
             )
         name = f"binaries/{platform.fmi2}/{MODEL}.{platform.ending}"
         members[name] = platform.library.read_bytes()
+    members["resources/tire.json"] = to_text(
+        tire
+    ).encode()  # read by nothing in it: so that the tire can be read
     members["resources/tire.dat"] = data(tire, "")
     guid = content_guid(members, description)
     description.set("guid", guid)

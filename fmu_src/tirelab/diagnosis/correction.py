@@ -1,0 +1,154 @@
+"""The correction of a simulation of others, as something that runs beside it, and the force of the two together.
+
+Effects before the elastic law (an offset or a lag of the deflection, a spring in series) change the deflection that
+the simulation is given; all others are an additional force:
+
+    F = F_simulation(x_t) + corrected tire(x) - law(x_t),    x_t = x after the effects before the law
+
+Where only the simulation's force is known, in a column of the recording, x_t = x: everything is an additional force.
+So it is where the simulation with the other deflection is WORSE than with the force that its law would add: the law is
+then no stand-in for its stiffness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+from radialtire import TireModel
+
+from ..fmu.build import Correction, build_correction
+from ..fmu.foreign_replay import Progress, replay_foreign
+from ..fmu.replay import driven
+from ..fmu.system import SYSTEM, write_system
+from ..recordings.recording import Recording
+from ..simulation.simulate import UPSTREAM, SmoothedMotion, simulate
+from .believed_force import Believed, believed_force
+from .held_out import rmse
+from .outcome import Replayed
+
+FloatArray = NDArray[np.float64]
+
+CORRECTION = "Correction.fmu"
+
+WORSE = 1.1
+"""Error with the other deflection over that with the additional force from which the force is delivered."""
+
+
+@dataclass(frozen=True)
+class Corrected:
+    """A simulation of others with what it lacks.
+
+    fmu, system: the files that were written, system None where the simulation is no FMU
+    forces: [N] on the fitted recordings, where they are known already; remark: for the reader, or nothing
+    """
+
+    believed: Believed
+    correction: Correction
+    fmu: Path
+    system: Path | None
+    forces: tuple[FloatArray, ...] = ()
+    remark: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the entry `correction` of diagnosis.json."""
+        model = self.believed.model
+        return {
+            "fmu": CORRECTION,
+            "system": None if self.system is None else SYSTEM,
+            "simulation": None if model is None else model.path.name,
+            "variables": {}
+            if model is None
+            else {"deflection": model.deflection.name, "force": model.force.name},
+            **self.correction.to_dict(),
+        }
+
+    def notes(self) -> list[str]:
+        """Return what a reader of the figures has to know."""
+        law = f"{self.believed.tire.law.name}, which leaves {self.believed.rmse:.3g} N of it"
+        runs = "as the simulated force plus the output additional_force of Correction.fmu, given the same deflection"
+        if self.system is not None:
+            runs = f"as {SYSTEM}, which couples {_name(self.believed)} with Correction.fmu"
+            if self.correction.moves:
+                runs += " (it is given the deflection that Correction.fmu returns: an effect acts before it)"
+        return [
+            "the effects are those beside the simulation: force stands for recorded minus simulated force plus the law "
+            f"of the latter ({law}); the corrected simulation is in the files *.corrected.csv, and runs {runs}",
+            *([self.remark] if self.remark else []),
+        ]
+
+    def replayed(self, recordings: Sequence[Recording], report: Progress) -> Replayed:
+        """Return the recordings with the forces before and after, as they stand in `Believed.fitted`."""
+        before, after = [], []
+        known = dict(zip((r.name for r in self.believed.fitted), self.forces, strict=False))
+        for r in recordings:
+            law = simulate(self.believed.tire, r)
+            before.append(law)
+            force = known[r.name] if r.name in known else self.force(r, report)
+            after.append(force - believed_force(r) + law)
+        return Replayed(tuple(recordings), tuple(before), tuple(after))
+
+    def force(self, recording: Recording, report: Progress) -> FloatArray:
+        """Return the force [N] of the simulation with its correction, from the FMUs themselves."""
+        r = recording
+        report(f"replaying the corrected simulation on {r.name}")
+        inputs = {"deflection": r.deflection, "surface_radius": r.surface_radius}
+        simulated = believed_force(r)
+        if self.correction.moves and self.believed.model is not None:
+            x = driven(self.fmu, r.time, inputs, "tire_deflection")
+            still = np.zeros_like(x)
+            moved = SmoothedMotion(r.time, x, r.surface_radius, still, still)
+            simulated = replay_foreign(self.believed.model, moved, r.name, self.believed.timeout, report)
+        return driven(self.fmu, r.time, {**inputs, "simulated_force": simulated}, "corrected_force")
+
+
+def deliver(folder: Path, believed: Believed, corrected: TireModel, report: Progress) -> Corrected:
+    """Write the correction's FMU into `folder`, and for the FMU of others the system of both."""
+    if believed.model is None or not any(e.place in UPSTREAM for e, _ in corrected.effects):
+        return _written(folder, believed, corrected, False)
+    moved = _written(folder, believed, corrected, True)
+    forces = tuple(moved.force(r, report) for r in believed.fitted)
+    pairs = list(zip(believed.fitted, forces, strict=True))
+    with_other = rmse([r.force + believed_force(r) - simulate(believed.tire, r) - f for r, f in pairs])
+    with_force = rmse([r.force - simulate(corrected, r) for r in believed.fitted])
+    if with_other <= WORSE * with_force:
+        return replace(moved, forces=forces)
+    remark = (
+        "an effect acts before the simulation, yet is delivered as an additional force: given the other deflection the "
+        f"simulation leaves {with_other:.3g} N, with the force {with_force:.3g} N"
+    )
+    return replace(_written(folder, believed, corrected, False), remark=remark)
+
+
+def _written(folder: Path, believed: Believed, corrected: TireModel, moves: bool) -> Corrected:
+    surfaces = np.unique(np.concatenate([r.surface_radius for r in (*believed.fitted, *believed.kept)]))
+    correction = Correction(believed.tire, corrected, float(surfaces[-1]), moves)
+    fmu = build_correction(correction, folder).path
+    system = None
+    if believed.model is not None:
+        system = write_system(believed.model, fmu, folder, moves=moves, surfaces=surfaces.size > 1)
+    return Corrected(believed, correction, fmu, system)
+
+
+def write_corrected(folder: Path, believed: Believed, replayed: Replayed) -> None:
+    """Write each recording with its recorded, simulated and corrected force into `folder`, as NAME.corrected.csv."""
+    for r, law, after in zip(replayed.recordings, replayed.before, replayed.after, strict=True):
+        simulated = believed_force(r)
+        columns: Mapping[str, FloatArray] = {
+            "time [s]": r.time,
+            "deflection [m]": r.deflection,
+            "radius [m]": r.surface_radius,
+            "force [N]": r.force + simulated - law,
+            "believed_force [N]": simulated,
+            "corrected_force [N]": after + simulated - law,
+        }
+        pl.DataFrame(columns).write_csv(folder / f"{r.name}.corrected.csv")
+
+
+def _name(believed: Believed) -> str:
+    return "the simulation" if believed.model is None else believed.model.path.name
