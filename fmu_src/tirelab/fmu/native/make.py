@@ -24,7 +24,7 @@ from .kernel import sources
 HERE = Path(__file__).parent
 BINARIES = HERE / "binaries"
 MODEL = "BicycleTire"
-C_FILES = ("kernel.c", "tire.c", "fmi2.c")
+C_FILES = ("kernel.c", "tire.c", "instance.c", "fmi2.c", "fmi3.c")
 SHARED = (HERE.parent / "fmi2.h", HERE.parent / "fmi2_states.h")
 """Headers that the Python FMU's loader has too."""
 

@@ -54,7 +54,7 @@ static void path_of(const char *location, const char *name, bool encoded, char p
         path[used++] = code ? (char)(16 * hexadecimal(location[1]) + hexadecimal(location[2])) : *location;
         location += code ? 2 : 0;
     }
-    if (used && path[used - 1] == '/')
+    if (used && (path[used - 1] == '/' || path[used - 1] == '\\'))
         used--;
     path[used] = 0;
     snprintf(path + used, size - used, "/%s", name);
@@ -542,6 +542,12 @@ int tire_state_variable(const Tire *tire, unsigned reference)
     const unsigned first = FIRST_PARAMETER + (unsigned)tire->count + (tire->moves ? MOTION_VARIABLES : 0);
     const bool known = reference >= first && reference - first < 2 * (unsigned)tire->continuous_count;
     return known ? (int)(reference - first) : -1;
+}
+
+unsigned tire_references(const Tire *tire)
+{
+    return FIRST_PARAMETER + (unsigned)tire->count + (tire->moves ? MOTION_VARIABLES : 0)
+           + 2 * (unsigned)tire->continuous_count;
 }
 
 static double *variable(Tire *tire, unsigned reference)

@@ -39,7 +39,6 @@ typedef struct {
 } Memory;
 
 typedef struct {
-    char *text;          /* the data file */
     char guid[64];
     Parameter *parameters;
     int count;
@@ -102,6 +101,9 @@ void tire_give_motion(Tire *tire, bool given);
 /* The number of the variable among those of the motion, or among states and their derivatives, or -1. */
 int tire_motion_variable(const Tire *tire, unsigned reference);
 int tire_state_variable(const Tire *tire, unsigned reference);
+
+/* The number of value references, all of which are in use. */
+unsigned tire_references(const Tire *tire);
 
 /* States as bytes. */
 size_t tire_state_size(const Tire *tire);
