@@ -175,16 +175,18 @@ EXPORT Status fmi3SetBoolean(void *c, const Reference v[], size_t n, const bool 
 }
 
 /* There are no variables of these types, whatever the arguments after their number. */
+static Status none(Instance *self, const Reference v[], size_t n, int states, String function)
+{
+    if (!allowed(self, states, function))
+        return ERROR;
+    return n ? fail(self, "value reference %u is no variable for %s", v ? v[0] : 0, function) : OK;
+}
+
 #define NONE(Name) \
-    EXPORT Status fmi3Get##Name(void *c, const Reference v[], size_t n) \
-    { \
-        ENTER(MAY_GET_3, "fmi3Get" #Name) \
-        return n ? fail(self, "value reference %u is no " #Name " variable of this tire", v ? v[0] : 0) : OK; \
-    } \
+    EXPORT Status fmi3Get##Name(void *c, const Reference v[], size_t n) { return none(c, v, n, MAY_GET_3, "fmi3Get" #Name); } \
     EXPORT Status fmi3Set##Name(void *c, const Reference v[], size_t n) \
     { \
-        ENTER(MAY_SET_DISCRETE_3, "fmi3Set" #Name) \
-        return n ? fail(self, "value reference %u is no " #Name " variable of this tire", v ? v[0] : 0) : OK; \
+        return none(c, v, n, MAY_SET_DISCRETE_3, "fmi3Set" #Name); \
     }
 NONE(Float32)
 NONE(Int8)
@@ -200,12 +202,13 @@ NONE(Binary)
 NONE(Clock)
 
 /* What the model description says that this FMU does not have, whatever the arguments. */
+static Status unsupported(const Instance *self, String function)
+{
+    return self ? fail(self, "%s is not supported", function) : ERROR;
+}
+
 #define UNSUPPORTED(Name) \
-    EXPORT Status fmi3##Name(void *c) \
-    { \
-        ENTER(ANY, "fmi3" #Name) \
-        return fail(self, "fmi3" #Name " is not supported"); \
-    }
+    EXPORT Status fmi3##Name(void *c) { return unsupported(c, "fmi3" #Name); }
 UNSUPPORTED(GetNumberOfVariableDependencies)
 UNSUPPORTED(GetVariableDependencies)
 UNSUPPORTED(GetAdjointDerivative)
