@@ -42,6 +42,7 @@ static Instance *instantiated(String name, String token, String resources, bool 
     how.logger = (void (*)(void))logger;
     how.environment = environment;
     how.tire.exchange = exchange;
+    how.tire.newer = true;
     if (!refused)
         return instance_new(how, name, token, resources);
     tell(&how, ERROR, refused);
@@ -134,14 +135,11 @@ EXPORT Status fmi3GetFloat64(void *c, const Reference v[], size_t n, double x[],
     ENTER(MAY_GET_3, "fmi3GetFloat64")
     if (!fits(self, n, values) || !given(self, v, n, x))
         return ERROR;
-    const Reference time = tire_references(&self->tire), contact = time + 1;
+    const Reference time = tire_references(&self->tire);
     for (size_t i = 0; i < n && status <= DISCARD; i++) {
-        const Reference known = v[i] == contact ? RADIAL_FORCE : v[i];
-        const Status one = v[i] == time ? OK : instance_get_reals(self, &known, 1, x + i);
+        const Status one = v[i] == time ? OK : instance_get_reals(self, v + i, 1, x + i);
         if (v[i] == time)
             x[i] = self->tire.m.time;
-        if (v[i] == contact)
-            x[i] = self->tire.compression;
         status = one > status ? one : status;
     }
     return status;

@@ -38,12 +38,12 @@ def as_fmi3(old: Element) -> Element:
     assert exchange is not None
     assert simulation is not None
     identifier = exchange.get("modelIdentifier", "")
-    completed = exchange.get("completedIntegratorStepNotNeeded") != "true"
+    acting = exchange.get("completedIntegratorStepNotNeeded") != "true"
     SubElement(
         root,
         "ModelExchange",
         modelIdentifier=identifier,
-        needsCompletedIntegratorStep=str(completed).lower(),
+        needsCompletedIntegratorStep=str(acting).lower(),
         **COMMON,
     )
     SubElement(
@@ -68,7 +68,7 @@ def as_fmi3(old: Element) -> Element:
     for variable in variables:
         described.append(_variable(variable, references))
     _add_own(described)
-    root.append(_structure(old, references, CONTACT_OFFSET + len(references)))
+    root.append(_structure(old, references, CONTACT_OFFSET + len(references), acting))
     return root
 
 
@@ -102,16 +102,16 @@ def _add_own(variables: Element) -> None:
         SubElement(variables, "Float64", {**known, "variability": "continuous", **attributes})
 
 
-def _structure(old: Element, references: list[str], contact: int) -> Element:
-    """Return the structure: who depends on whom, by value references."""
+def _structure(old: Element, references: list[str], contact: int, acting: bool) -> Element:
+    """Return the structure: who depends on whom, by value references.
 
-    def named(unknown: Element) -> dict[str, str]:
-        numbers = unknown.get("dependencies", "").split()
-        return {
-            "valueReference": references[int(unknown.get("index", "")) - 1],
-            "dependencies": " ".join(references[int(number) - 1] for number in numbers),
-        }
-
+    acting: whether there are effects. Then what depends on what is left out, which means everything on everything, as
+    some effects depend on time itself; the bare law depends on inputs and, other than in FMI 2.0, on parameters.
+    """
+    variables = old.find("ModelVariables")
+    assert variables is not None
+    known = [v.get("valueReference", "") for v in variables if v.get("causality") in ("input", "parameter")]
+    depends = {} if acting else {"dependencies": " ".join(known)}
     structure = Element("ModelStructure")
     for place, name in (
         ("Outputs", "Output"),
@@ -119,6 +119,7 @@ def _structure(old: Element, references: list[str], contact: int) -> Element:
         ("InitialUnknowns", "InitialUnknown"),
     ):
         for unknown in old.iterfind(f"ModelStructure/{place}/Unknown"):
-            SubElement(structure, name, named(unknown))
+            reference = references[int(unknown.get("index", "")) - 1]
+            SubElement(structure, name, {"valueReference": reference, **depends})
     SubElement(structure, "EventIndicator", valueReference=str(contact))
     return structure

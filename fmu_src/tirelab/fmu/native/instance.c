@@ -28,21 +28,22 @@ Status fail(const Instance *self, String format, ...)
 
 static State stage(const Instance *self) { return (State)self->tire.m.stage; }
 
-bool allowed(const Instance *self, int states, String function)
+bool not_allowed(const Instance *self, String function)
 {
-    if (!self || stage(self) & states)
-        return self != NULL;
     fail(self, "%s is not allowed in the state \"%s\"", function, state_name(stage(self)));
     return false;
 }
 
 /* Values for the inputs as they are now; a message only where `heard`: in co-simulation the step has one. */
-static Status evaluate(Instance *self, bool heard)
+static Status evaluated(Instance *self, bool heard)
 {
     char trouble[TROUBLE];
-    if (self->tire.current && (!heard || isfinite(self->tire.force)))
-        return OK;
     return tire_try(&self->tire, self->tire.m.time, trouble) || !heard ? OK : tell(self, DISCARD, trouble);
+}
+
+static inline Status evaluate(Instance *self, bool heard)
+{
+    return self->tire.current && (!heard || isfinite(self->tire.force)) ? OK : evaluated(self, heard);
 }
 
 Instance *instance_new(Instance how, String name, String guid, String resources)
@@ -126,8 +127,15 @@ Status instance_set_reals(Instance *self, const Reference v[], size_t n, const d
                        ? fail(self, "%s = %.17g cannot be set; set inputs and parameters only",
                               v[i] == RADIAL_FORCE ? "radial_force" : "radial_stiffness", x[i])
                        : fail(self, "value reference %u = %.17g cannot be set; set inputs and parameters only", v[i], x[i]);
-    for (size_t i = 0; i < n; i++)
-        tire_set(&self->tire, v[i], x[i]);
+    Inputs *const u = &self->tire.m.inputs;
+    self->tire.current = false;
+    for (size_t i = 0; i < n; i++) /* the inputs of every step first: no call */
+        if (v[i] == DEFLECTION)
+            u->deflection = x[i];
+        else if (v[i] == SURFACE_RADIUS)
+            u->radius = x[i];
+        else
+            tire_set(&self->tire, v[i], x[i]);
     return OK;
 }
 
@@ -223,8 +231,11 @@ Status instance_derivatives(Instance *self, const Reference unknown[], size_t un
     evaluate(self, false);
     for (size_t i = 0; i < unknowns; i++) {
         const int state = tire_state_variable(&self->tire, unknown[i]);
-        if ((unknown[i] != RADIAL_FORCE && state < self->tire.continuous_count)
-            || !tire_derivative(&self->tire, unknown[i], known, seed, knowns, x + i))
+        double now;
+        const bool computed = unknown[i] == RADIAL_FORCE || unknown[i] == RADIAL_STIFFNESS
+                              || state >= self->tire.continuous_count
+                              || (unknown[i] > tire_references(&self->tire) && tire_get(&self->tire, unknown[i], &now));
+        if (!computed || !tire_derivative(&self->tire, unknown[i], known, seed, knowns, x + i))
             return fail(self, "there is no derivative of value reference %u by these variables", unknown[i]);
     }
     return OK;

@@ -30,7 +30,13 @@ struct Instance {
     if (!allowed(self, states, function)) \
         return ERROR;
 
-bool allowed(const Instance *, int states, String function);
+/* A message where a call is not allowed; false. */
+bool not_allowed(const Instance *, String function);
+
+static inline bool allowed(const Instance *self, int states, String function)
+{
+    return self && (self->tire.m.stage & states || not_allowed(self, function));
+}
 
 /* Tell the host of a status; the status. */
 Status tell(const Instance *, Status, String text);
