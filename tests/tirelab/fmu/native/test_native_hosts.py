@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import math
+import os
 import shutil
 import stat
 import sys
@@ -62,13 +63,13 @@ def test_ecos_with_fmi_3(run_host: Run, fmus: dict[int, Path]) -> None:
 def test_proxyfmu_a_host_without_python(
     run_host: Run, fmus: dict[int, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """ecospy's proxyfmu is a program in C++ of its own, started here with nothing else on PATH."""
+    """ecospy's proxyfmu is a program in C++ of its own, which has no Python in it."""
     program = Path(sys.prefix) / "Scripts" / "proxyfmu"
     if not program.is_file():
         pytest.skip("ecospy has no proxyfmu here")
     shutil.copy(program, tmp_path)
     (tmp_path / "proxyfmu").chmod(stat.S_IRWXU)
-    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     printed = run_host("with_ecospy.py", f"proxyfmu://localhost?file={fmus[2]}", job=INPUTS)
     assert forces(printed) == pytest.approx(FORCES, rel=1e-12)
 
