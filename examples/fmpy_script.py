@@ -13,7 +13,8 @@ if not fmu.exists():
 columns = [("time", float), ("deflection", float), ("surface_radius", float)]
 press = np.array([(0.0, 0.0, 1e5), (1.0, 0.02, 1e5)], dtype=columns)
 names = ["deflection", "radial_force"]
-for time, deflection, force in simulate_fmu(
-    fmu, input=press, output=names, stop_time=1.0, output_interval=0.1
-):
-    print(f"{time:.1f} s: {100.0 * deflection:.2f} cm, {force:.1f} N")
+STEP = 0.1
+# fmpy sets an input where a step begins and holds it to the step's end: each row shows the input of one step before.
+rows = simulate_fmu(fmu, input=press, output=names, stop_time=1.0 + STEP, output_interval=STEP)
+for time, deflection, force in rows[1:]:
+    print(f"{time - STEP:.1f} s: {100.0 * deflection:.2f} cm, {force:.1f} N")

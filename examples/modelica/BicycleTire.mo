@@ -1,5 +1,35 @@
 within ;
 block BicycleTire "Radial force of an off-road bicycle tire on curved ground: BicycleTire.fmu with checked units"
+  parameter Real flat_coefficient(min=0.001, max=1e+06) = 550.9
+    "C0, C1: A on flat ground [N/cm^B]"
+    annotation (Dialog(group="Law"));
+  parameter Real convex_coefficient_drop(min=0, max=1e+06) = 337.8
+    "D0: loss of A on a sharp edge [N/cm^B]"
+    annotation (Dialog(group="Law"));
+  parameter Real convex_coefficient_decay(final unit="1/cm", min=0, max=100) = 0.2519
+    "E0: rate at which A recovers with the bump's radius; printed as -2519, 0.02519 is the second reading"
+    annotation (Dialog(group="Law"));
+  parameter Real concave_coefficient_rise(min=0, max=1e+09) = 7822.0
+    "D1: gain of A extrapolated to Rb = 0 [N/cm^B]"
+    annotation (Dialog(group="Law"));
+  parameter Real concave_coefficient_decay(final unit="1/cm", min=0, max=100) = 0.1398
+    "E1: rate at which the gain of A fades with the dip's radius"
+    annotation (Dialog(group="Law"));
+  parameter Real flat_exponent(final unit="1", min=0.1, max=10) = 1.422
+    "C2, C3: B on flat ground"
+    annotation (Dialog(group="Law"));
+  parameter Real convex_exponent_drop(final unit="1", min=0, max=10) = 0.2469
+    "D2: loss of B on a sharp edge"
+    annotation (Dialog(group="Law"));
+  parameter Real convex_exponent_decay(final unit="1/cm", min=0, max=100) = 0.1651
+    "E2: rate at which B recovers with the bump's radius"
+    annotation (Dialog(group="Law"));
+  parameter Real concave_exponent_rise(final unit="1", min=0, max=10) = 0.2128
+    "D3: gain of B extrapolated to Rb = 0"
+    annotation (Dialog(group="Law"));
+  parameter Real concave_exponent_decay(final unit="1/cm", min=0, max=100) = 0.0289
+    "E3: rate at which the gain of B fades with the dip's radius"
+    annotation (Dialog(group="Law"));
   Modelica.Blocks.Interfaces.RealInput deflection(
     final quantity="Length",
     final unit="m",
@@ -15,18 +45,32 @@ block BicycleTire "Radial force of an off-road bicycle tire on curved ground: Bi
     annotation (Placement(transformation(extent={{-140,-80},{-100,-40}})));
   Modelica.Blocks.Interfaces.RealOutput radial_force(
     final quantity="Force",
-    final unit="N") "Compressive force between tire and ground, along the line from the ground to the hub"
+    final unit="N",
+    min=0) "Compressive force between tire and ground, along the line from the ground to the hub"
     annotation (Placement(transformation(extent={{100,50},{120,70}})));
   Modelica.Blocks.Interfaces.RealOutput radial_stiffness(
     final quantity="TranslationalSpringConstant",
     final unit="N/m",
-    displayUnit="N/mm") "Slope of the force over the deflection"
+    displayUnit="N/mm",
+    min=0) "Slope of the force over the deflection"
     annotation (Placement(transformation(extent={{100,-10},{120,10}})));
   Modelica.Blocks.Interfaces.BooleanOutput in_tested_range
     "Whether curvature, deflection and force are within those that were measured"
     annotation (Placement(transformation(extent={{100,-70},{120,-50}})));
 protected
-  BicycleTire_fmu fmu "The class that your tool made when it imported BicycleTire.fmu: put its name here"
+  BicycleTire_fmu fmu(
+    law(
+      flat_coefficient=flat_coefficient,
+      convex_coefficient_drop=convex_coefficient_drop,
+      convex_coefficient_decay=convex_coefficient_decay,
+      concave_coefficient_rise=concave_coefficient_rise,
+      concave_coefficient_decay=concave_coefficient_decay,
+      flat_exponent=flat_exponent,
+      convex_exponent_drop=convex_exponent_drop,
+      convex_exponent_decay=convex_exponent_decay,
+      concave_exponent_rise=concave_exponent_rise,
+      concave_exponent_decay=concave_exponent_decay))
+    "The class that your tool made when it imported BicycleTire.fmu: put its name here"
     annotation (Placement(transformation(extent={{-30,-30},{30,30}})));
 equation
   connect(deflection, fmu.deflection);
@@ -47,8 +91,12 @@ force-deflection behavior of off-road bicycle tires</em>, Cycling Science, Sprin
 <ol>
 <li>Build the FMU: <code>python build_fmu.py</code> writes <code>dist/BicycleTire.fmu</code> (FMI 2.0, Co-Simulation).</li>
 <li>Import it in your tool as a co-simulation FMU. The tool makes a class for it, <code>BicycleTire_fmu</code> or
-similar; where the name is another, change it in the one line of this block that declares <code>fmu</code>.
-The Modelica compiler of OpenModelica imports FMUs for model exchange only; its OMSimulator takes this one.</li>
+similar; where the name is another, change it in the one line of this block that declares <code>fmu</code>. Where the
+tool writes the FMU's parameter <code>law.flat_coefficient</code> as <code>law_flat_coefficient</code>, write the ten
+modifiers of <code>fmu</code> in the same way.</li>
+<li>The Modelica compiler of OpenModelica imports FMUs for model exchange only, <code>importFMU(\"BicycleTire.fmu\")</code>:
+build the native FMU, <code>python build_fmu.py --native</code>, which has both. <code>model_exchange.py</code> beside this
+file simulates that in fmpy.</li>
 <li>Choose the FMU's communication step. With 3.5 kg on the wheel, held inputs and a master that runs its units one
 after the other 1 ms gives the force within about 1 % over a log.</li>
 </ol>
@@ -58,6 +106,9 @@ the ground; <code>surface_radius</code> is the inverse of the ground's mean curv
 flat ground. Apply <code>radial_force</code> to the hub along the line from the ground, and its opposite to the ground.
 A tire that is not pressed gives no force.</p>
 <h4>Limits</h4>
+<p>This block is for the article's tire. The force of a tire with effects (damping, mass, an offset of the load cell) can be
+negative: take <code>min=0</code> from <code>radial_force</code> and <code>radial_stiffness</code> then; its effects' own
+parameters <code>EFFECT.*</code> are set in the same way as <code>law.*</code>.</p>
 <p>Sharp edges, ground whose radius jumps or changes quickly within the contact, concave ground near the wheel's own
 radius, and several contacts at once are outside of what was measured; <code>in_tested_range</code> tells of curvature,
 deflection and force. The ten constants of the law are the FMU's parameters <code>law.*</code>.</p>

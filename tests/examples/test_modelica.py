@@ -9,6 +9,7 @@ import fmpy
 import pytest
 from radialtire import TireModel
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.native.pack import build_native_fmu
 
 parser = pytest.importorskip("pymoca.parser")
 
@@ -48,6 +49,38 @@ def test_inputs_outputs_and_units_are_the_fmus(wrapper: Any, tmp_path: Path) -> 
         if variable.unit:
             assert _modified(symbol)["unit"].value == variable.unit
     assert len(connected) == len(wrapper.equations) == 5
+
+
+def test_the_parameters_are_the_fmus(wrapper: Any, tmp_path: Path) -> None:
+    """Ten constants of the law, each with the FMU's start, bounds and unit, and each handed to the FMU by its name."""
+    fmu = build_native_fmu(TireModel(), tmp_path).path
+    (law,) = (
+        argument.value
+        for argument in wrapper.symbols["fmu"].class_modification.arguments
+        if str(argument.value.component) == "law"
+    )
+    handed = {str(a.value.component): str(a.value.modifications[0]) for a in law.modifications[0].arguments}
+    described = [
+        v for v in fmpy.read_model_description(str(fmu)).modelVariables if v.causality == "parameter"
+    ]
+    assert len(described) == len(handed) == 10
+    for variable in described:
+        name = variable.name.removeprefix("law.")
+        symbol = wrapper.symbols[name]
+        assert "parameter" in symbol.prefixes
+        assert handed[name] == name
+        given = _modified(symbol)
+        assert given["value"].value == float(variable.start)
+        assert (given["min"].value, given["max"].value) == (float(variable.min), float(variable.max))
+        assert ("unit" in given) == (variable.unit is not None)
+
+
+def test_the_article_s_force_is_never_negative(wrapper: Any, tmp_path: Path) -> None:
+    """min=0 stands where it is true: on force and stiffness of a tire without effects, not on the deflection."""
+    fmu = build_native_fmu(TireModel(), tmp_path).path
+    for variable in fmpy.read_model_description(str(fmu)).modelVariables:
+        if variable.name in ("radial_force", "radial_stiffness"):
+            assert float(variable.min) == _modified(wrapper.symbols[variable.name])["min"].value == 0
 
 
 def test_the_import_is_named(wrapper: Any, repository: Path) -> None:

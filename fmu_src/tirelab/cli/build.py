@@ -35,9 +35,21 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Without Python inside: Co-Simulation and Model Exchange on Linux, Windows and macOS.",
 )
+@click.option(
+    "--fmi",
+    type=click.Choice(["2", "3"]),
+    default="2",
+    show_default=True,
+    help="Version of FMI; 3 needs --native.",
+)
 @output_options("dist")
 def command(
-    tire: Path | None, diagnosis: Path | None, with_remainder: bool, native: bool, output: Output
+    tire: Path | None,
+    diagnosis: Path | None,
+    with_remainder: bool,
+    native: bool,
+    fmi: str,
+    output: Output,
 ) -> None:
     """Pack a tire as DIR/BicycleTire.fmu, an FMI 2.0 Co-Simulation unit, and validate it."""
     if diagnosis is None:
@@ -56,8 +68,10 @@ def command(
     if model.remainder is not None:
         output.note(f"the FMU has {model.remainder}")
     if native:
-        _native(model, output)
+        _native(model, int(fmi), output)
         return
+    if fmi == "3":
+        raise TirelabError("the Python FMU is FMI 2.0 only; add --native for FMI 3.0")
 
     from ..fmu.build import build_fmu
     from ..fmu.loader import NO_COMPILER
@@ -97,14 +111,14 @@ def _correction(correction: Correction, native: bool, output: Output) -> None:
     output.result(lines, content)
 
 
-def _native(model: TireModel, output: Output) -> None:
+def _native(model: TireModel, fmi: int, output: Output) -> None:
     from ..fmu.native.make import PLATFORMS
     from ..fmu.native.pack import build_native_fmu
 
     output.stage("packing the FMU")
-    built = build_native_fmu(model, output.out)
-    binaries = [platform.fmi2 for platform in PLATFORMS]
-    kinds = "FMI 2.0 Co-Simulation and Model Exchange"
+    built = build_native_fmu(model, output.out, fmi=fmi)
+    binaries = [platform.folder(fmi) for platform in PLATFORMS]
+    kinds = f"FMI {fmi}.0 Co-Simulation and Model Exchange"
     lines = [
         f"{built.path}: {model.name}, {kinds}, valid, guid {built.guid}",
         f"binaries: {', '.join(binaries)}",

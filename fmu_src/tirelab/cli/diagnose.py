@@ -184,12 +184,10 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     with progress(output.quiet, STAGES) as show:
         asked = Request(recordings, folder, options["tire"], options["held_out"], how, rig=options["rig"])
         run = run_request(asked, show)
-    if options["native"] and "correction" in run.content:
+    corrects = "correction" in run.content
+    if options["native"] and corrects:
         output.note("--native wrote nothing: a correction is written as a Python FMU only")
-    elif options["native"]:
-        from ..fmu.native.pack import build_native_fmu
-
-        build_native_fmu(run.verdict.tire, folder / "native")
+    native = _native(run, folder, options["native"] and not corrects)
     if output.as_json:
         click.echo(json.dumps(run.content, indent=2, allow_nan=False))
         for warning in run.warnings:
@@ -200,6 +198,19 @@ def _single(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     for warning in run.warnings:
         echo(f"warning: {printable(warning)}")
     _print(run, folder)
+    if native is not None:
+        echo(f"native FMU: {native}")
+
+
+def _native(run: DiagnosisRun, folder: Path, asked: bool) -> Path | None:
+    """Write the native FMU where it is asked for; one of an earlier diagnosis would seem to belong to this one."""
+    from ..fmu.archive import MODEL
+    from ..fmu.native.pack import build_native_fmu
+
+    if asked:
+        return build_native_fmu(run.verdict.tire, folder / "native").path
+    (folder / "native" / f"{MODEL}.fmu").unlink(missing_ok=True)
+    return None
 
 
 def _print(run: DiagnosisRun, out: Path) -> None:

@@ -34,10 +34,24 @@ newer (x86-64), macOS 11 or newer (x86-64, arm64). For other platforms its sourc
 """
 
 
-def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: str | None) -> dict[str, bytes]:
+ICON = """\
+<?xml version='1.0' encoding='UTF-8'?>
+<fmiTerminalsAndIcons fmiVersion="3.0">
+  <GraphicalRepresentation>
+    <CoordinateSystem x1="-100" y1="-100" x2="100" y2="100" suggestedScalingFactorTo_mm="0.1" />
+    <Icon x1="-100" y1="-100" x2="100" y2="100" />
+  </GraphicalRepresentation>
+</fmiTerminalsAndIcons>
+"""
+"""Where FMI 3.0 has the icon."""
+
+
+def pages(
+    tire: TireModel, description: ElementTree.Element, wrapper_license: str | None, *, fmi: int = 2
+) -> dict[str, bytes]:
     """Return the documentation's files by their names in the FMU.
 
-    description: the model description, whose variables the page lists
+    description: the model description of FMI 2.0, whose variables the page lists; fmi: the version of the FMU
     wrapper_license: the licence of pythonfmu, where the FMU carries its code; a native FMU has None
     """
     here = resources.files(__package__)
@@ -48,10 +62,18 @@ def pages(tire: TireModel, description: ElementTree.Element, wrapper_license: st
         for variable in description.iterfind("ModelVariables/ScalarVariable")
     ]
     native = wrapper_license is None
-    return notices(wrapper_license) | {
-        "documentation/index.html": page.render(tire=tire, variables=variables, native=native).encode(),
-        "model.png": (here / "model.png").read_bytes(),
+    found = notices(wrapper_license) | {
+        "documentation/index.html": page.render(
+            tire=tire, variables=variables, native=native, fmi=fmi
+        ).encode(),
     }
+    icon = (here / "model.png").read_bytes()
+    if fmi == 3:
+        found["terminalsAndIcons/icon.png"] = icon
+        found["terminalsAndIcons/terminalsAndIcons.xml"] = ICON.encode()
+    else:
+        found["model.png"] = icon
+    return found
 
 
 def notices(wrapper_license: str | None) -> dict[str, bytes]:

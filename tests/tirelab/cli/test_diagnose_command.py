@@ -259,6 +259,19 @@ def test_a_folder_means_its_recordings(known: None, damped_run: Any, rides: Path
     assert not test.exists() or test.read_text() != "of an earlier diagnosis"
 
 
+def test_native_writes_a_second_fmu_with_the_same_forces(known: None, rides: Path, tmp_path: Path) -> None:
+    """Both kinds hold the corrected tire; a later diagnosis without it takes the native one away."""
+    result = run(rides / "ride.csv", "--out", tmp_path, "--native")
+    assert result.exit_code == 0, result.output
+    native = tmp_path / "native" / "BicycleTire.fmu"
+    assert result.output.splitlines()[-1] == f"native FMU: {native}"
+    recording = read_recording(rides / "kept.csv")
+    force = replay(tmp_path / "BicycleTire.fmu", recording)
+    np.testing.assert_allclose(replay(native, recording), force, rtol=1e-12, atol=1e-9)
+    assert run(rides / "ride.csv", "--out", tmp_path).exit_code == 0
+    assert not native.exists()
+
+
 def test_an_fmu_that_does_something_else_is_reported(
     known: None, rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,7 +1,7 @@
 /*
  * Calls every function of the native FMU in random order with random values, good and bad, for some seconds.
  *
- *     cc -fsanitize=address,undefined fuzz.c kernel.c tire.c fmi2.c -lm -o fuzz && ./fuzz RESOURCES GUID SECONDS SEED
+ *     cc -fsanitize=address,undefined fuzz.c kernel.c tire.c instance.c fmi2.c -lm -o fuzz && ./fuzz RESOURCES GUID SECONDS SEED
  *
  * Prints how many calls were made and how many gave each status; a fault ends it through the sanitizers.
  */

@@ -73,11 +73,12 @@ class Bench:
         fmu: Path | None = None,
         uri: str | None = None,
         environment: Mapping[str, str] | None = None,
+        seconds: float = 60.0,
     ) -> subprocess.CompletedProcess[str]:
-        """Run the C host, well or not."""
+        """Run the C host, well or not; it is ended after so many seconds."""
         command = self.command(*mode, fmu=fmu, uri=uri)
         variables = {**os.environ, **(environment or {})}
-        return subprocess.run(command, capture_output=True, text=True, timeout=60, env=variables)
+        return subprocess.run(command, capture_output=True, text=True, timeout=seconds, env=variables)
 
     def run(
         self,
@@ -85,9 +86,10 @@ class Bench:
         fmu: Path | None = None,
         uri: str | None = None,
         environment: Mapping[str, str] | None = None,
+        seconds: float = 60.0,
     ) -> str:
         """Run the C host, which must end well and complain of nothing; return what it printed."""
-        result = self.attempt(*mode, fmu=fmu, uri=uri, environment=environment)
+        result = self.attempt(*mode, fmu=fmu, uri=uri, environment=environment, seconds=seconds)
         if "no usable Python library" in result.stdout:
             pytest.skip(result.stdout)
         assert result.stderr == ""

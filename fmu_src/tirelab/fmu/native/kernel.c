@@ -300,12 +300,8 @@ static Tuple3 tracked_track(const double *s, double deflection, double interval,
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[59], s[60], s[61], s[62], s[63], s[64], s[65], s[66],
-        s[67], s[68], s[69], s[70], s[71], s[72]}}, (Vector14){{s[73], s[74], s[75], s[76], s[77], s[78], s[79],
-        s[80], s[81], s[82], s[83], s[84], s[85], s[86]}}, (Vector14){{s[87], s[88], s[89], s[90], s[91], s[92],
-        s[93], s[94], s[95], s[96], s[97], s[98], s[99], s[100]}}, (Vector14){{s[101], s[102], s[103], s[104],
-        s[105], s[106], s[107], s[108], s[109], s[110], s[111], s[112], s[113], s[114]}}}}, (Vector4){{s[115],
-        s[116], s[117], s[118]}}, s[119]};
+    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 59), *(const Vector14 *)(s + 73), *(const
+        Vector14 *)(s + 87), *(const Vector14 *)(s + 101)}}, *(const Vector4 *)(s + 115), s[119]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -318,66 +314,16 @@ static void store_track(double *n, Tuple3 track)
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
     double last = track.c;
-    n[59] = modes.v[0].v[0];
-    n[60] = modes.v[0].v[1];
-    n[61] = modes.v[0].v[2];
-    n[62] = modes.v[0].v[3];
-    n[63] = modes.v[0].v[4];
-    n[64] = modes.v[0].v[5];
-    n[65] = modes.v[0].v[6];
-    n[66] = modes.v[0].v[7];
-    n[67] = modes.v[0].v[8];
-    n[68] = modes.v[0].v[9];
-    n[69] = modes.v[0].v[10];
-    n[70] = modes.v[0].v[11];
-    n[71] = modes.v[0].v[12];
-    n[72] = modes.v[0].v[13];
-    n[73] = modes.v[1].v[0];
-    n[74] = modes.v[1].v[1];
-    n[75] = modes.v[1].v[2];
-    n[76] = modes.v[1].v[3];
-    n[77] = modes.v[1].v[4];
-    n[78] = modes.v[1].v[5];
-    n[79] = modes.v[1].v[6];
-    n[80] = modes.v[1].v[7];
-    n[81] = modes.v[1].v[8];
-    n[82] = modes.v[1].v[9];
-    n[83] = modes.v[1].v[10];
-    n[84] = modes.v[1].v[11];
-    n[85] = modes.v[1].v[12];
-    n[86] = modes.v[1].v[13];
-    n[87] = modes.v[2].v[0];
-    n[88] = modes.v[2].v[1];
-    n[89] = modes.v[2].v[2];
-    n[90] = modes.v[2].v[3];
-    n[91] = modes.v[2].v[4];
-    n[92] = modes.v[2].v[5];
-    n[93] = modes.v[2].v[6];
-    n[94] = modes.v[2].v[7];
-    n[95] = modes.v[2].v[8];
-    n[96] = modes.v[2].v[9];
-    n[97] = modes.v[2].v[10];
-    n[98] = modes.v[2].v[11];
-    n[99] = modes.v[2].v[12];
-    n[100] = modes.v[2].v[13];
-    n[101] = modes.v[3].v[0];
-    n[102] = modes.v[3].v[1];
-    n[103] = modes.v[3].v[2];
-    n[104] = modes.v[3].v[3];
-    n[105] = modes.v[3].v[4];
-    n[106] = modes.v[3].v[5];
-    n[107] = modes.v[3].v[6];
-    n[108] = modes.v[3].v[7];
-    n[109] = modes.v[3].v[8];
-    n[110] = modes.v[3].v[9];
-    n[111] = modes.v[3].v[10];
-    n[112] = modes.v[3].v[11];
-    n[113] = modes.v[3].v[12];
-    n[114] = modes.v[3].v[13];
-    n[115] = probability.v[0];
-    n[116] = probability.v[1];
-    n[117] = probability.v[2];
-    n[118] = probability.v[3];
+    for (int i = 0; i < 14; i++)
+        n[59 + i] = modes.v[0].v[i];
+    for (int i = 0; i < 14; i++)
+        n[73 + i] = modes.v[1].v[i];
+    for (int i = 0; i < 14; i++)
+        n[87 + i] = modes.v[2].v[i];
+    for (int i = 0; i < 14; i++)
+        n[101 + i] = modes.v[3].v[i];
+    for (int i = 0; i < 4; i++)
+        n[115 + i] = probability.v[i];
     n[119] = last;
 }
 
@@ -555,12 +501,8 @@ static Tuple3 tracked_compression(const double *s, double deflection, double int
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{(Vector14){{s[120], s[121], s[122], s[123], s[124], s[125], s[126],
-        s[127], s[128], s[129], s[130], s[131], s[132], s[133]}}, (Vector14){{s[134], s[135], s[136], s[137],
-        s[138], s[139], s[140], s[141], s[142], s[143], s[144], s[145], s[146], s[147]}}, (Vector14){{s[148],
-        s[149], s[150], s[151], s[152], s[153], s[154], s[155], s[156], s[157], s[158], s[159], s[160], s[161]}},
-        (Vector14){{s[162], s[163], s[164], s[165], s[166], s[167], s[168], s[169], s[170], s[171], s[172], s[173],
-        s[174], s[175]}}}}, (Vector4){{s[176], s[177], s[178], s[179]}}, s[180]};
+    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 120), *(const Vector14 *)(s + 134), *(const
+        Vector14 *)(s + 148), *(const Vector14 *)(s + 162)}}, *(const Vector4 *)(s + 176), s[180]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -573,66 +515,16 @@ static void store_compression(double *n, Tuple3 track)
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
     double last = track.c;
-    n[120] = modes.v[0].v[0];
-    n[121] = modes.v[0].v[1];
-    n[122] = modes.v[0].v[2];
-    n[123] = modes.v[0].v[3];
-    n[124] = modes.v[0].v[4];
-    n[125] = modes.v[0].v[5];
-    n[126] = modes.v[0].v[6];
-    n[127] = modes.v[0].v[7];
-    n[128] = modes.v[0].v[8];
-    n[129] = modes.v[0].v[9];
-    n[130] = modes.v[0].v[10];
-    n[131] = modes.v[0].v[11];
-    n[132] = modes.v[0].v[12];
-    n[133] = modes.v[0].v[13];
-    n[134] = modes.v[1].v[0];
-    n[135] = modes.v[1].v[1];
-    n[136] = modes.v[1].v[2];
-    n[137] = modes.v[1].v[3];
-    n[138] = modes.v[1].v[4];
-    n[139] = modes.v[1].v[5];
-    n[140] = modes.v[1].v[6];
-    n[141] = modes.v[1].v[7];
-    n[142] = modes.v[1].v[8];
-    n[143] = modes.v[1].v[9];
-    n[144] = modes.v[1].v[10];
-    n[145] = modes.v[1].v[11];
-    n[146] = modes.v[1].v[12];
-    n[147] = modes.v[1].v[13];
-    n[148] = modes.v[2].v[0];
-    n[149] = modes.v[2].v[1];
-    n[150] = modes.v[2].v[2];
-    n[151] = modes.v[2].v[3];
-    n[152] = modes.v[2].v[4];
-    n[153] = modes.v[2].v[5];
-    n[154] = modes.v[2].v[6];
-    n[155] = modes.v[2].v[7];
-    n[156] = modes.v[2].v[8];
-    n[157] = modes.v[2].v[9];
-    n[158] = modes.v[2].v[10];
-    n[159] = modes.v[2].v[11];
-    n[160] = modes.v[2].v[12];
-    n[161] = modes.v[2].v[13];
-    n[162] = modes.v[3].v[0];
-    n[163] = modes.v[3].v[1];
-    n[164] = modes.v[3].v[2];
-    n[165] = modes.v[3].v[3];
-    n[166] = modes.v[3].v[4];
-    n[167] = modes.v[3].v[5];
-    n[168] = modes.v[3].v[6];
-    n[169] = modes.v[3].v[7];
-    n[170] = modes.v[3].v[8];
-    n[171] = modes.v[3].v[9];
-    n[172] = modes.v[3].v[10];
-    n[173] = modes.v[3].v[11];
-    n[174] = modes.v[3].v[12];
-    n[175] = modes.v[3].v[13];
-    n[176] = probability.v[0];
-    n[177] = probability.v[1];
-    n[178] = probability.v[2];
-    n[179] = probability.v[3];
+    for (int i = 0; i < 14; i++)
+        n[120 + i] = modes.v[0].v[i];
+    for (int i = 0; i < 14; i++)
+        n[134 + i] = modes.v[1].v[i];
+    for (int i = 0; i < 14; i++)
+        n[148 + i] = modes.v[2].v[i];
+    for (int i = 0; i < 14; i++)
+        n[162 + i] = modes.v[3].v[i];
+    for (int i = 0; i < 4; i++)
+        n[176 + i] = probability.v[i];
     n[180] = last;
 }
 
@@ -786,8 +678,7 @@ static Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Ve
 static double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[14] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, (Vector8){{p[15], p[16], p[17], p[18],
-            p[19], p[20], p[21], p[22]}});
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector8 *)(p + 15));
         signal = t1.a;
     }
     if (p[23] != 0.0) {
@@ -795,13 +686,12 @@ static double through_scale(double signal, Instant at, const double *p, const do
         signal = t2.a;
     }
     if (p[27] != 0.0) {
-        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, (Vector5){{p[28], p[29], p[30], p[31],
-            p[32]}});
+        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 28));
         signal = t3.a;
     }
     if (p[33] != 0.0) {
-        const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, (Vector7){{p[34],
-            p[35], p[36], p[37], p[38], p[39], p[40]}});
+        const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
+            + 34));
         signal = t4.a;
         Vector3 after = t4.b;
         n[6] = after.v[0];
@@ -999,49 +889,34 @@ static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, V
 static double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[49] != 0.0) {
-        const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, (Vector8){{s[10], s[11], s[12], s[13],
-            s[14], s[15], s[16], s[17]}}, (Vector7){{p[50], p[51], p[52], p[53], p[54], p[55], p[56]}});
+        const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
+            Vector7 *)(p + 50));
         signal = t1.a;
         Vector8 after = t1.b;
-        n[10] = after.v[0];
-        n[11] = after.v[1];
-        n[12] = after.v[2];
-        n[13] = after.v[3];
-        n[14] = after.v[4];
-        n[15] = after.v[5];
-        n[16] = after.v[6];
-        n[17] = after.v[7];
+        for (int i = 0; i < 8; i++)
+            n[10 + i] = after.v[i];
     }
     if (p[57] != 0.0) {
-        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, (Vector4){{p[58], p[59], p[60],
-            p[61]}});
+        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 58));
         signal = t2.a;
     }
     if (p[62] != 0.0 && p[3] != 0.0) {
-        const Tuple18 t3 = viscoelastic_relaxation_flow(signal, at, (Vector6){{s[18], s[19], s[20], s[21], s[22],
-            s[23]}}, (Vector11){{p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72], p[73]}});
+        const Tuple18 t3 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 18), *(const Vector11
+            *)(p + 63));
         signal = t3.a;
         Vector6 flowed = t3.b;
-        n[18] = flowed.v[0];
-        n[19] = flowed.v[1];
-        n[20] = flowed.v[2];
-        n[21] = flowed.v[3];
-        n[22] = flowed.v[4];
-        n[23] = flowed.v[5];
+        for (int i = 0; i < 6; i++)
+            n[18 + i] = flowed.v[i];
     } else if (p[62] != 0.0) {
-        const Tuple18 t4 = viscoelastic_relaxation_respond(signal, at, (Vector6){{s[18], s[19], s[20], s[21], s[22],
-            s[23]}}, (Vector11){{p[63], p[64], p[65], p[66], p[67], p[68], p[69], p[70], p[71], p[72], p[73]}});
+        const Tuple18 t4 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 18), *(const Vector11
+            *)(p + 63));
         signal = t4.a;
         Vector6 after = t4.b;
-        n[18] = after.v[0];
-        n[19] = after.v[1];
-        n[20] = after.v[2];
-        n[21] = after.v[3];
-        n[22] = after.v[4];
-        n[23] = after.v[5];
+        for (int i = 0; i < 6; i++)
+            n[18 + i] = after.v[i];
     }
     if (p[74] != 0.0) {
-        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, (Vector4){{p[75], p[76], p[77], p[78]}});
+        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 75));
         signal = t5.a;
     }
     return signal;
@@ -1277,89 +1152,19 @@ static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, 
 static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[81] != 0.0 && p[3] != 0.0) {
-        const Tuple24 t1 = force_lag_flow(signal, at, (Vector35){{s[24], s[25], s[26], s[27], s[28], s[29], s[30],
-            s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44], s[45],
-            s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57], s[58]}},
-            (Vector3){{p[82], p[83], p[84]}});
+        const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[82], p[83],
+            p[84]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
-        n[24] = flowed.v[0];
-        n[25] = flowed.v[1];
-        n[26] = flowed.v[2];
-        n[27] = flowed.v[3];
-        n[28] = flowed.v[4];
-        n[29] = flowed.v[5];
-        n[30] = flowed.v[6];
-        n[31] = flowed.v[7];
-        n[32] = flowed.v[8];
-        n[33] = flowed.v[9];
-        n[34] = flowed.v[10];
-        n[35] = flowed.v[11];
-        n[36] = flowed.v[12];
-        n[37] = flowed.v[13];
-        n[38] = flowed.v[14];
-        n[39] = flowed.v[15];
-        n[40] = flowed.v[16];
-        n[41] = flowed.v[17];
-        n[42] = flowed.v[18];
-        n[43] = flowed.v[19];
-        n[44] = flowed.v[20];
-        n[45] = flowed.v[21];
-        n[46] = flowed.v[22];
-        n[47] = flowed.v[23];
-        n[48] = flowed.v[24];
-        n[49] = flowed.v[25];
-        n[50] = flowed.v[26];
-        n[51] = flowed.v[27];
-        n[52] = flowed.v[28];
-        n[53] = flowed.v[29];
-        n[54] = flowed.v[30];
-        n[55] = flowed.v[31];
-        n[56] = flowed.v[32];
-        n[57] = flowed.v[33];
-        n[58] = flowed.v[34];
+        for (int i = 0; i < 35; i++)
+            n[24 + i] = flowed.v[i];
     } else if (p[81] != 0.0) {
-        const Tuple24 t2 = force_lag_respond(signal, at, (Vector35){{s[24], s[25], s[26], s[27], s[28], s[29],
-            s[30], s[31], s[32], s[33], s[34], s[35], s[36], s[37], s[38], s[39], s[40], s[41], s[42], s[43], s[44],
-            s[45], s[46], s[47], s[48], s[49], s[50], s[51], s[52], s[53], s[54], s[55], s[56], s[57], s[58]}},
-            (Vector3){{p[82], p[83], p[84]}});
+        const Tuple24 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[82], p[83],
+            p[84]}});
         signal = t2.a;
         Vector35 after = t2.b;
-        n[24] = after.v[0];
-        n[25] = after.v[1];
-        n[26] = after.v[2];
-        n[27] = after.v[3];
-        n[28] = after.v[4];
-        n[29] = after.v[5];
-        n[30] = after.v[6];
-        n[31] = after.v[7];
-        n[32] = after.v[8];
-        n[33] = after.v[9];
-        n[34] = after.v[10];
-        n[35] = after.v[11];
-        n[36] = after.v[12];
-        n[37] = after.v[13];
-        n[38] = after.v[14];
-        n[39] = after.v[15];
-        n[40] = after.v[16];
-        n[41] = after.v[17];
-        n[42] = after.v[18];
-        n[43] = after.v[19];
-        n[44] = after.v[20];
-        n[45] = after.v[21];
-        n[46] = after.v[22];
-        n[47] = after.v[23];
-        n[48] = after.v[24];
-        n[49] = after.v[25];
-        n[50] = after.v[26];
-        n[51] = after.v[27];
-        n[52] = after.v[28];
-        n[53] = after.v[29];
-        n[54] = after.v[30];
-        n[55] = after.v[31];
-        n[56] = after.v[32];
-        n[57] = after.v[33];
-        n[58] = after.v[34];
+        for (int i = 0; i < 35; i++)
+            n[24 + i] = after.v[i];
     }
     if (p[85] != 0.0) {
         const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[86]}});
@@ -1561,13 +1366,11 @@ Vector2 tire_law(const double *q, double surface_radius)
     Vector2 law;
     int count;
     if (q[0] == HULL1996) {
-        law = hull1996_coefficients((Vector10){{q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10]}},
-            surface_radius);
+        law = hull1996_coefficients(*(const Vector10 *)(q + 1), surface_radius);
     } else if (q[0] == POWER_LAW) {
         law = (Vector2){{q[1], q[2]}};
     } else {
-        law = curvature_law_coefficients((Vector18){{q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10],
-            q[11], q[12], q[13], q[14], q[15], q[16], q[17], q[18]}}, surface_radius);
+        law = curvature_law_coefficients(*(const Vector18 *)(q + 1), surface_radius);
     }
     int at = 20;
     for (int t1 = 0; t1 < (int)q[19]; t1++) {

@@ -1,4 +1,4 @@
-"""Makes what is shipped: the kernel's C, and the binaries of the native FMU for five platforms.
+"""Makes what is shipped: the kernel's C, and the binaries of the native FMU for five platforms and two versions of FMI.
 
     python -m tirelab.fmu.native.make
 
@@ -9,6 +9,7 @@ same sources and the same ziglang give the same bytes in any folder; a test comp
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import os
 import shutil
 import subprocess
@@ -24,9 +25,11 @@ from .kernel import sources
 HERE = Path(__file__).parent
 BINARIES = HERE / "binaries"
 MODEL = "BicycleTire"
-C_FILES = ("kernel.c", "tire.c", "fmi2.c")
-SHARED = (HERE.parent / "fmi2.h", HERE.parent / "fmi2_states.h")
-"""Headers that the Python FMU's loader has too."""
+VERSIONS = (2, 3)
+"""The versions of FMI, each with binaries of its own: they differ by one file, which is the interface."""
+
+HEADERS = (HERE.parent / "fmi2.h", HERE.parent / "fmi2_states.h", *sorted(HERE.glob("*.h")))
+"""The first two belong to the Python FMU's loader too."""
 
 FLAGS = ("-std=c99", "-shared", "-ffp-contract=off", "-fvisibility=hidden", "-s", "-Wall", "-Werror")
 """No contraction of a product and a sum into one rounding: the numbers are those of Python."""
@@ -42,27 +45,38 @@ class Platform:
     ending: str
     flags: tuple[str, ...]
 
-    @property
-    def library(self) -> Path:
-        """Where its binary is kept."""
-        return BINARIES / self.fmi3 / f"{MODEL}.{self.ending}"
+    def folder(self, fmi: int) -> str:
+        """Return the name of its folder in an FMU of a version of FMI."""
+        return self.fmi3 if fmi == 3 else self.fmi2
+
+    def library(self, fmi: int) -> Path:
+        """Return where its binary for a version of FMI is kept."""
+        return BINARIES / f"fmi{fmi}" / self.fmi3 / f"{MODEL}.{self.ending}"
 
 
 _NO_TABLES = ("-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
 _ELF = ("-fPIC", *_NO_TABLES, "-Wl,--build-id=none", "-lm")
-_MACH_O = ("-fPIC", "-Os", *_NO_TABLES, f"-Wl,-install_name,@rpath/{MODEL}.dylib")
+_SMALL = ("-Os", "-Xclang", "-Oz")
+"""For size: five platforms go into one FMU, and the most used one is compiled for speed."""
+
+_MACH_O = ("-fPIC", *_SMALL, *_NO_TABLES, f"-Wl,-install_name,@rpath/{MODEL}.dylib")
 PLATFORMS = (
     Platform("linux64", "x86_64-linux", "x86_64-linux-gnu.2.17", "so", ("-O2", *_ELF)),
-    Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", "so", ("-Os", *_ELF)),
-    Platform("win64", "x86_64-windows", "x86_64-windows-gnu", "dll", ("-Os",)),
+    Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", "so", (*_SMALL, *_ELF)),
+    Platform("win64", "x86_64-windows", "x86_64-windows-gnu", "dll", _SMALL),
     Platform("darwin64", "x86_64-darwin", "x86_64-macos.11.0", "dylib", _MACH_O),
     Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", "dylib", _MACH_O),
 )
 
 
-def source_files() -> dict[str, bytes]:
-    """Return every C source and header by its name."""
-    paths = [*HERE.glob("*.c"), *HERE.glob("*.h"), *SHARED]
+def c_files(fmi: int) -> tuple[str, ...]:
+    """Return the names of the C sources for a version of FMI."""
+    return ("kernel.c", "tire.c", "instance.c", f"fmi{fmi}.c")
+
+
+def source_files(fmi: int) -> dict[str, bytes]:
+    """Return every C source and header for a version of FMI, by its name."""
+    paths = [*(HERE / name for name in c_files(fmi)), *HEADERS]
     return {path.name: path.read_bytes() for path in sorted(paths, key=lambda path: path.name)}
 
 
@@ -72,20 +86,24 @@ def write_kernel(folder: Path = HERE) -> None:
         (folder / name).write_text(text, encoding="utf-8")
 
 
-def compile_for(platform: Platform, destination: Path, cache: Path | None = None) -> None:
-    """Compile the binary of one platform with ziglang; raises TirelabError where that cannot be done."""
+def compile_for(platform: Platform, fmi: int, destination: Path, cache: Path | None = None) -> None:
+    """Compile the binary of one platform and version of FMI; raises TirelabError where ziglang cannot do that."""
     if importlib.util.find_spec("ziglang") is None:
         raise TirelabError("ziglang is not installed; python -m pip install 'tirelab[loader]'")
     with tempfile.TemporaryDirectory(prefix="tirelab_") as name:
         work = Path(name)
-        for file, content in source_files().items():
+        for file, content in source_files(fmi).items():
             (work / file).write_bytes(content)
         kept = str(cache or work / "cache")
         environment = {"ZIG_GLOBAL_CACHE_DIR": kept, "ZIG_LOCAL_CACHE_DIR": kept, **os.environ}
         library = f"{MODEL}.{platform.ending}"
         command = [sys.executable, "-m", "ziglang", "cc", "-target", platform.target, *FLAGS, "-o", library]
         done = subprocess.run(
-            [*command, *C_FILES, *platform.flags], cwd=work, env=environment, capture_output=True, text=True
+            [*command, *c_files(fmi), *platform.flags],
+            cwd=work,
+            env=environment,
+            capture_output=True,
+            text=True,
         )
         if done.returncode:
             raise TirelabError(
@@ -98,10 +116,11 @@ def compile_for(platform: Platform, destination: Path, cache: Path | None = None
 def main(words: Sequence[str]) -> None:
     """Write the kernel and the binaries; `words` are platforms in FMI 3's names, all where there is none."""
     write_kernel()
-    for platform in PLATFORMS:
+    for platform, fmi in itertools.product(PLATFORMS, VERSIONS):
         if not words or platform.fmi3 in words:
-            compile_for(platform, platform.library)
-            print(f"{platform.library}: {platform.library.stat().st_size} bytes")
+            library = platform.library(fmi)
+            compile_for(platform, fmi, library)
+            print(f"{library}: {library.stat().st_size} bytes")
 
 
 if __name__ == "__main__":

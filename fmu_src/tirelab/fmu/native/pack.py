@@ -1,4 +1,4 @@
-"""A tire as a native FMU: FMI 2.0 for Co-Simulation and Model Exchange, with binaries for five platforms and sources.
+"""A tire as a native FMU: FMI 2.0 or 3.0, Co-Simulation and Model Exchange, binaries for five platforms and sources.
 
 Nothing is compiled here: the binaries serve every tire, whose numbers are in resources/tire.dat. The variables are
 those of the Python FMU with the same value references; after them come those that only this kind has.
@@ -22,7 +22,8 @@ from ...errors import TirelabError
 from .. import documentation
 from ..archive import MODEL, content_guid, write_archive, xml_text
 from . import kernel
-from .make import C_FILES, PLATFORMS, source_files
+from .fmi3 import as_fmi3
+from .make import PLATFORMS, c_files, source_files
 
 RATE, ACCELERATION, GIVEN = "deflection_rate", "deflection_acceleration", "motion_given"
 """Variables of a tire whose effects use the rate or the acceleration of the deflection."""
@@ -45,30 +46,33 @@ class ContinuousState:
     index: int
 
 
-def build_native_fmu(tire: TireModel, folder: Path) -> NativeFmu:
-    """Write `folder`/BicycleTire.fmu for `tire`, FMI 2.0, and return what was written.
+def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFmu:
+    """Write `folder`/BicycleTire.fmu for `tire`, FMI 2.0 or 3.0, and return what was written.
 
     Raises TirelabError where the folder cannot be written, the binaries are not there, or the FMU is not valid.
     """
     if tire.remainder is not None:
         raise TirelabError("a learned remainder runs in the Python FMU only; leave out --native")
     description = described(tire)
-    members = documentation.pages(tire, description, None)
-    members |= {f"sources/{name}": content for name, content in source_files().items()}
-    members["sources/buildDescription.xml"] = xml_text(build_description())
+    members = documentation.pages(tire, description, None, fmi=fmi)
+    key = "guid"
+    if fmi == 3:
+        description, key = as_fmi3(description), "instantiationToken"
+    members |= {f"sources/{name}": content for name, content in source_files(fmi).items()}
+    members["sources/buildDescription.xml"] = xml_text(build_description(fmi))
     for platform in PLATFORMS:
-        if not platform.library.is_file():
+        library = platform.library(fmi)
+        if not library.is_file():
             raise TirelabError(
-                f"{platform.library} is missing; install the package again, or python -m tirelab.fmu.native.make"
+                f"{library} is missing; install the package again, or python -m tirelab.fmu.native.make"
             )
-        name = f"binaries/{platform.fmi2}/{MODEL}.{platform.ending}"
-        members[name] = platform.library.read_bytes()
-    members["resources/tire.json"] = to_text(
-        tire
-    ).encode()  # read by nothing in it: so that the tire can be read
+        name = f"binaries/{platform.folder(fmi)}/{MODEL}.{platform.ending}"
+        members[name] = library.read_bytes()
+    # Read by nothing in it: so that the tire can be read.
+    members["resources/tire.json"] = to_text(tire).encode()
     members["resources/tire.dat"] = data(tire, "")
-    guid = content_guid(members, description)
-    description.set("guid", guid)
+    guid = content_guid(members, description, key)
+    description.set(key, guid)
     members["resources/tire.dat"] = data(tire, guid)
     members["modelDescription.xml"] = xml_text(description)
     path = write_archive(members, folder / f"{MODEL}.fmu")
@@ -175,7 +179,7 @@ def described(tire: TireModel) -> Element:
     root.set("numberOfEventIndicators", "1")
     for kind in (exchange, simulation):
         files = SubElement(kind, "SourceFiles")
-        for file in C_FILES:
+        for file in c_files(2):
             SubElement(files, "File", name=file)
 
     inputs = [i for i, v in enumerate(variables, 1) if v.get("causality") == "input"]
@@ -254,13 +258,13 @@ def _add_units(root: Element) -> None:
             SubElement(unit, "BaseUnit", BASE_UNITS[name])
 
 
-def build_description() -> Element:
+def build_description(fmi: int) -> Element:
     """Return sources/buildDescription.xml: how an importer may compile the sources."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = SubElement(root, "BuildConfiguration", modelIdentifier=MODEL)
     files = SubElement(
         configuration, "SourceFileSet", language="C99", compilerOptions="-O2 -ffp-contract=off"
     )
-    for file in C_FILES:
+    for file in c_files(fmi):
         SubElement(files, "SourceFile", name=file)
     return root

@@ -54,7 +54,7 @@ static void path_of(const char *location, const char *name, bool encoded, char p
         path[used++] = code ? (char)(16 * hexadecimal(location[1]) + hexadecimal(location[2])) : *location;
         location += code ? 2 : 0;
     }
-    if (used && path[used - 1] == '/')
+    if (used && (path[used - 1] == '/' || path[used - 1] == '\\'))
         used--;
     path[used] = 0;
     snprintf(path + used, size - used, "/%s", name);
@@ -383,35 +383,35 @@ static bool channels_fit(const Tire *tire, char trouble[TROUBLE])
 
 bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
 {
-    const Inputs u = tire->m.inputs;
+    const Inputs *const u = &tire->m.inputs; /* a copy would wait for both inputs to be written */
     tire->current = true;
     tire->force = NAN;
-    if (!(LOWEST <= u.deflection && u.deflection <= HIGHEST)) {
+    if (!(LOWEST <= u->deflection && u->deflection <= HIGHEST)) {
         snprintf(trouble, TROUBLE, "deflection = %.17g m is not allowed; it must lie between %g m (wheel in the air) and "
-                 "%g m (the wheel's radius)", u.deflection, LOWEST, HIGHEST);
+                 "%g m (the wheel's radius)", u->deflection, LOWEST, HIGHEST);
         return false;
     }
-    if (!(u.radius > 0 || u.radius < 0)) {
+    if (!(u->radius > 0 || u->radius < 0)) {
         snprintf(trouble, TROUBLE, "surface_radius = %.17g m is not allowed; it must be positive (convex), negative "
-                 "(concave), or infinite (flat)", u.radius);
+                 "(concave), or infinite (flat)", u->radius);
         return false;
     }
     if (!channels_fit(tire, trouble))
         return false;
     if (tire->unchecked && !checked(tire, trouble))
         return false;
-    if (u.radius != tire->surface) {
-        tire->coefficients = tire_law(tire->q, u.radius);
-        tire->surface = u.radius;
+    if (u->radius != tire->surface) {
+        tire->coefficients = tire_law(tire->q, u->radius);
+        tire->surface = u->radius;
     }
-    double force, compression = u.deflection;
+    double force, compression = u->deflection;
     if (tire->bare) {
-        force = tire_elastic(u.deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
+        force = tire_elastic(u->deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
     } else {
         const bool given = tire->moves && (tire->exchange || tire->m.given != 0);
-        if (given && !(isfinite(u.rate) && isfinite(u.acceleration))) {
+        if (given && !(isfinite(u->rate) && isfinite(u->acceleration))) {
             snprintf(trouble, TROUBLE, "deflection_rate = %.17g m/s or deflection_acceleration = %.17g m/s^2 is not "
-                     "allowed; both must be finite", u.rate, u.acceleration);
+                     "allowed; both must be finite", u->rate, u->acceleration);
             return false;
         }
         tire->p[P_TRACKED] = tire->moves && !given;
@@ -422,7 +422,7 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
     }
     if (!isfinite(force)) {
         snprintf(trouble, TROUBLE, "radial_force is not finite at deflection = %.17g m, surface_radius = %.17g m",
-                 u.deflection, u.radius);
+                 u->deflection, u->radius);
         return false;
     }
     tire->force = force;
@@ -491,34 +491,34 @@ static int channel_variable(const Tire *tire, unsigned reference)
     return reference >= first && reference - first < (unsigned)tire->channel_count ? (int)(reference - first) : -1;
 }
 
+static double *variable(Tire *tire, unsigned reference);
+static bool is_parameter(const Tire *tire, unsigned reference)
+{
+    return reference >= FIRST_PARAMETER && reference - FIRST_PARAMETER < (unsigned)tire->count;
+}
+
 /* How far a variable is moved for a difference: of its usual size 1e-7 to 1e-5, so that rounding is 1e-9 of it. */
-static double reach(const Tire *tire, unsigned reference)
+static double reach(const Tire *tire, unsigned reference, double value)
 {
     const int channel = channel_variable(tire, reference);
     if (channel >= 0)
         return 1e-6 * fmax(1, fabs(tire->m.inputs.channels[channel]));
     if (reference == DEFLECTION)
         return 1e-7;
-    if (reference == SURFACE_RADIUS)
-        return 1e-6 * fabs(tire->m.inputs.radius);
+    if (reference == SURFACE_RADIUS || is_parameter(tire, reference))
+        return value ? 1e-6 * fabs(value) : 1e-6;
     return tire_motion_variable(tire, reference) >= 0 ? 1e-6 : 1e-4;
 }
 
-/* The place of an input or a state whose derivative can be asked for. */
+/* The place of an input, a parameter, a state or, in FMI 3.0, the time, by which a derivative can be asked for. */
 static double *moved(Tire *tire, unsigned reference)
 {
-    const int motion = tire_motion_variable(tire, reference), state = tire_state_variable(tire, reference);
-    if (reference == DEFLECTION)
-        return &tire->m.inputs.deflection;
-    if (reference == SURFACE_RADIUS)
-        return &tire->m.inputs.radius;
-    if (channel_variable(tire, reference) >= 0)
-        return tire->m.inputs.channels + channel_variable(tire, reference);
-    if (motion == DEFLECTION_RATE)
-        return &tire->m.inputs.rate;
-    if (motion == DEFLECTION_ACCELERATION)
-        return &tire->m.inputs.acceleration;
-    return state >= 0 && state < tire->continuous_count ? tire->m.s + tire->continuous[state] : NULL;
+    if (tire->newer && reference == tire_references(tire))
+        return &tire->m.time;
+    const int state = tire_state_variable(tire, reference);
+    if (state >= 0)
+        return state < tire->continuous_count ? tire->m.s + tire->continuous[state] : NULL;
+    return variable(tire, reference);
 }
 
 bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const double seed[], size_t count,
@@ -527,13 +527,14 @@ bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const
     char trouble[TROUBLE];
     const Memory before = tire->m;
     const bool radius_kept = isinf(before.inputs.radius) || fabs(before.inputs.radius) >= FLAT;
-    double width = INFINITY, sides[2];
+    double width = INFINITY, sides[2], law[LAW_TABLES], effects[PARAMETERS];
     *value = 0;
     for (size_t i = 0; i < count; i++) {
-        if (!moved(tire, known[i]))
+        const double *place = moved(tire, known[i]);
+        if (!place)
             return false;
         if (seed[i] != 0 && !(known[i] == SURFACE_RADIUS && radius_kept))
-            width = fmin(width, reach(tire, known[i]) / fabs(seed[i]));
+            width = fmin(width, reach(tire, known[i], *place) / fabs(seed[i]));
     }
     if (!isfinite(width))
         return true;
@@ -541,14 +542,22 @@ bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const
         *value = seed[0] * tire_tangent(tire);
         return true;
     }
+    if (unknown == RADIAL_STIFFNESS) /* is a difference itself */
+        width *= 100;
+    memcpy(law, tire->q, sizeof law);
+    memcpy(effects, tire->p, sizeof effects);
     for (int side = 0; side < 2; side++) {
         for (size_t i = 0; i < count; i++)
             if (!(known[i] == SURFACE_RADIUS && radius_kept))
                 *moved(tire, known[i]) += (side ? -width : width) * seed[i];
+        tire->surface = NAN;
         tire_try(tire, tire->m.time, trouble);
         tire_get(tire, unknown, sides + side);
         tire->m = before;
+        memcpy(tire->q, law, sizeof law);
+        memcpy(tire->p, effects, sizeof effects);
     }
+    tire->surface = NAN;
     tire_try(tire, tire->m.time, trouble);
     *value = (sides[0] - sides[1]) / (2 * width);
     return true;
@@ -560,7 +569,9 @@ bool tire_step_fits(const Tire *tire, double time, double step, char trouble[TRO
         snprintf(trouble, TROUBLE, "communicationStepSize = %.17g s is not allowed; it must be positive and finite", step);
         return false;
     }
-    const double tolerance = ON_TIME * step + 1e-9 * fmax(1, fabs(tire->m.reached));
+    if (time == tire->m.reached)
+        return true;
+    const double tolerance = ON_TIME * step + 1e-9 * (fabs(tire->m.reached) > 1 ? fabs(tire->m.reached) : 1);
     if (!(fabs(time - tire->m.reached) <= tolerance)) {
         snprintf(trouble, TROUBLE, "currentCommunicationPoint = %.17g s is not allowed; it must be %.17g s, the end of the "
                  "last step", time, tire->m.reached);
@@ -597,6 +608,12 @@ int tire_state_variable(const Tire *tire, unsigned reference)
     return known ? (int)(reference - first) : -1;
 }
 
+unsigned tire_references(const Tire *tire)
+{
+    return FIRST_PARAMETER + (unsigned)(tire->count + tire->channel_count) + (tire->moves ? MOTION_VARIABLES : 0)
+           + 2 * (unsigned)tire->continuous_count;
+}
+
 static double *variable(Tire *tire, unsigned reference)
 {
     Inputs *u = &tire->m.inputs;
@@ -604,9 +621,8 @@ static double *variable(Tire *tire, unsigned reference)
         return &u->deflection;
     if (reference == SURFACE_RADIUS)
         return &u->radius;
-    if (reference >= FIRST_PARAMETER && reference - FIRST_PARAMETER < (unsigned)tire->count) {
+    if (is_parameter(tire, reference))
         return place(tire, tire->parameters + (reference - FIRST_PARAMETER));
-    }
     if (channel_variable(tire, reference) >= 0)
         return u->channels + channel_variable(tire, reference);
     const int motion = tire_motion_variable(tire, reference);
@@ -619,6 +635,8 @@ bool tire_get(Tire *tire, unsigned reference, double *value)
         *value = tire->force;
     else if (reference == RADIAL_STIFFNESS)
         *value = tire_tangent(tire);
+    else if (tire->newer && reference == tire_references(tire) + 1)
+        *value = tire->compression;
     else {
         int number;
         const double *found = variable(tire, reference);
@@ -641,9 +659,10 @@ bool tire_set(Tire *tire, unsigned reference, double value)
         return false;
     *found = value;
     tire->current = false;
-    if (reference >= FIRST_PARAMETER && reference - FIRST_PARAMETER < (unsigned)tire->count)
+    if (is_parameter(tire, reference)) {
         tire->unchecked = true;
-    tire->surface = NAN;
+        tire->surface = NAN;
+    }
     return true;
 }
 

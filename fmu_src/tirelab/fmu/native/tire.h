@@ -42,13 +42,12 @@ typedef struct {
     Inputs inputs;
     double time;      /* of the values that are asked for */
     double reached;   /* the end of the last step */
-    double given;     /* whether rate and acceleration are inputs */
-    double stage;     /* the state of the standard */
+    int given;        /* whether rate and acceleration are inputs */
+    int stage;        /* the state of the standard */
     double s[STATES];
 } Memory;
 
 typedef struct {
-    char *text;          /* the data file */
     char guid[64];
     Parameter *parameters;
     int count;
@@ -64,6 +63,7 @@ typedef struct {
     int continuous[MOST_CONTINUOUS], continuous_count; /* indices in s that are a solver's */
 
     bool exchange;       /* Model Exchange */
+    bool newer;          /* FMI 3.0: time and the deflection that tells of contact are variables, after the others */
     Memory m;
     double n[STATES];    /* the state after the inputs were tried */
     bool current;        /* force is that of the inputs */
@@ -99,7 +99,7 @@ bool tire_get(Tire *tire, unsigned reference, double *value);
 bool tire_set(Tire *tire, unsigned reference, double value);
 bool tire_can_set(Tire *tire, unsigned reference);
 
-/* The change of a value per unit of a change of inputs and states along a direction, by central differences. */
+/* The change of a value per unit of a change of inputs, parameters and states along a direction, by differences. */
 bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const double seed[], size_t count,
                      double *value);
 
@@ -113,6 +113,9 @@ void tire_give_motion(Tire *tire, bool given);
 /* The number of the variable among those of the motion, or among states and their derivatives, or -1. */
 int tire_motion_variable(const Tire *tire, unsigned reference);
 int tire_state_variable(const Tire *tire, unsigned reference);
+
+/* The number of value references, all of which are in use. */
+unsigned tire_references(const Tire *tire);
 
 /* States as bytes. */
 size_t tire_state_size(const Tire *tire);

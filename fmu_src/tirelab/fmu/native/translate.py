@@ -14,6 +14,7 @@ from __future__ import annotations
 import ast
 import inspect
 import math
+import re
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -52,6 +53,24 @@ ATOM, UNARY, EQUAL, AND, OR, CHOICE = 16, 14, 10, 5, 4, 3
 """How tightly C binds."""
 
 WIDTH = 116
+
+PLACE = re.compile(r"^(.+)\[(\d+)\]$")
+"""A number at a constant place of a row or of an array."""
+
+LONG = 4
+"""So many neighbours are copied at once."""
+
+
+def run_of(texts: list[str]) -> int:
+    """Return how many texts from the first on name neighbours: x[3], x[4], x[5]."""
+    found = [PLACE.match(text) for text in texts]
+    count = 1
+    while count < len(texts):
+        a, b = found[count - 1], found[count]
+        if a is None or b is None or a[1] != b[1] or int(b[2]) != int(a[2]) + 1:
+            break
+        count += 1
+    return count
 
 
 class Unsupported(Exception):
@@ -425,8 +444,19 @@ class _Function:
         first, last = self.bounds(target.slice)
         if not isinstance(found.type, Tuple) or len(found.type.of) != last - first:
             raise self.fail(target, "a slice of another length")
-        for i, part in enumerate(self.parts(self.stored(found)) if last > first else ()):
-            self.put(f"{row.text}[{first + i}] = {self.fit(part, DOUBLE, target)};")
+        parts = self.parts(self.stored(found)) if last > first else []
+        texts = [self.fit(part, DOUBLE, target) for part in parts]
+        while texts:
+            count = run_of(texts)
+            if count >= LONG:
+                source, at = PLACE.findall(texts[0])[0]
+                moved = f"i + {at}" if at != "0" else "i"
+                self.put(f"for (int i = 0; i < {count}; i++)")
+                self.put(f"    {row.text}[{first} + i] = {source}[{moved}];")
+            else:
+                count = 1
+                self.put(f"{row.text}[{first}] = {texts[0]};")
+            first, texts = first + count, texts[count:]
 
     def declare(self, target: ast.Name, found: Expression) -> None:
         if found.type == "object":
@@ -480,6 +510,13 @@ class _Function:
             inner = ", ".join(self.fit(p, t, node) for p, t in zip(found.parts, wanted.of, strict=True))
             if not wanted.of:
                 return f"({name}){{0}}"
+            texts = [p.text for p in found.parts]
+            if wanted.even and wanted.of[0] == DOUBLE and LONG <= run_of(texts) == len(texts):
+                row, at = PLACE.findall(texts[0])[0]
+                if (
+                    row.isidentifier()
+                ):  # a struct of numbers may be read where numbers are: C99, 6.5 paragraph 7
+                    return f"*(const {name} *)({row} + {at})"
             return f"({name}){{{{{inner}}}}}" if wanted.even else f"({name}){{{inner}}}"
         if found.type == wanted or (wanted == ROW and found.type == OUT):
             return found.text

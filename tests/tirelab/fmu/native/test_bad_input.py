@@ -11,7 +11,7 @@ import pytest
 from loader_bench import guid_of, unpacked_archive
 from native_me import Unit
 from radialtire import TireModel
-from tirelab.fmu.native.make import C_FILES, source_files
+from tirelab.fmu.native.make import c_files, source_files
 from tirelab.fmu.native.pack import build_native_fmu, checksum
 
 FUZZ = Path(__file__).parents[1] / "fuzz.c"
@@ -77,7 +77,7 @@ def test_inputs_that_no_tire_has_are_refused_at_the_start(
 @pytest.mark.skipif(os.name == "nt", reason="the sanitizers are gcc's and clang's")
 def test_any_calls_in_any_order_under_the_sanitizers(folder: Path, tmp_path: Path) -> None:
     """Some seconds here; for ten minutes set TIRELAB_FUZZ_SECONDS=600."""
-    for name, content in source_files().items():
+    for name, content in source_files(2).items():
         (tmp_path / name).write_bytes(content)
     flags = ["-std=c11", "-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
     program = tmp_path / "fuzz"
@@ -90,7 +90,7 @@ def test_any_calls_in_any_order_under_the_sanitizers(folder: Path, tmp_path: Pat
             "-o",
             program,
             FUZZ,
-            *(tmp_path / name for name in C_FILES),
+            *(tmp_path / name for name in c_files(2)),
             "-lm",
         ],
         capture_output=True,

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from tirelab.fmu.loader import Compiler
 from tirelab.fmu.native.kernel import sources
-from tirelab.fmu.native.make import C_FILES, HERE, PLATFORMS, Platform, compile_for, source_files
+from tirelab.fmu.native.make import HERE, PLATFORMS, VERSIONS, Platform, c_files, compile_for, source_files
 
 
 def test_the_kernel_is_that_of_the_python() -> None:
@@ -17,25 +17,30 @@ def test_the_kernel_is_that_of_the_python() -> None:
         assert (HERE / name).read_text(encoding="utf-8") == text, f"{name} is not that of radialtire"
 
 
+@pytest.mark.parametrize("fmi", VERSIONS)
 @pytest.mark.parametrize("platform", PLATFORMS[:2], ids=lambda platform: str(platform.fmi3))
-def test_the_binaries_for_linux_are_those_of_the_sources(platform: Platform, tmp_path: Path) -> None:
+def test_the_binaries_for_linux_are_those_of_the_sources(
+    platform: Platform, fmi: int, tmp_path: Path
+) -> None:
     pytest.importorskip("ziglang")
-    compile_for(platform, tmp_path / "made")
-    assert (tmp_path / "made").read_bytes() == platform.library.read_bytes()
+    compile_for(platform, fmi, tmp_path / "made")
+    assert (tmp_path / "made").read_bytes() == platform.library(fmi).read_bytes()
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("fmi", VERSIONS)
 @pytest.mark.parametrize("platform", PLATFORMS[2:], ids=lambda platform: str(platform.fmi3))
-def test_the_other_binaries_are_those_of_the_sources(platform: Platform, tmp_path: Path) -> None:
+def test_the_other_binaries_are_those_of_the_sources(platform: Platform, fmi: int, tmp_path: Path) -> None:
     """Minutes, where ziglang has to make the C library of Windows first."""
     pytest.importorskip("ziglang")
-    compile_for(platform, tmp_path / "made")
-    assert (tmp_path / "made").read_bytes() == platform.library.read_bytes()
+    compile_for(platform, fmi, tmp_path / "made")
+    assert (tmp_path / "made").read_bytes() == platform.library(fmi).read_bytes()
 
 
-def test_the_sources_compile_without_warnings(compiler: Compiler, tmp_path: Path) -> None:
-    for name, content in source_files().items():
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_the_sources_compile_without_warnings(compiler: Compiler, fmi: int, tmp_path: Path) -> None:
+    for name, content in source_files(fmi).items():
         (tmp_path / name).write_bytes(content)
     strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-fPIC", "-shared"]
-    command = [*compiler.command, *strict, "-o", str(tmp_path / "made.so"), *C_FILES, "-lm"]
+    command = [*compiler.command, *strict, "-o", str(tmp_path / "made.so"), *c_files(fmi), "-lm"]
     subprocess.run(command, cwd=tmp_path, check=True)

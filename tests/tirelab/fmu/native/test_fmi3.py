@@ -1,0 +1,297 @@
+"""The FMI 3.0 twin of the native FMU in fmpy: the numbers of FMI 2.0 bit by bit, and what the standard allows when."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from ctypes import byref, c_bool, c_double, c_size_t, c_uint, c_void_p
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi3 import FMU3Model, FMU3Slave
+from loader_bench import unpacked_archive
+from native_tires import drive, stepped, tires
+from radialtire import CATALOGUE, TireModel
+from tirelab.fmu.native.pack import build_native_fmu
+
+DAMPED = TireModel(
+    effects=tuple(
+        (CATALOGUE[n], CATALOGUE[n].nominal)
+        for n in ("viscous_damping", "viscoelastic_relaxation", "force_lag")
+    )
+)
+FORCE, STIFFNESS, RANGE = 2, 3, 4
+FLAT = 1e5
+
+
+@contextmanager
+def opened(tire: TireModel, folder: Path, kind: type = FMU3Slave, token: str | None = None) -> Iterator[Any]:
+    """An instance of FMI 3.0, and the messages that it told; its FMU is built where the folder has none."""
+    unpacked = folder / "fmu"
+    if not unpacked.is_dir():
+        unpacked_archive(build_native_fmu(tire, folder, fmi=3).path, unpacked)
+    description = fmpy.read_model_description(str(unpacked))
+    unit = kind(
+        guid=token or description.instantiationToken,
+        unzipDirectory=str(unpacked),
+        modelIdentifier="BicycleTire",
+        instanceName="tire",
+    )
+    messages: list[str] = []
+
+    def told(_environment: Any, _status: int, _category: bytes, message: bytes) -> None:
+        messages.append(message.decode())
+
+    unit.messages, unit.description = messages, description
+    unit.instantiate(logMessage=told)
+    yield unit
+    unit.freeInstance()
+
+
+def begun(unit: Any, deflection: float, radius: float, time: float = 0.0) -> None:
+    unit.enterInitializationMode(startTime=time)
+    unit.setFloat64([0, 1], [deflection, radius])
+    unit.exitInitializationMode()
+
+
+@pytest.mark.parametrize("number", range(45))
+def test_the_same_bits_as_in_python(tmp_path: Path, number: int) -> None:
+    """Every law and effect, plain and with options, and random sets, on drives with air, reversals and pauses."""
+    chosen = [*tires(8)]
+    if number >= len(chosen):
+        pytest.skip("there are fewer tires")
+    _, tire = chosen[number]
+    moments = drive(600, number)
+    expected = stepped(tire, moments)
+    with opened(tire, tmp_path) as unit:
+        begun(unit, *moments[0])
+        forces, before = unit.getFloat64([FORCE]), moments[0][2]
+        for x, radius, time in moments[1:]:
+            unit.setFloat64([0, 1], [x, radius])
+            unit.doStep(before, time - before)
+            forces += unit.getFloat64([FORCE])
+            before = time
+    assert forces == expected
+
+
+def motion() -> np.ndarray:
+    """One second of 3 Hz with the wheel in the air now and then, with rate and acceleration."""
+    t = np.linspace(0.0, 1.0, 501)
+    w = 6.0 * np.pi
+    x = 0.008 + 0.012 * np.sin(w * t)
+    names = ("time", "deflection", "surface_radius", "deflection_rate", "deflection_acceleration")
+    columns = (t, x, np.full(t.size, 0.3), 0.012 * w * np.cos(w * t), -0.012 * w * w * np.sin(w * t))
+    return np.rec.fromarrays(columns, names=names)  # type: ignore[no-any-return, no-untyped-call]
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("tire", [TireModel(), DAMPED], ids=["bare", "damped"])
+def test_fmpy_simulates_both_versions_alike(tmp_path: Path, tire: TireModel, kind: str) -> None:
+    """fmpy's own simulation, with CVode in Model Exchange: not one bit differs between FMI 2.0 and 3.0."""
+    found = []
+    for fmi in (2, 3):
+        fmu = build_native_fmu(tire, tmp_path / str(fmi), fmi=fmi).path
+        given = motion()
+        if not tire.differentiates:
+            given = given[["time", "deflection", "surface_radius"]]
+        found.append(
+            simulate_fmu(
+                str(fmu),
+                fmi_type=kind,
+                input=given,
+                output=["radial_force", "radial_stiffness", "in_tested_range"],
+                stop_time=1.0,
+                output_interval=0.01,
+                relative_tolerance=1e-6,
+            )
+        )
+    assert len(found[0]) > 100
+    for name in found[0].dtype.names or ():
+        np.testing.assert_array_equal(found[0][name], found[1][name], err_msg=name)
+    assert np.ptp(found[0]["radial_force"]) > 500.0
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_both_stay_below_200_kilobytes(tmp_path: Path, fmi: int) -> None:
+    """Also with every effect, whose names and parameters stand in the description."""
+    *_, (_, every) = tires(0)
+    for name, tire in (("bare", TireModel()), ("every", every)):
+        fmu = build_native_fmu(tire, tmp_path / name, fmi=fmi).path
+        assert fmpy.read_model_description(str(fmu)).fmiVersion == f"{fmi}.0"
+        if name == "bare":
+            assert fmu.stat().st_size < 200_000
+        else:
+            assert fmu.stat().st_size < 210_000
+
+
+def test_the_description_names_what_the_binary_has(tmp_path: Path) -> None:
+    """The variables of FMI 2.0 with their references, then time and the contact; states by their references."""
+    two, three = (
+        fmpy.read_model_description(str(build_native_fmu(DAMPED, tmp_path / str(fmi), fmi=fmi).path))
+        for fmi in (2, 3)
+    )
+    same = [(v.name, v.valueReference) for v in two.modelVariables]
+    found = [(v.name, v.valueReference) for v in three.modelVariables]
+    assert found[:-2] == same
+    assert [name for name, _ in found[-2:]] == ["time", "contact_deflection"]
+    assert [d.variable.name for d in three.derivatives] == [d.variable.name for d in two.derivatives]
+    assert [e.variable.name for e in three.eventIndicators] == ["contact_deflection"]
+    with opened(DAMPED, tmp_path / "opened") as unit:
+        begun(unit, 0.01, FLAT, 2.5)
+        time, contact = (reference for _, reference in found[-2:])
+        assert unit.getFloat64([time, contact, 0]) == [2.5, 0.01, 0.01]
+        with pytest.raises(FMICallException):
+            unit.getFloat64([contact + 1])
+        assert "is no Real variable of this tire" in unit.messages[-1]
+
+
+def test_a_state_comes_back_from_its_bytes(tmp_path: Path) -> None:
+    effect = CATALOGUE["rate_independent_hysteresis"]
+    with opened(TireModel(effects=((effect, effect.nominal),)), tmp_path) as unit:
+        begun(unit, 0.01, FLAT)
+        saved = unit.getFMUState()
+        there = unit.serializeFMUState(saved)
+
+        def onward() -> list[float]:
+            unit.setFloat64([0], [0.02])
+            unit.doStep(0.0, 0.1)
+            return unit.getFloat64([FORCE])  # type: ignore[no-any-return]
+
+        first = onward()
+        again = unit.deserializeFMUState(there)
+        unit.setFMUState(again)
+        assert unit.getFloat64([FORCE]) != first
+        assert onward() == first
+        broken = bytes([there[0] ^ 1]) + there[1:]
+        with pytest.raises(FMICallException):
+            unit.deserializeFMUState(broken)
+        for state in (saved, again):
+            unit.freeFMUState(state)
+
+
+def test_derivatives_of_the_law(tmp_path: Path) -> None:
+    """dF/dx = A B x^(B-1), in newtons a metre: 550.9 * 1.422 * 2^0.422 N/cm at 2 cm on flat ground."""
+    with opened(TireModel(), tmp_path) as unit:
+        begun(unit, 0.02, FLAT)
+        slope = 100.0 * 550.9 * 1.422 * 2.0**0.422
+        assert unit.getFloat64([STIFFNESS])[0] == pytest.approx(slope, rel=1e-12)
+        assert unit.getDirectionalDerivative([FORCE], [0], [1.0]) == [pytest.approx(slope, rel=1e-12)]
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 22.0])
+def test_inputs_that_no_tire_has(tmp_path: Path, value: float) -> None:
+    """One message, nothing changes, and a good value goes on, as with FMI 2.0."""
+    with opened(TireModel(), tmp_path) as unit:
+        begun(unit, 0.01, FLAT)
+        unit.setFloat64([0], [value])
+        with pytest.raises(FMICallException):
+            unit.doStep(0.0, 0.1)
+        (message,) = unit.messages
+        assert f"deflection = {value:.17g} m is not allowed" in message
+        unit.setFloat64([0], [0.01])
+        unit.doStep(0.0, 0.1)
+        assert unit.getFloat64([FORCE]) == [pytest.approx(550.9, rel=1e-12)]
+
+
+def test_the_simulation_ends_after_a_refusal(tmp_path: Path) -> None:
+    fmu = build_native_fmu(TireModel(), tmp_path, fmi=3).path
+    with pytest.raises(FMICallException):
+        simulate_fmu(str(fmu), fmi_type="CoSimulation", start_values={"deflection": math.nan})
+
+
+def test_another_fmus_token_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(Exception, match="instantiate"), opened(TireModel(), tmp_path, token="{another}"):
+        pass
+
+
+IN_EACH_STATE = """
+EnterInitializationMode        |x|-|-|-|-|-
+ExitInitializationMode         |-|x|-|-|-|-
+EnterEventMode                 |-|-|-|-|x|-
+EnterContinuousTimeMode        |-|-|-|x|-|-
+UpdateDiscreteStates           |-|-|-|x|-|-
+CompletedIntegratorStep        |-|-|-|-|x|-
+SetContinuousStates            |-|-|-|-|x|-
+GetContinuousStates            |-|x|-|x|x|x
+GetContinuousStateDerivatives  |-|x|-|x|x|x
+GetNominalsOfContinuousStates  |-|x|-|x|x|x
+GetEventIndicators             |-|x|-|x|x|x
+DoStep                         |-|-|x|-|-|-
+Terminate                      |-|-|x|x|x|-
+GetFloat64                     |x|x|x|x|x|x
+SetFloat64                     |x|x|x|x|x|-
+GetBoolean                     |x|x|x|x|x|x
+GetDirectionalDerivative       |-|x|x|x|x|x
+GetFMUState                    |x|x|x|x|x|x
+Reset                          |x|x|x|x|x|x
+"""
+"""FMI 3.0, sections 2.3, 3.2 and 4.2: instantiated, Initialization Mode, Step Mode (Co-Simulation),
+Event Mode and Continuous-Time Mode (Model Exchange), terminated."""
+
+STATES = ("instantiated", "initialization", "step", "event", "continuous", "terminated")
+
+
+def calls(unit: Any) -> dict[str, Callable[[], int]]:
+    """Every call with arguments that are right, by its name; each returns the status."""
+    states, one, value = c_size_t(len(unit.description.derivatives)), c_size_t(1), (c_double * 8)()
+    flags = [c_bool() for _ in range(5)]
+    library, instance = unit.dll, c_void_p(unit.component)
+    force, deflection, in_range = (c_uint * 1)(FORCE), (c_uint * 1)(0), (c_uint * 1)(RANGE)
+    arguments: dict[str, tuple[Any, ...]] = {
+        "EnterInitializationMode": (c_bool(), c_double(), c_double(), c_bool(), c_double()),
+        "UpdateDiscreteStates": (*map(byref, flags), byref(c_double())),
+        "CompletedIntegratorStep": (c_bool(True), byref(flags[0]), byref(flags[1])),
+        **dict.fromkeys(
+            (
+                "SetContinuousStates",
+                "GetContinuousStates",
+                "GetContinuousStateDerivatives",
+                "GetNominalsOfContinuousStates",
+            ),
+            (value, states),
+        ),
+        "GetEventIndicators": (value, one),
+        "DoStep": (c_double(), c_double(0.1), c_bool(True), *map(byref, flags[:3]), byref(c_double())),
+        "GetFloat64": (force, one, value, one),
+        "SetFloat64": (deflection, one, value, one),
+        "GetBoolean": (in_range, one, (c_bool * 1)(), one),
+        "GetDirectionalDerivative": (force, one, deflection, one, (c_double * 1)(1.0), one, value, one),
+        "GetFMUState": (byref(c_void_p()),),
+    }
+
+    def act(name: str) -> Callable[[], int]:
+        return lambda: int(getattr(library, f"fmi3{name}")(instance, *arguments.get(name, ())))
+
+    return {
+        line.split("|")[0].strip(): act(line.split("|")[0].strip())
+        for line in IN_EACH_STATE.strip().splitlines()
+    }
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_each_call_in_each_state(tmp_path: Path, state: str) -> None:
+    column = STATES.index(state)
+    kind = FMU3Slave if state in ("instantiated", "initialization", "step") else FMU3Model
+    for line in IN_EACH_STATE.strip().splitlines():
+        name, *marks = (part.strip() for part in line.split("|"))
+        with opened(DAMPED, tmp_path, kind) as unit:
+            if state != "instantiated":
+                unit.enterInitializationMode()
+                if state != "initialization":
+                    unit.exitInitializationMode()
+                if state == "continuous":
+                    unit.updateDiscreteStates()
+                    unit.enterContinuousTimeMode()
+                if state == "terminated":
+                    unit.terminate()
+            unit.messages.clear()
+            status = calls(unit)[name]()
+            refused = any("is not allowed in the state" in message for message in unit.messages)
+            assert refused == (marks[column] == "-"), (name, state, unit.messages)
+            assert status == (3 if marks[column] == "-" else 0), (name, state, status, unit.messages)
