@@ -33,26 +33,16 @@ COMMON = {
 def as_fmi3(old: Element) -> Element:
     """Return the description in FMI 3.0; its instantiation token is to be set."""
     kept = {name: value for name in KEPT if (value := old.get(name)) is not None}
-    root = Element("fmiModelDescription", fmiVersion="3.0", instantiationToken="", **kept)
+    root = Element("fmiModelDescription", {"fmiVersion": "3.0", "instantiationToken": "", **kept})
     exchange, simulation = old.find("ModelExchange"), old.find("CoSimulation")
     assert exchange is not None
     assert simulation is not None
     identifier = exchange.get("modelIdentifier", "")
     acting = exchange.get("completedIntegratorStepNotNeeded") != "true"
-    SubElement(
-        root,
-        "ModelExchange",
-        modelIdentifier=identifier,
-        needsCompletedIntegratorStep=str(acting).lower(),
-        **COMMON,
-    )
-    SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=identifier,
-        canHandleVariableCommunicationStepSize="true",
-        **COMMON,
-    )
+    own = {"needsCompletedIntegratorStep": str(acting).lower()}
+    SubElement(root, "ModelExchange", {"modelIdentifier": identifier, **own, **COMMON})
+    own = {"canHandleVariableCommunicationStepSize": "true"}
+    SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **own, **COMMON})
     for name in ("UnitDefinitions", "LogCategories", "DefaultExperiment"):
         if (part := old.find(name)) is not None:
             root.append(part)
