@@ -39,20 +39,10 @@ def as_fmi3(old: Element) -> Element:
     assert simulation is not None
     identifier = exchange.get("modelIdentifier", "")
     acting = exchange.get("completedIntegratorStepNotNeeded") != "true"
-    SubElement(
-        root,
-        "ModelExchange",
-        {
-            "modelIdentifier": identifier,
-            "needsCompletedIntegratorStep": str(acting).lower(),
-            **COMMON,
-        },
-    )
-    SubElement(
-        root,
-        "CoSimulation",
-        {"modelIdentifier": identifier, "canHandleVariableCommunicationStepSize": "true", **COMMON},
-    )
+    own = {"needsCompletedIntegratorStep": str(acting).lower()}
+    SubElement(root, "ModelExchange", {"modelIdentifier": identifier, **own, **COMMON})
+    own = {"canHandleVariableCommunicationStepSize": "true"}
+    SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **own, **COMMON})
     for name in ("UnitDefinitions", "LogCategories", "DefaultExperiment"):
         if (part := old.find(name)) is not None:
             root.append(part)

@@ -12,12 +12,14 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 from loader_bench import unpacked_archive
 from native_tires import drive, stepped, tires
 from radialtire import CATALOGUE, TireModel
+from tirelab.cli.build import command
 from tirelab.fmu.native.pack import build_native_fmu
 
 DAMPED = TireModel(
@@ -149,6 +151,17 @@ def test_the_description_names_what_the_binary_has(tmp_path: Path) -> None:
         with pytest.raises(FMICallException):
             unit.getFloat64([contact + 1])
         assert "is no Real variable of this tire" in unit.messages[-1]
+
+
+def test_the_command_writes_it(tmp_path: Path) -> None:
+    """The Python FMU is FMI 2.0 only, and says so."""
+    run = CliRunner().invoke
+    done = run(command, ["--native", "--fmi", "3", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert "FMI 3.0 Co-Simulation and Model Exchange, valid" in done.output
+    refused = run(command, ["--fmi", "3", "--out", str(tmp_path)])
+    assert refused.exit_code != 0
+    assert "add --native for FMI 3.0" in refused.output
 
 
 def test_a_state_comes_back_from_its_bytes(tmp_path: Path) -> None:
