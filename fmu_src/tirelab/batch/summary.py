@@ -114,13 +114,15 @@ def summary_content(result: BatchResult, out: Path) -> dict[str, Any]:
     items = []
     for row in result.rows:
         s = row.verdict
-        known = s and {
-            "effects": sorted(s.names - NOTHING),
-            "unexplained": s.unexplained,
-            "confidence": s.confidence,
-            "alternatives": [sorted(names - NOTHING) for names in s.alternatives],
-            "fit": {name: s.fit.get(name) for name in ("noise", "before", "after")},
-        }
+        known: dict[str, Any] | None = None
+        if s is not None:
+            known = {
+                "effects": sorted(s.names - NOTHING),
+                "unexplained": s.unexplained,
+                "confidence": s.confidence,
+                "alternatives": [sorted(names - NOTHING) for names in s.alternatives],
+                "fit": {name: s.fit.get(name) for name in ("noise", "before", "after")},
+            }
         files = [str(path) for path in row.item.recordings]
         report = _report(row, out) or None
         items.append(
