@@ -7,6 +7,7 @@ those of the Python FMU with the same value references; after them come those th
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import struct
 import tempfile
 from dataclasses import dataclass
