@@ -64,9 +64,8 @@ def build_native_fmu(tire: TireModel, folder: Path) -> NativeFmu:
             )
         name = f"binaries/{platform.fmi2}/{MODEL}.{platform.ending}"
         members[name] = platform.library.read_bytes()
-    members["resources/tire.json"] = to_text(
-        tire
-    ).encode()  # read by nothing in it: so that the tire can be read
+    # read by nothing in the FMU: so that its tire can be read from it
+    members["resources/tire.json"] = json.dumps(json.loads(to_text(tire)), separators=(",", ":")).encode()
     members["resources/tire.dat"] = data(tire, "")
     guid = content_guid(members, description)
     description.set("guid", guid)
