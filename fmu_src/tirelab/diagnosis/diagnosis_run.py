@@ -19,7 +19,6 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
-from radialtire.tirefile import to_text
 
 from ..computing.staging import staged
 from ..errors import TirelabError
@@ -179,8 +178,7 @@ def _delivered(
     warnings += _without_time((*fitted, *kept))
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
-    tires = {"baseline_tire": verdict.baseline, "corrected_tire": verdict.tire}
-    content |= {name: json.loads(to_text(tire)) for name, tire in tires.items()} | of_correction
+    content |= of_correction
     if samples:
         _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
     else:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from radialtire import TireModel
+from radialtire.tirefile import to_text
 
 from ..errors import TirelabError
 from ..estimation.findings import Evidence, NamedEffect
@@ -162,6 +164,8 @@ class Verdict:
                     "load": load_of(self.recordings),
                 },
                 "held_out_by": self.fit.held_out_by,
+                "baseline_tire": json.loads(to_text(self.baseline)),
+                "corrected_tire": json.loads(to_text(self.tire)),
                 "tire": None,
                 "corrected_fmu": None,
                 "report": None,

@@ -53,7 +53,7 @@ def test_a_coordinate_without_a_name_is_time():
 
 def test_the_entry_of_diagnosis_json_keeps_its_keys():
     entry = regressed("rate", lambda t, x: 0.0 * t).to_dict()
-    assert list(entry) == ["by", "unit", "repeats", "after", "held_out_after"]
+    assert list(entry) == ["by", "unit", "repeats", "after", "held_out_after", "at", "force"]
     assert entry["unit"] == "m/s"
 
 

@@ -7,6 +7,7 @@ those of the Python FMU with the same value references; after them come those th
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import struct
 import tempfile
 from dataclasses import dataclass
@@ -68,8 +69,8 @@ def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFm
             )
         name = f"binaries/{platform.folder(fmi)}/{MODEL}.{platform.ending}"
         members[name] = library.read_bytes()
-    # Read by nothing in it: so that the tire can be read.
-    members["resources/tire.json"] = to_text(tire).encode()
+    # read by nothing in the FMU: so that its tire can be read from it
+    members["resources/tire.json"] = json.dumps(json.loads(to_text(tire)), separators=(",", ":")).encode()
     members["resources/tire.dat"] = data(tire, "")
     guid = content_guid(members, description, key)
     description.set(key, guid)

@@ -33,7 +33,8 @@ def test_a_corrected_tire_differs_by_data_only(tmp_path: Path) -> None:
     with zipfile.ZipFile(one) as a, zipfile.ZipFile(other) as b:
         assert a.namelist() == b.namelist()
         changed = {name for name in a.namelist() if a.read(name) != b.read(name)}
-    assert changed == {"modelDescription.xml", "documentation/index.html", "resources/tire.dat"}
+    data = {"resources/tire.dat", "resources/tire.json"}
+    assert changed == data | {"modelDescription.xml", "documentation/index.html"}
 
 
 def test_five_platforms_and_sources_in_200_kilobytes(repository: Path, tmp_path: Path) -> None:
