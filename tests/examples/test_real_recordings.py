@@ -170,4 +170,4 @@ def test_no_pressure_alone_can_show_it(real_recordings: ModuleType, data: Path, 
     for samples in (slice(0, None), slice(0, len(own) // 2), slice(len(own) // 2, None)):
         found = excitation_of(dataset_of([real_recordings.of(own, samples)], tire))
         assert "was the same" in found.hidden("inflation_pressure")
-        assert {"pressure_leak", "gas_compression"} <= found.channels.impossible
+        assert "gas_compression" in found.channels.impossible
