@@ -52,7 +52,7 @@ _NO_TABLES = ("-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
 _ELF = ("-fPIC", *_NO_TABLES, "-Wl,--build-id=none", "-lm")
 _MACH_O = ("-fPIC", "-Os", *_NO_TABLES, f"-Wl,-install_name,@rpath/{MODEL}.dylib")
 PLATFORMS = (
-    Platform("linux64", "x86_64-linux", "x86_64-linux-gnu.2.17", "so", ("-O2", *_ELF)),
+    Platform("linux64", "x86_64-linux", "x86_64-linux-gnu.2.17", "so", ("-Os", *_ELF)),
     Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", "so", ("-Os", *_ELF)),
     Platform("win64", "x86_64-windows", "x86_64-windows-gnu", "dll", ("-Os",)),
     Platform("darwin64", "x86_64-darwin", "x86_64-macos.11.0", "dylib", _MACH_O),
