@@ -6,7 +6,8 @@ An effect that changes a channel (a leak the pressure) must show in it. Each cha
 
 by least squares, with each effect's courses from draws of its parameters. An effect is refuted where its courses add
 next to nothing. An effect that reads the channel needs one that was set to several values: levels and rest must differ
-at one deflection in one direction, or everything that depends on both would pass for it.
+at one deflection in one direction, and more so than from one to another, as the pressure does that swings with each
+stroke. Or everything that depends on both would pass for it.
 """
 
 from __future__ import annotations
@@ -66,7 +67,8 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
             for e in changing
             if not (seen[e.name][0] > SEEN and seen[e.name][1] > LEAST * channel.resolution)
         }
-        if _spread_within(value - followed, np.concatenate(cells)) < channel.resolution:
+        within, between = _spreads(value - followed, np.concatenate(cells))
+        if within < max(channel.resolution, between):
             same = (
                 f"the {channel.name} was the same whenever a deflection was visited: record at a second one"
             )
@@ -132,14 +134,14 @@ def _centring(experiments: Sequence[Experiment]) -> Callable[[FloatArray], Float
     return lambda values: np.concatenate([part - part.mean() for part in np.split(values, ends)])
 
 
-def _spread_within(values: FloatArray, cell: Cells) -> float:
-    """Return the standard deviation of values within the cells; a cell of -1 is none."""
+def _spreads(values: FloatArray, cell: Cells) -> tuple[float, float]:
+    """Return the standard deviations of values within the cells and of the cells' means; a cell of -1 is none."""
     inside = cell >= 0
     if not inside.any():
-        return 0.0
+        return 0.0, 0.0
     own, place = values[inside], cell[inside]
-    mean = np.bincount(place, own) / np.maximum(np.bincount(place), 1)
-    return _size(own - mean[place])
+    mean = (np.bincount(place, own) / np.maximum(np.bincount(place), 1))[place]
+    return _size(own - mean), float(np.std(mean))
 
 
 def _size(values: FloatArray) -> float:

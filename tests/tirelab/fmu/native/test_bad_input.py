@@ -39,7 +39,7 @@ def summed(text: str) -> str:
         (lambda text: summed(text.replace("law 20", "law 21")), "is cut off or was changed"),
         (lambda text: summed(text.replace("parameters 10", "parameters 9")), "is cut off or was changed"),
         (lambda text: summed(text.replace(" q 1 ", " q 19 ")), "is cut off or was changed"),
-        (lambda text: summed(text.replace("effects 8", "effects 7", 1)), "is cut off or was changed"),
+        (lambda text: summed(text.replace("effects ", "effects 1", 1)), "is cut off or was changed"),
         (lambda text: text.replace("tirelab-tire 1", "tirelab-tire 2"), "was written for another version"),
         (lambda text: summed(text[:15] + "0" * 16 + text[31:]), "was written for another version"),
     ],

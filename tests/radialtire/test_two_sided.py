@@ -1,0 +1,72 @@
+"""Parts that are held at both ends: what pulls as it presses, and what a tire on the ground cannot do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from driving import drive, values_of
+from radialtire import (
+    CATALOGUE,
+    ParameterError,
+    PowerLaw,
+    TireFileError,
+    TireModel,
+    parameters_of,
+    read_tire,
+    with_parameters,
+    write_tire,
+)
+
+TIME = np.linspace(0.0, 1.0, 81)
+X = 0.02 * np.sin(2.0 * np.pi * TIME)
+LAW = PowerLaw(200.0, 1.3)
+
+
+def part(name: str = "", preload: float = 0.0, **changed: float) -> TireModel:
+    effects = ((CATALOGUE[name], values_of(CATALOGUE[name], **changed)),) if name else ()
+    return TireModel(LAW, effects, two_sided=True, preload=preload)
+
+
+def test_it_pulls_as_it_presses_beside_its_preload() -> None:
+    expected = 150.0 + 200.0 * np.sign(X) * np.abs(100.0 * X) ** 1.3
+    assert drive(part(preload=150.0), TIME, X) == pytest.approx(expected, rel=1e-12, abs=1e-9)
+    assert drive(TireModel(LAW), TIME, X).min() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "changed"),
+    [
+        ("series_compliance", {"compliance": 1e-6}),
+        ("elastic_shape", {"bend": 0.05, "height_1": 0.1}),
+        ("viscous_damping", {"damping": 300.0, "deflection_exponent": 0.5}),
+    ],
+)
+def test_turned_round_it_has_the_force_turned_round(name: str, changed: dict[str, float]) -> None:
+    tire = part(name, **changed)
+    assert drive(tire, TIME, -X) == pytest.approx(-drive(tire, TIME, X), rel=1e-9, abs=1e-9)
+
+
+def test_without_contact_to_lose_the_tangent_is_central() -> None:
+    linear = TireModel(PowerLaw(200.0, 1.0), two_sided=True)
+    assert linear.stiffness(0.0, float("inf"), linear.initial_state) == pytest.approx(2e4, rel=1e-6)
+
+
+def test_a_tire_file_says_it(tmp_path: Path) -> None:
+    write_tire(part(preload=-20.0), tmp_path / "part.json")
+    assert read_tire(tmp_path / "part.json") == part(preload=-20.0)
+    write_tire(TireModel(), tmp_path / "tire.json")
+    assert "two_sided" not in (tmp_path / "tire.json").read_text()
+    text = (tmp_path / "part.json").read_text().replace('"two_sided": true', '"two_sided": 1')
+    (tmp_path / "wrong.json").write_text(text)
+    with pytest.raises(TireFileError, match="two_sided must be true or false, not 1"):
+        read_tire(tmp_path / "wrong.json")
+
+
+def test_the_preload_is_a_parameter_of_such_a_part_alone() -> None:
+    assert parameters_of(part(preload=5.0))["preload"][1] == 5.0
+    assert with_parameters(part(), {"preload": 7.0}).preload == 7.0
+    assert "preload" not in parameters_of(TireModel())
+    with pytest.raises(ParameterError, match="preload = 5 N needs a two-sided part"):
+        TireModel(preload=5.0)
