@@ -111,15 +111,26 @@ def command(
         else:
             plan = follow_up(diagnosed, model, rig, size, show)
         if not plan.drives:
-            raise TirelabError(
-                "no motion within these limits tells any two of them apart; give a larger --stroke, a faster --speed, "
-                "more --time or another surface"
-            )
+            raise TirelabError(_nothing(plan))
         show("writing and drawing the plan")
         with staged(output.out) as folder:
             write_plan(plan, folder)
             (folder / PLAN).write_text(json.dumps(plan.to_dict(), indent=2) + "\n", encoding="utf-8")
     output.result(_lines(plan, output.out), plan.to_dict())
+
+
+def _nothing(plan: RecordingPlan) -> str:
+    """Return why there is nothing to record."""
+    told, possible, _ = plan.told
+    if told and told == possible:
+        return (
+            f"the recordings tell them apart already where an effect has {100.0 * plan.size:g} % of the peak force; "
+            "give a smaller --size to look for less"
+        )
+    return (
+        "no motion within these limits tells any two of them apart; give a larger --stroke, a faster --speed, "
+        "more --time or another surface"
+    )
 
 
 def _lines(plan: RecordingPlan, out: Path) -> list[str]:

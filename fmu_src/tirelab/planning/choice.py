@@ -15,7 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire import CATALOGUE
 
+from ..regressors.law import LAW
 from .separation import Question, probabilities
 
 FloatArray = NDArray[np.float64]
@@ -28,11 +30,16 @@ LEAST_GAIN = 1e-3
 """A motion that adds less to the sum of all probabilities is not worth driving."""
 
 
+EVEN = 0.5
+"""Probability of the right answer where two models share it."""
+
+
 @dataclass(frozen=True)
 class Menu:
     """Motions to choose from: their products (n, n) and durations [s], the columns' places, and the questions.
 
-    recorded (n, n): products of what was recorded already
+    recorded (n, n): products of what was recorded already; mixed: whether each motion passes its deflections at more
+    than one speed, recorded_mixed: whether something recorded does
     """
 
     grams: tuple[FloatArray, ...]
@@ -40,10 +47,20 @@ class Menu:
     places: Mapping[str, slice]
     questions: tuple[Question, ...]
     recorded: FloatArray
+    mixed: tuple[bool, ...]
+    recorded_mixed: bool = False
 
-    def answers(self, gram: FloatArray) -> FloatArray:
-        """Return the probability of the right answer to each question, the mean over the draws of its truth."""
-        return np.array([float(p.mean()) for p in probabilities(gram, self.places, self.questions)])
+    def answers(self, chosen: Sequence[int]) -> FloatArray:
+        """Return the probability of the right answer to each question, the mean over the draws of its truth.
+
+        Where each deflection is passed at one speed only, a diagnosis does not decide between two loops.
+        """
+        found = probabilities(self.gram(chosen), self.places, self.questions)
+        answers = np.array([float(p.mean()) for p in found])
+        if self.recorded_mixed or any(self.mixed[i] for i in chosen):
+            return answers
+        loops = np.array([_between_loops(q) for q in self.questions])
+        return np.where(loops, np.minimum(answers, EVEN), answers)
 
     def gram(self, chosen: Sequence[int]) -> FloatArray:
         """Return the products over all that was recorded and chosen."""
@@ -63,10 +80,10 @@ class Choice:
 
 def chosen_of(menu: Menu, seconds: float, progress: Callable[[str], None]) -> Choice:
     """Return the motions to drive within a time [s]."""
-    best = menu.answers(menu.gram(range(len(menu.grams))))
+    best = menu.answers(range(len(menu.grams)))
     possible = best >= TOLD
-    gram, answers = menu.recorded, menu.answers(menu.recorded)
     left, chosen = seconds, list[int]()
+    answers = menu.answers(chosen)
     # gains per second, the largest first; at which length of the plan each was computed
     heap = [(-np.inf, i, -1) for i in range(len(menu.grams))]
     while heap and np.any(possible & (answers < TOLD)):
@@ -74,18 +91,27 @@ def chosen_of(menu: Menu, seconds: float, progress: Callable[[str], None]) -> Ch
         if menu.seconds[i] > left + 1e-9:
             continue
         if known < len(chosen):
-            after = menu.answers(gram + menu.grams[i])
+            after = menu.answers([*chosen, i])
             heapq.heappush(heap, (-_gain(answers, after) / menu.seconds[i], i, len(chosen)))
             continue
         if -bound * menu.seconds[i] < LEAST_GAIN:
             break
         chosen.append(i)
         progress(f"choosing motion {len(chosen)}")
-        gram, left = gram + menu.grams[i], left - menu.seconds[i]
-        answers = menu.answers(gram)
+        left -= menu.seconds[i]
+        answers = menu.answers(chosen)
         heapq.heappush(heap, (bound, i, -1))  # it may be driven again
     chosen, answers = _pruned(menu, chosen, answers, possible)
     return Choice(tuple(chosen), answers, possible)
+
+
+def _between_loops(question: Question) -> bool:
+    effects = question.rival - {LAW}
+    return not question.nested and all("loop" in _traits(name) for name in (question.truth, *effects))
+
+
+def _traits(name: str) -> tuple[str, ...]:
+    return CATALOGUE[name].traits if name in CATALOGUE else ()
 
 
 def _gain(before: FloatArray, after: FloatArray) -> float:
@@ -100,7 +126,7 @@ def _pruned(
     for i in sorted(set(chosen), key=lambda i: -menu.seconds[i]):
         less = list(chosen)
         less.remove(i)
-        fewer = menu.answers(menu.gram(less))
+        fewer = menu.answers(less)
         if np.all(fewer[told] >= TOLD) and _gain(fewer, answers) < LEAST_GAIN * len(answers):
             chosen, answers = less, fewer
     return chosen, answers

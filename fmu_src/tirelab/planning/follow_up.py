@@ -21,7 +21,7 @@ from ..errors import TirelabError
 from ..names import UNKNOWN
 from ..regressors.law import LAW
 from .menu import FEWEST, Drive
-from .plan import Progress, RecordingPlan, motions_within, planned
+from .plan import Progress, RecordingPlan, motions_within, offered, planned
 from .responses import responses_of
 from .rig import Rig
 from .separation import Question
@@ -113,13 +113,12 @@ def follow_up(
         raise TirelabError("the diagnosis has no alternatives: nothing is left to tell apart")
     possible = motions_within(rig)
     responses = responses_of((*possible, *diagnosed.recorded), tire, rig, progress)
-    known, recorded = responses.first(len(possible))
     questions = alternatives_asked(diagnosed, responses.names, size)
     if not questions:
         raise TirelabError(
             "no effect of the alternatives responds within these limits; give a larger --stroke or a faster --speed"
         )
-    return planned(tire, rig, known, questions, recorded, progress)
+    return planned(tire, rig, responses, offered(responses, questions, len(possible)), progress)
 
 
 def alternatives_asked(diagnosed: Diagnosed, heard: Sequence[str], size: float) -> tuple[Question, ...]:

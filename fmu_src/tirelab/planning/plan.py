@@ -151,7 +151,7 @@ def plan_recordings(
     """
     responses = responses_of(motions_within(rig), tire, rig, progress)
     questions = questions_of(responses.names, size)
-    return planned(tire, rig, responses, questions, np.zeros_like(responses.grams[0]), progress)
+    return planned(tire, rig, responses, offered(responses, questions, len(responses.drives)), progress)
 
 
 def motions_within(rig: Rig) -> tuple[Drive, ...]:
@@ -162,21 +162,26 @@ def motions_within(rig: Rig) -> tuple[Drive, ...]:
     return drives
 
 
+def offered(responses: Responses, questions: Sequence[Question], count: int) -> Menu:
+    """Return the first drives to choose from, where all others were recorded already."""
+    return Menu(
+        responses.grams[:count],
+        tuple(d.duration for d in responses.drives[:count]),
+        responses.places,
+        tuple(questions),
+        sum(responses.grams[count:], start=np.zeros_like(responses.grams[0])),
+        responses.mixed[:count],
+        any(responses.mixed[count:]),
+    )
+
+
 def planned(
-    tire: TireModel,
-    rig: Rig,
-    responses: Responses,
-    questions: Sequence[Question],
-    recorded: FloatArray,
-    progress: Progress,
+    tire: TireModel, rig: Rig, responses: Responses, options: Menu, progress: Progress
 ) -> RecordingPlan:
-    """Return the plan that answers the questions; recorded (n, n): products of what was recorded already."""
-    drives = responses.drives
+    """Return the plan that answers the questions of the options."""
+    drives, questions = responses.drives, options.questions
     others = _at_other_pressures(rig)
     seconds = rig.time - sum(d.duration for d in others)
-    options = Menu(
-        responses.grams, tuple(d.duration for d in drives), responses.places, tuple(questions), recorded
-    )
     choice = chosen_of(options, seconds, progress)
     progress("working out what is told")
     gram = options.gram(choice.chosen)

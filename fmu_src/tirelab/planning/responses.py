@@ -17,6 +17,7 @@ from radialtire import CATALOGUE, Effect, TireModel
 
 from ..regressors.dataset import Dataset, Experiment, arranged
 from ..regressors.draws import drawn
+from ..regressors.excitation import excitation_of
 from ..regressors.law import FACTOR, LAW, candidates, law_signature
 from ..regressors.scales import Scales
 from ..regressors.signature import SILENT, size_of, strengthened
@@ -42,6 +43,7 @@ class Responses:
 
     places: of each effect its draws, at the size 1 (largest response: the peak force), and of the law its prior
     silent: effects that have no response within these limits; peak [N]: the largest force
+    mixed: whether each drive passes its deflections at more than one speed
     """
 
     drives: tuple[Drive, ...]
@@ -49,16 +51,12 @@ class Responses:
     places: Mapping[str, slice]
     silent: tuple[str, ...]
     peak: float
+    mixed: tuple[bool, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
         """Effects that respond, and the law."""
         return tuple(name for name in self.places if name != PRIOR_OF_LAW)
-
-    def first(self, count: int) -> tuple[Responses, FloatArray]:
-        """Return the first drives alone, and the products over all others."""
-        others = sum(self.grams[count:], start=np.zeros_like(self.grams[0]))
-        return replace(self, drives=self.drives[:count], grams=self.grams[:count]), others
 
 
 def responses_of(
@@ -89,7 +87,9 @@ def responses_of(
         grams.append(whole.T @ whole)
         begin = end
     silent = tuple(name for name in candidates() if name not in sets)
-    return Responses(tuple(drives), tuple(grams), places, silent, peak)
+    parts = (replace(dataset, experiments=(e,)) for e in experiments)
+    mixed = tuple(not excitation_of(part).one_speed for part in parts)
+    return Responses(tuple(drives), tuple(grams), places, silent, peak, mixed)
 
 
 def _places(draws: Mapping[str, int], changes: int, prior: int) -> dict[str, slice]:

@@ -65,9 +65,10 @@ def test_every_command_listed_is_there_and_says_what_it_does() -> None:
         assert command.name == name
         assert command.help
         assert " ".join(sentence.split()) in " ".join(listed.split())
-    # in the order of the work: recordings, tire, FMU, comparison, what is missing; the article and the proof last
+    # in the order of the work: what to record, recordings, tire, FMU, comparison, what is missing; the article and
+    # the proof last
     assert main.list_commands(context) == list(COMMANDS)
-    assert list(COMMANDS)[:6] == ["open", "inspect", "identify", "build", "compare", "diagnose"]
+    assert list(COMMANDS)[:7] == ["open", "plan", "inspect", "identify", "build", "compare", "diagnose"]
     assert list(COMMANDS)[-2:] == ["article", "prove"]
 
 

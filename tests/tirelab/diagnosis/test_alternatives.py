@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +16,7 @@ from tirelab.diagnosis.alternatives import (
     reason_of,
 )
 from tirelab.estimation.findings import Evidence
+from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.dataset import Dataset, dataset_of
 
 RIDE = dataset_of([damped(1, samples=2000)], TireModel())
@@ -103,3 +105,24 @@ def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
     said = "; ".join(insufficient_excitation(explained(("inertia", 0.0, 1.0)), press))
     for words in ("press on a second surface", "hold 10 s at 15 mm", "drive each cycle twice"):
         assert words in said
+
+
+@pytest.mark.parametrize(("fastest", "faster"), [(10.0, True), (0.02, False)])
+def test_the_other_speed_is_one_that_the_rig_reaches(fastest: float, faster: bool) -> None:
+    """The press goes 23 mm in 2 s, 11.5 mm/s: ten times that where the rig reaches it, else a tenth."""
+    time, deflection = triangle(samples=180)
+    press = dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
+    asked = explained((" ".join(LOOP), 0.0, 1.0), one_speed=True)
+    said = reason_of(LOOP, DAMPING, asked, press, Limits(fastest=fastest))
+    speed = float(said.split("repeat at ")[1].split()[0])
+    assert speed == pytest.approx(115.0 if faster else 1.15, rel=0.1)
+
+
+def test_a_second_surface_is_asked_for_only_where_one_can_be_mounted() -> None:
+    asked = explained(("inertia", 0.0, 1.0))
+    assert "press on a second surface" not in "; ".join(
+        insufficient_excitation(asked, RIDE, Limits(surfaces=(math.inf,)))
+    )
+    assert "press on a second surface" in "; ".join(
+        insufficient_excitation(asked, RIDE, Limits(surfaces=(math.inf, 0.254)))
+    )

@@ -117,6 +117,8 @@ def test_the_command_line_repeats_the_diagnosis() -> None:
         *("--tire", "t.json", "--out", "out", "--held-out", "k.csv"),
     ]
     assert "--tire" not in command_line([Path("a.csv")], Path("out"), None, [], reading)
+    with_rig = command_line([Path("a.csv")], Path("out"), None, [], reading, Path("rig.toml"))
+    assert "--rig rig.toml" in with_rig
 
 
 def test_diagnose_files_writes_the_same(

@@ -25,7 +25,7 @@ def shows(*powers: float) -> NDArray[np.float64]:
 
 
 def menu(grams: list[NDArray[np.float64]], seconds: list[float]) -> Menu:
-    return Menu(tuple(grams), tuple(seconds), PLACES, QUESTIONS, np.zeros((4, 4)))
+    return Menu(tuple(grams), tuple(seconds), PLACES, QUESTIONS, np.zeros((4, 4)), (False,) * len(grams))
 
 
 def silent(sentence: str) -> None:
@@ -72,5 +72,15 @@ def test_what_no_motion_shows_is_not_driven_for() -> None:
 
 
 def test_what_was_recorded_already_counts() -> None:
-    recorded = Menu((shows(400.0, 0.0),), (10.0,), PLACES, QUESTIONS[:1], shows(400.0, 0.0))
+    recorded = Menu((shows(400.0, 0.0),), (10.0,), PLACES, QUESTIONS[:1], shows(400.0, 0.0), (False,))
     assert chosen_of(recorded, 60.0, silent).chosen == ()
+
+
+def test_loops_are_not_told_apart_at_one_speed() -> None:
+    """A motion at one speed may show both loudly; a diagnosis does not decide between them from it."""
+    places = {"viscous_damping": PLACES["inertia"], "rate_independent_hysteresis": PLACES["force_drift"]}
+    question = Question("viscous_damping", frozenset({"rate_independent_hysteresis"}), 1.0, nested=False)
+    one = Menu((shows(400.0, 400.0),) * 2, (10.0, 30.0), places, (question,), np.zeros((4, 4)), (False, True))
+    assert one.answers([0]).tolist() == [0.5]
+    assert one.answers([1])[0] > TOLD
+    assert chosen_of(one, 60.0, silent).chosen == (1,)

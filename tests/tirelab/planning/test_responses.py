@@ -42,8 +42,9 @@ def test_no_response_is_larger_than_the_peak_force_at_size_one(found: Responses)
 
 
 def test_damping_shows_in_fast_motions(found: Responses) -> None:
+    """Forty times the rate; by its prior the force grows with a power of it that may be far below one."""
     slow, fast, _ = (np.diag(g)[found.places["viscous_damping"]].max() for g in found.grams)
-    assert fast > 100.0 * slow
+    assert fast > 10.0 * slow
 
 
 def test_an_effect_without_response_is_said_to_have_none(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,7 +55,7 @@ def test_an_effect_without_response_is_said_to_have_none(monkeypatch: pytest.Mon
     assert set(found.silent) < set(CATALOGUE)
 
 
-def test_what_was_recorded_is_added_up(found: Responses) -> None:
-    known, recorded = found.first(1)
-    assert known.drives == found.drives[:1]
-    assert recorded == pytest.approx(found.grams[1] + found.grams[2])
+def test_triangles_pass_each_deflection_at_one_speed(found: Responses) -> None:
+    assert found.mixed[:2] == (False, False)
+    rates = drive_of("triangles at three rates", 0.25, RIG.surfaces[0], RIG)
+    assert responses_of([rates], TireModel(), RIG, silent).mixed == (True,)
