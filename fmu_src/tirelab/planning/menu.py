@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +44,11 @@ class Drive:
     deflection: FloatArray
     surface_radius: FloatArray
     pressure: float | None = None
+
+    @property
+    def measured(self) -> Mapping[str, FloatArray]:
+        """The channels that are held, none: a plan is made for the tire at the pressure of its law."""
+        return {}
 
     @property
     def duration(self) -> float:

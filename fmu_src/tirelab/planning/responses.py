@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, Effect, TireModel
+from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
 from ..regressors.dataset import Dataset, Experiment, arranged
 from ..regressors.draws import drawn
@@ -86,7 +86,7 @@ def responses_of(
         whole = np.column_stack([*columns, changes[begin:end], prior[begin:end]])
         grams.append(whole.T @ whole)
         begin = end
-    silent = tuple(name for name in candidates() if name not in sets)
+    silent = tuple(name for name in _of_motion() if name not in sets)
     parts = (replace(dataset, experiments=(e,)) for e in experiments)
     mixed = tuple(not excitation_of(part).one_speed for part in parts)
     return Responses(tuple(drives), tuple(grams), places, silent, peak, mixed)
@@ -100,13 +100,18 @@ def _places(draws: Mapping[str, int], changes: int, prior: int) -> dict[str, sli
     return places
 
 
+def _of_motion() -> tuple[str, ...]:
+    """Return the effects that a motion can show: one that needs a channel shows itself where that is set anew."""
+    return tuple(n for n in candidates() if (reads := CATALOGUE[n].reads) is None or reads.reference is None)
+
+
 Sized = list[tuple[tuple[float, ...], float]]
 
 
 def _sized_sets(dataset: Dataset, peak: float) -> dict[str, Sized]:
     """Return of each effect its draws and their sizes: largest response on any motion over the peak force."""
     found = {}
-    for name in candidates():
+    for name in _of_motion():
         sets, _ = drawn(CATALOGUE[name], dataset.scales, DRAWS)
         sized = [_sized(CATALOGUE[name], values, dataset, peak) for values in sets]
         heard = [(tuple(values), size) for values, size in sized if size > SILENT]
@@ -153,4 +158,5 @@ def _scales(experiments: Sequence[Experiment], rig: Rig, peak: float) -> Scales:
         rate=max(float(np.sqrt(np.mean(rate**2))), 1e-12),
         acceleration=max(float(np.sqrt(np.mean(acceleration**2))), 1e-12),
         gauge=1e-12,
+        channels={channel.name: channel.usual for channel in CHANNELS},
     )

@@ -59,3 +59,11 @@ def test_triangles_pass_each_deflection_at_one_speed(found: Responses) -> None:
     assert found.mixed[:2] == (False, False)
     rates = drive_of("triangles at three rates", 0.25, RIG.surfaces[0], RIG)
     assert responses_of([rates], TireModel(), RIG, silent).mixed == (True,)
+
+
+def test_the_whole_catalogue_answers_but_what_needs_a_channel_to_be_set_anew() -> None:
+    found = responses_of([drive_of("fast triangles", 0.25, RIG.surfaces[0], RIG)], TireModel(), RIG, silent)
+    told = {*found.names, *found.silent} - {LAW}
+    read = {n for n, e in CATALOGUE.items() if e.reads is not None and e.reads.reference is not None}
+    assert read
+    assert told == {n for n, e in CATALOGUE.items() if "law" not in e.traits} - read
