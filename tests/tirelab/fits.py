@@ -9,6 +9,7 @@ from drives import flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
 from tirelab.estimation.findings import FittedModel
 from tirelab.estimation.fit import Fit
+from tirelab.estimation.laplace import Linearised
 from tirelab.estimation.problem import law_start, problem_of
 from tirelab.regressors.dataset import dataset_of
 from tirelab.regressors.law import LAW
@@ -31,7 +32,9 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     slopes = np.ones((dataset.misfit.size, positions.size))
     residual = problem.residual(positions)
     forms = np.zeros((residual.size, 0))
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, forms, float(residual @ residual), {}, True, 1)
+    near = Linearised(residual, slopes, positions, forms, problem.groups)
+    left = float(residual @ residual)
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, forms, left, {}, True, 1)
 
 
 def model_of(effects: Mapping[str, Mapping[str, float]], radius: float = np.inf) -> FittedModel:

@@ -48,9 +48,9 @@ def alternatives_of(
     """Return the sets that the recordings cannot rule out; confidence: the calibrated probability of the verdict;
     limits: of the rig, where they are known.
 
-    First those in which an effect that this motion cannot tell from one of the verdict's stands in its place, then the
-    likeliest others until they and the verdict hold the probability CREDIBLE: what the confidence leaves is shared by
-    the other sets in proportion to their evidence.
+    First those in which an effect that this motion cannot tell from one of the verdict's stands in its place: they have
+    equal parts of what the verdict gave them (`confidence.shared`). Then the likeliest others until all together hold
+    the probability CREDIBLE: what else the confidence leaves is shared by evidence.
 
     An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
     """
@@ -58,12 +58,14 @@ def alternatives_of(
     own = next(e.log_evidence for e in explanation.evidence if set(e.names) == set(best))
     others = [e for e in explanation.evidence if set(e.names) != set(best)]
     whole = max(sum(e.probability for e in others), 1e-300)
+    count = len(explanation.confounded)
+    alone = confidence * (1.0 + count) / (1.0 + confidence * count)
     covered, found = confidence, []
     for e in others:
         confounded = e.names in explanation.confounded
         if covered >= CREDIBLE and not confounded:
             continue
-        share = (1.0 - confidence) * e.probability / whole
+        share = (1.0 - alone) * e.probability / whole + ((alone - confidence) / count if confounded else 0.0)
         covered += share
         reason = reason_of(best, e.names, explanation, dataset, limits)
         found.append(Alternative(e.names, own - e.log_evidence, reason, share))

@@ -101,6 +101,14 @@ def probability(of: str, grounds: Grounds) -> float:
     return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
 
 
+def shared(probability: float, alike: int) -> float:
+    """Return a verdict's probability where the motion cannot tell as many other sets from it: they share its odds.
+
+    Calibration alone would not lower it: the rig's forms differ where the motion turns, and real ones differ otherwise.
+    """
+    return probability / (probability + (1.0 - probability) * (1.0 + alike))
+
+
 def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
     left = max(rmse(explanation.residuals), 1e-300)
     return {

@@ -18,7 +18,7 @@ from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
 from .acceptance import accept
 from .alternatives import Alternative, alternatives_of
-from .confidence import grounds_of_effect, grounds_of_verdict, probability
+from .confidence import grounds_of_effect, grounds_of_verdict, probability, shared
 from .contradiction import Contradiction, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .held_out import HeldOut, rmse
@@ -68,7 +68,7 @@ def diagnose(
     before = [r.force - simulate(baseline, r) for r in fitted]
     explanation, validation = accept(explanation, fitted, kept, dataset, before)
     grounds = grounds_of_verdict(explanation, validation)
-    confidence = probability("verdict", grounds)
+    confidence = shared(probability("verdict", grounds), len(explanation.confounded))
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
     effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
     left = remainder_told(explanation.remainder, timed)

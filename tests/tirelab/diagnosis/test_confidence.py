@@ -17,6 +17,7 @@ from tirelab.diagnosis.confidence import (
     grounds_of_effect,
     grounds_of_verdict,
     probability,
+    shared,
 )
 from tirelab.estimation.findings import Evidence, NamedEffect
 
@@ -82,6 +83,12 @@ def test_a_refitted_law_imitates_what_it_could_be(names: str, imitated: float) -
     one = explained(names)
     assert grounds_of_verdict(one, HELD_OUT)["imitated"] == imitated
     assert sum(grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects) == imitated
+
+
+def test_sets_that_are_alike_share_the_odds_of_a_verdict() -> None:
+    assert shared(0.8, 0) == pytest.approx(0.8)
+    # Odds of four to one against one rival that is alike: four to two.
+    assert shared(0.8, 1) == pytest.approx(4.0 / 6.0)
 
 
 @pytest.mark.parametrize("of", ["verdict", "effect"])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from drives import Drive, damped, flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
+from tirelab.diagnosis.confidence import probability, shared
 from tirelab.diagnosis.diagnose import PoorRecording, catalogue_names, diagnose
 from tirelab.simulation.simulate import simulate
 
@@ -96,7 +97,11 @@ def test_at_one_rate_the_loops_are_alternatives(one_rate_verdict):
     named = {frozenset(verdict.names), *(frozenset(r.names) for r in verdict.alternatives)}
     assert frozenset({"viscous_damping"}) in named
     assert frozenset({"rate_independent_hysteresis"}) in named
-    assert verdict.confidence < 0.5
+    # Three other loops: with equal claims to its odds they leave it less than a verdict that stands alone has.
+    assert verdict.confidence == pytest.approx(shared(probability("verdict", verdict.grounds), 3))
+    assert verdict.confidence < 0.7
+    each = {a.names: a.probability for a in verdict.alternatives}
+    assert each[("viscous_damping",)] == pytest.approx(each[("deflection_lag",)], rel=0.1)
 
 
 def test_a_verdict_is_json(alike_verdict):
