@@ -105,7 +105,7 @@ def insufficient_excitation(
     timed = explanation.excitation.timed
     lacks = []
     if not timed:
-        lacks.append("no time: record it")
+        lacks.append("no time: record the time of each sample")
     elif explanation.excitation.one_speed:
         lacks.append(f"one speed only: repeat at {1e3 * _another_speed(dataset, limits):.2g} mm/s")
     mountable = set() if limits is None else set(limits.surfaces)

@@ -197,6 +197,7 @@ def test_interrupted_while_it_writes_inspect_leaves_the_settings_whole(
     ("arguments", "sentence"),
     [
         (["open", __file__], "cannot be written"),
+        (["plan", "--stroke", "-20mm"], "stroke"),
         (["inspect", "none.csv"], "there is no such file"),
         (["identify", "none.csv"], "no such file"),
         (["build", "--tire", "none.json"], "name a tire file that can be read"),
