@@ -56,8 +56,6 @@ KINDS: dict[str, str] = {
 DERIVED = (
     "preprocessing/data_checks.FEWEST_SAMPLES",
     "preprocessing/data_checks.FEWEST_STEPS",
-    "preprocessing/dataset.LEAST_CM",
-    "preprocessing/dataset.PEAK_QUANTILE",
     "preprocessing/deflection_noise.LEAST_NOISE",
     "preprocessing/deflection_noise.FINEST_STEP",
     "preprocessing/deflection_noise.LEAST_LEVELS",
@@ -89,7 +87,6 @@ CALIBRATED: dict[str, str] = {}
 
 BUDGET = (
     "preprocessing/dataset.ROWS",
-    "preprocessing/dataset.MOST_FREE_SURFACES",
     "regressors/dataset.ROWS",
     "regressors/dataset.MOST_ROWS",
     "regressors/dataset.FEWEST_ROWS",

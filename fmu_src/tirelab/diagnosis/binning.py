@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from radialtire import FLAT_RADIUS
 
-from ..preprocessing.dataset import MOST_FREE_SURFACES, Dataset, Experiment, Recorded
+from ..preprocessing.dataset import Dataset, Experiment, Recorded
 from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray
 
 BINS = 800
 """Bins of a continuous coordinate at most, of about equal numbers of samples: a span of 1 % has eight of them."""
+
+MOST_SURFACES = 12
+"""More radii than these (terrain) are a continuous coordinate."""
 
 NARROWEST = 1.0 / 2000.0
 """No bin is narrower than this part of its coordinate's range (between the first and the last percent)."""
@@ -143,7 +146,7 @@ def _surfaces(radius: FloatArray) -> Axis:
     flat: BoolArray = np.abs(radius) >= FLAT_RADIUS
     curvature = np.where(flat, 0.0, 1.0 / radius)
     known, bin_of = np.unique(curvature, return_inverse=True)
-    if known.size <= MOST_FREE_SURFACES:
+    if known.size <= MOST_SURFACES:
         own = _radius(known)
         each = tuple(range(known.size + 1))
         return Axis("radius", "m", bin_of, own, own, each, lambda a, b: _surface(own[a]))
