@@ -259,10 +259,16 @@ def _told(count: int, moved: list[Constant]) -> list[str]:
     if not SENSITIVITY.exists():
         return []
     run = json.loads(SENSITIVITY.read_text(encoding="utf-8"))
+    tried = len({row["number"] for row in run["numbers"]})
+    only = "".join(f" --only {name}" for name in run["only"])
     return [
-        f"Each of the {count} that are not derived was halved and doubled, and {run['each']} of {run['trials']} blind",
-        f"trials diagnosed again (`python tests/sensitivity.py --seed {run['seed']} --trials {run['trials']} --each",
-        f"{run['each']}`): {len(moved)} of them changed a verdict at all. The columns tell how many.",
+        f"Of the {count} that are not derived, {tried} were halved and doubled, and {run['each']} of {run['trials']} blind trials",
+        f"were diagnosed again each time: {len(moved)} of the numbers changed a verdict at all. The columns tell how many. The",
+        "others are not tried yet. The command:",
+        "",
+        "```sh",
+        f"python tests/sensitivity.py --seed {run['seed']} --trials {run['trials']} --each {run['each']}{only}",
+        "```",
         "",
     ]
 
