@@ -263,8 +263,8 @@ def _told(count: int, moved: list[Constant]) -> list[str]:
     only = "".join(f" --only {name}" for name in run["only"])
     return [
         f"Of the {count} that are not derived, {tried} were halved and doubled, and {run['each']} of {run['trials']}",
-        f"blind trials were diagnosed again each time: {len(moved)} of the numbers changed a verdict at all. The columns",
-        "tell how many. The others are not tried yet. The command:",
+        f"blind trials were diagnosed again each time: {len(moved)} of the numbers changed a verdict at all. The",
+        "columns tell how many. The others are not tried yet. The command:",
         "",
         "```sh",
         f"python tests/sensitivity.py --seed {run['seed']} --trials {run['trials']} --each {run['each']}{only}",
