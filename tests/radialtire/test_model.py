@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from published import hull1996 as article
 from radialtire import (
     CATALOGUE,
+    CHANNELS,
     Hull1996,
     InputError,
     ParameterError,
@@ -25,6 +26,7 @@ from radialtire import (
     power_law,
 )
 from radialtire.flat_step import RATE
+from radialtire.model import check_measured
 
 EVERYTHING = tire_with(*((name, effect.nominal) for name, effect in CATALOGUE.items()), reading_noise=8e-6)
 
@@ -194,3 +196,21 @@ def test_the_package_needs_the_standard_library_only() -> None:
     )
     assert done.stderr == ""
     assert int(done.stdout) == len(CATALOGUE)
+
+
+def test_the_tires_own_deflection_is_the_measured_one_less_a_gauges_offset() -> None:
+    offset = TireModel(effects=((CATALOGUE["deflection_offset"], (1.5e-3,)),))
+    state = offset.initial_state
+    inside = offset.tire_deflection(10e-3, math.inf, 0.1, state)
+    # The force of the tire with the effect is that of the law at its own deflection.
+    force, _ = offset.step(10e-3, math.inf, 0.1, state)
+    assert force == pytest.approx(TireModel().step(inside, math.inf, 0.1, TireModel().initial_state)[0])
+    assert abs(inside - 10e-3) == pytest.approx(1.5e-3)
+    assert TireModel().tire_deflection(10e-3, math.inf, 0.1, TireModel().initial_state) == 10e-3
+
+
+def test_a_channel_outside_its_bounds_is_refused_with_them() -> None:
+    pressure = next(channel for channel in CHANNELS if channel.name == "pressure")
+    check_measured(pressure, pressure.maximum)
+    with pytest.raises(InputError, match=r"inflation_pressure = .* is not allowed; it must lie between"):
+        check_measured(pressure, 2.0 * pressure.maximum)
