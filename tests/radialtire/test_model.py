@@ -201,6 +201,7 @@ def test_the_package_needs_the_standard_library_only() -> None:
 def test_the_tires_own_deflection_is_the_measured_one_less_a_gauges_offset() -> None:
     offset = TireModel(effects=((CATALOGUE["deflection_offset"], (1.5e-3,)),))
     state = offset.initial_state
+    assert offset.channels == ()
     inside = offset.tire_deflection(10e-3, math.inf, 0.1, state)
     # The force of the tire with the effect is that of the law at its own deflection.
     force, _ = offset.step(10e-3, math.inf, 0.1, state)
