@@ -181,29 +181,3 @@ def test_a_broken_slave_is_refused_with_its_exception(bench: Bench, tmp_path: Pa
     assert result.stdout == (
         "[tire, 3, logStatusError] fmi2Instantiate: ModuleNotFoundError: No module named 'no_such_module'\n"
     )
-
-
-def test_speed_through_fmpy(bench: Bench, tmp_path: Path) -> None:
-    """Set two, step, get one: at most 1.7 times as long as with the same law in C, in turns."""
-    text = in_python(
-        bench,
-        """
-        from time import perf_counter
-        native = make(sys.argv[1])
-        native.setupExperiment()
-        native.enterInitializationMode()
-        native.exitInitializationMode()
-        def chain(slave, count=300):
-            start = perf_counter()
-            for i in range(count):
-                slave.setReal([0, 1], [0.01, 0.254])
-                slave.doStep(0.01 * i, 0.01)
-                slave.getReal([2])
-            return (perf_counter() - start) / count
-        turns = [(chain(tire), chain(native)) for _ in range(40)]  # the best: a busy machine only adds to a time
-        print(min(t for t, _ in turns) / min(n for _, n in turns))
-        """,
-        unpacked(tmp_path / "native", bench.native),
-    )
-    print(f"ratio {float(text):.2f}")
-    assert float(text) <= 1.7

@@ -1,4 +1,4 @@
-"""The article's tire in a host written in C, without Python in the process: lives, threads, memory, speed."""
+"""The article's tire in a host written in C, without Python in the process: lives, threads, memory."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from urllib.parse import quote
 
 import pytest
-from loader_bench import FORCE_1_CM, FORCE_2_CM, Bench, numbers, unpacked
+from loader_bench import FORCE_1_CM, FORCE_2_CM, Bench, numbers
 
 
 @pytest.fixture(scope="module")
@@ -46,18 +46,3 @@ def test_memory_of_1000_instances(run: Callable[..., str]) -> None:
 def test_memory_of_many_steps(run: Callable[..., str]) -> None:
     # one lost reference a step would be at least 16 bytes: 3.2 MB
     assert int(run("steps", 200_000)) < 500
-
-
-def test_speed_against_a_native_fmu(run: Callable[..., str], bench: Bench) -> None:
-    """Set two inputs, step, get one output: at most 60 times as long as the same law in C takes."""
-    native, ours, ratio = numbers(run("bench", 30_000, bench.native))
-    print(f"native {native:.2e} s, FMU {ours:.2e} s, ratio {ratio:.0f}")
-    assert ratio <= 60
-
-
-def test_speed_through_fmpy(run_host: Callable[..., str], tire: Path, bench: Bench, tmp_path: Path) -> None:
-    """The same calls through fmpy: at most 1.7 times as long as with the same law in C, in turns."""
-    native = unpacked(tmp_path / "native", bench.native)
-    ratio = float(run_host("time_with_fmpy.py", tire, native, job=None))
-    print(f"ratio {ratio:.2f}")
-    assert ratio <= 1.7

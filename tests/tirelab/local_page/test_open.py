@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -149,23 +148,3 @@ def test_it_fits_a_phone_in_light_and_dark(
     assert shown.page.evaluate(CONTRAST) == []
     assert shown.said == []
     shown.context.close()
-
-
-def test_it_starts_soon(tmp_path: Path) -> None:
-    """The address is printed before a heavy library is loaded: soon after a program that does nothing would end."""
-
-    def spent(*words: str) -> float:
-        start = time.perf_counter()
-        with subprocess.Popen(
-            [sys.executable, "-m", "tirelab", *words], stdout=subprocess.PIPE, text=True
-        ) as program:
-            assert program.stdout is not None
-            program.stdout.readline()
-            took = time.perf_counter() - start
-            program.kill()
-        return took
-
-    least = min(spent("--version") for _ in range(3))
-    opened = min(spent("open", str(tmp_path / "desk"), "--no-browser") for _ in range(3))
-    assert opened < 2.0 * least + 0.3
-    print(f"tirelab --version {least:.2f} s, tirelab open {opened:.2f} s")

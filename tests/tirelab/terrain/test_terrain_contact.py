@@ -1,7 +1,5 @@
 """Wheel and ground as two circles, where every length has a closed form, and against a brute search on rough ground."""
 
-import time
-
 import numpy as np
 import pytest
 from tirelab.errors import TirelabError
@@ -163,17 +161,14 @@ def test_wheel_climbs_a_stick_pushed_back_and_leaves_it_pushed_on() -> None:
     assert touch.inclination[0] == pytest.approx(-touch.inclination[1], abs=1e-3)
 
 
-def test_a_kilometre_at_one_centimetre_in_under_a_second() -> None:
-    profile = iso8608("D", 1000.0, 1)
-    best = np.inf
-    for _ in range(3):
-        start = time.perf_counter()
-        ground = ground_from(profile, 0.01)
-        hub = rolling_path(ground)
-        touch = contact(ground, hub_positions(ground), hub - 0.01)
-        best = min(best, time.perf_counter() - start)
+def test_a_kilometre_at_one_centimetre() -> None:
+    ground = ground_from(iso8608("D", 1000.0, 1), 0.01)
+    touch = contact(ground, hub_positions(ground), rolling_path(ground) - 0.01)
     assert touch.deflection.size > 99_000
-    assert best < 1.0
+    # pressed down by 10 mm from where it just touches, the wheel is pressed in by 10 mm at most, along the normal;
+    # the ground between two of its points 10 mm apart is rougher than a line by some hundredths of that
+    assert touch.deflection.min() > 0.0
+    assert touch.deflection.max() <= 0.0101
 
 
 def test_hub_beneath_the_ground() -> None:
