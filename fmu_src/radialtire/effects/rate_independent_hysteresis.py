@@ -1,11 +1,13 @@
 """Friction between tread and ground and inside the casing: a loop that does not depend on the speed.
 
-    F = F_elastic + (S + mu F_elastic) ((1 - m) z + m (y1 + y2 + y3 + y4) / 4)
+    F = F_elastic + (S + mu F_elastic) r f
+    f = (1 - m) z + m (y1 + y2 + y3 + y4) / 4,   r = 1 where f > 0, u where f < 0
     dz/dx   = (sign(dx) - z) / d                                                  Dahl's element
     y_i     <- min(max(y_i + dx / d_i, -1), 1),   d_i = 4/3 d (1 + c (2 i - 5) / 4)   elastic-plastic elements
 
-The loop's height is 2 (S + mu F_elastic). The breakaway distance d (parameter `reach`) is the deflection over which
-the friction changes sign after a reversal. m selects the form: 0 follows exponentials without memory (Dahl), 1 uses
+The loop's height is (1 + u) (S + mu F_elastic); u differs from 1 where the way back slips at another force, as seals
+do that are pressed on by what they seal. The breakaway distance d (parameter `reach`) is the deflection over which the
+friction changes sign after a reversal. m selects the form: 0 follows exponentials without memory (Dahl), 1 uses
 elements that slip one after the other and remember the points of reversal (Maxwell, Iwan); c is the spread of their
 breakaway distances. Values between also follow Bouc and Wen's loops: each of these forms is met within 3 % of S on a
 ride, while Dahl's element alone is 10 % from Iwan's.
@@ -55,7 +57,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     The state: z and the deflection at which it was last updated, the direction (1 or -1) of travel there, the last
     deflection, and y1 to y4.
     """
-    slip_force, load_share, reach, memory, spread, play, seat = values
+    slip_force, load_share, reach, memory, spread, play, seat, rebound = values
     z, updated_at, direction, last, y1, y2, y3, y4 = state
     x = instant.deflection if instant.two_sided else max(instant.deflection, 0.0)
     if instant.first:
@@ -80,6 +82,8 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     after = (z, updated_at, direction, x, y1, y2, y3, y4)
     if instant.deflection <= 0.0 and not instant.two_sided:
         return signal, after
+    if friction < 0.0:
+        friction *= rebound
     return signal + (slip_force + load_share * abs(instant.elastic_force)) * friction, after
 
 
@@ -94,7 +98,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             0.0,
             0.0,
             1e4,
-            "half the loop's height",
+            "half the loop's height; with u, on the way in",
             neutral=0.0,
             nominal=30.0,
             role="strength",
@@ -173,6 +177,17 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             "initial preload: 1 as pressed there from 0, 0 none",
             optional=True,
             prior=Prior("normal", 1.0, 0.7, "1", "1 as pressed there, 0 none, -1 as released"),
+        ),
+        Parameter(
+            "rebound",
+            "u",
+            "1",
+            1.0,
+            0.1,
+            10.0,
+            "friction on the way back over that on the way in",
+            optional=True,
+            prior=Prior("log", 1.0, math.log(1.5), "1", "1 without pressed-on seals; wide"),
         ),
     ),
     initial_state=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),

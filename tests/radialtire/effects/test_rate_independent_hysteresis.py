@@ -67,6 +67,16 @@ def test_friction_by_load_is_a_share_of_the_elastic_force() -> None:
     assert force[-1] / (STIFFNESS * x[-1]) == pytest.approx(0.95, rel=1e-9)
 
 
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_the_way_back_slips_at_a_share_of_its_own(memory: float) -> None:
+    # fully slipping: S up, -u S down; without memory and slipping at once, the area is (1 + u) S times the base
+    x = np.concatenate([np.linspace(0.0, 0.02, 500), np.linspace(0.02, 0.005, 500)])
+    tire = only(NAME, law=LINEAR, slip_force=50.0, reach=1e-4, memory=memory, rebound=0.4)
+    force = drive(tire, np.arange(1000.0), x) - STIFFNESS * x
+    assert force[499] == pytest.approx(50.0, rel=1e-9)
+    assert force[-1] == pytest.approx(-20.0, rel=1e-9)
+
+
 def excursion(memory: float) -> tuple[float, float]:
     """Force on the way up before and after a closed excursion downwards by 1 mm."""
     path = [np.linspace(0.0, 0.0135, 200), np.linspace(0.0135, 0.0125, 50), np.linspace(0.0125, 0.0135, 50)]

@@ -37,6 +37,17 @@ def test_speed_and_depth_enter_with_their_exponents() -> None:
     assert ramp(-0.4, 0.01, damping=300.0, rate_exponent=0.5) == pytest.approx(-60.0, rel=1e-6)
 
 
+def test_the_way_back_is_damped_by_a_share_of_its_own() -> None:
+    # the loop's area is the mean of both ways' dashpots: (1 + u)/2 pi c w a^2
+    assert ramp(-0.2, 0.02, damping=300.0, rebound=2.5) == pytest.approx(-150.0, rel=1e-6)
+    assert ramp(0.2, 0.02, damping=300.0, rebound=2.5) == pytest.approx(60.0, rel=1e-6)
+    time, x = sine(0.5, 0.008, 0.012, 2.0, 4000)
+    force = drive(only("viscous_damping", law=LINEAR, damping=300.0, rebound=2.5), time, x)
+    last = slice(-4001, None)
+    expected = 1.75 * math.pi * 300.0 * math.pi * 0.008**2
+    assert loop_area(x[last], force[last]) == pytest.approx(expected, rel=1e-4)
+
+
 def test_a_tire_in_the_air_is_not_damped() -> None:
     time = np.linspace(0.0, 0.1, 101)
     assert np.all(drive(only("viscous_damping", damping=1e4), time, time - 0.2) == 0.0)

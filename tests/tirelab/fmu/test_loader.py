@@ -82,7 +82,14 @@ def test_two_fmus_do_not_disturb_each_other(bench: Bench, tmp_path: Path) -> Non
 
 
 def test_control_c_stays_the_hosts(bench: Bench) -> None:
-    process = subprocess.Popen(bench.command("steps", 10**9), stdout=subprocess.DEVNULL)
-    time.sleep(0.5)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(10) == -signal.SIGINT
+    def heard() -> None:  # a program that was started in the background would ignore it
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    command = bench.command("steps", 10**9)
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, preexec_fn=heard) as process:
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        try:
+            assert process.wait(10) == -signal.SIGINT
+        finally:
+            process.kill()
