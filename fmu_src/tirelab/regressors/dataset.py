@@ -19,8 +19,8 @@ from radialtire.effect import PLACES
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
-from .gauge import destepped
-from .noise_floor import NoiseFloor, gauge_step, noise_floor, white_level
+from .gauge import destepped, staircase_step
+from .noise_floor import NoiseFloor, noise_floor, white_level
 from .scales import Scales
 
 FloatArray = NDArray[np.float64]
@@ -158,7 +158,7 @@ def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) 
 
 
 def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
-    step = gauge_step(recording.deflection)
+    step = staircase_step(recording.deflection)
     read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
     motion = motion_of(recording.time, read)
     gauge = 0.0 if step > 0.0 else motion.noise

@@ -18,19 +18,6 @@ from ..preprocessing.robust_scale import MEDIAN_TO_SIGMA
 
 FloatArray = NDArray[np.float64]
 
-REPEATED = 0.3
-"""Part of neighbouring readings that are equal above which a gauge is said to step."""
-
-SMALLEST_CHANGE = 0.02
-"""Quantile of the changes of the reading that is taken for its step."""
-
-ON_GRID = 0.1
-"""Largest distance of a change from a whole number of steps, in steps."""
-
-
-RESTING, LEVELS = 0.3, 5
-"""Part of the changes that rest before or after, or number of different jumps, that a stepping gauge shows at least."""
-
 
 @dataclass(frozen=True)
 class NoiseFloor:
@@ -45,24 +32,6 @@ class NoiseFloor:
     def level(self) -> float:
         """All of it [N]."""
         return float(np.sqrt(self.amplifier**2 + self.gauge**2 + self.steps**2))
-
-
-def gauge_step(deflection: FloatArray) -> float:
-    """Return the step [m] of a gauge whose readings repeat, or 0."""
-    changes = np.abs(np.diff(deflection))
-    moved = changes[changes > 1e-12]
-    if moved.size == 0 or moved.size > (1.0 - REPEATED) * changes.size:
-        return 0.0
-    # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
-    step = float(np.quantile(moved, SMALLEST_CHANGE))
-    steps = np.round(moved / step)
-    off = np.abs(moved / step - steps)
-    # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
-    changing = changes > 1e-12
-    rests = float(np.mean(~(changing[:-1] & changing[1:])[changing[:-1] | changing[1:]]))
-    if rests < RESTING and np.unique(steps).size < LEVELS:
-        return 0.0
-    return step if float(np.quantile(off, 0.9)) < ON_GRID else 0.0
 
 
 def white_level(residual: FloatArray) -> float:

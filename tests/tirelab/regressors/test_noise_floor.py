@@ -1,38 +1,13 @@
-"""The noise of a recording and the gauge that steps."""
+"""The noise floor of a recording."""
 
 import numpy as np
 import pytest
-from tirelab.regressors.gauge import destepped
-from tirelab.regressors.noise_floor import gauge_step, noise_floor, white_level
+from tirelab.regressors.noise_floor import noise_floor, white_level
 
 TIME = np.linspace(0.0, 10.0, 4001)
 RAMP = 2e-3 * TIME
 STEP = 5e-5
 STEPPED = STEP * np.round(RAMP / STEP)
-
-
-def test_step_of_a_gauge_that_repeats_its_reading_is_found() -> None:
-    assert gauge_step(STEPPED) == pytest.approx(STEP)
-
-
-def test_noisy_gauge_has_no_step() -> None:
-    assert gauge_step(RAMP + 1e-6 * np.random.default_rng(0).normal(size=TIME.size)) == 0.0
-
-
-def test_tire_at_rest_is_no_step() -> None:
-    held = np.where(TIME < 5.0, RAMP, 0.01) * (1.0 + 0.1 * np.sin(TIME * (TIME < 5.0)))
-    assert gauge_step(held) == 0.0
-
-
-def test_ramps_between_holds_are_no_steps() -> None:
-    level = np.clip(TIME % 4.0, 0.0, 1.0) + np.floor(TIME / 4.0)
-    assert gauge_step(5e-3 * level) == 0.0
-
-
-def test_motion_behind_the_steps_is_nearer_than_the_reading() -> None:
-    behind = destepped(TIME, STEPPED, STEP)
-    inside = slice(100, -100)
-    assert np.abs(behind - RAMP)[inside].max() < 0.1 * STEP
 
 
 def test_floor_counts_the_steps_through_the_stiffness() -> None:
