@@ -83,34 +83,6 @@ class EccentricWheel(Effect):
 
 
 @dataclass(frozen=True)
-class DeadZoneDamper(Effect):
-    """A valve that opens in rebound only, beyond a rate: F = -c (-v - v_0) below -v_0, else nothing."""
-
-    threshold: float
-
-    name: ClassVar[str] = "rebound_valve"
-    unit: ClassVar[str] = "N s/m"
-    limit: ClassVar[float] = 20000.0
-
-    @classmethod
-    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "DeadZoneDamper":
-        """Threshold at the typical rate."""
-        return cls(500.0, conditions.typical_rate * rng.uniform(0.8, 1.3))
-
-    def machine(self, contact: Contact) -> FloatArray:
-        """Force of the valve [N]."""
-        return -self.strength * np.maximum(-contact.motion.rate - self.threshold, 0.0)
-
-    def active(self, contact: Contact) -> BoolArray:
-        """Unloading faster than the threshold."""
-        return contact.motion.rate < -self.threshold
-
-    def regions(self, motion: Motion) -> list[Region]:
-        """Below the threshold in rate."""
-        return [Region("rate", None, -self.threshold, "m/s")]
-
-
-@dataclass(frozen=True)
 class OneSidedPlay(Effect):
     """A pin with a dead zone: while unloading, the frame loses the force f within a window of deflection."""
 
@@ -374,7 +346,6 @@ OPEN_WORLD: tuple[type[Effect], ...] = (
     KnobRipple,
     StickSlip,
     EccentricWheel,
-    DeadZoneDamper,
     OneSidedPlay,
     AmplifierJump,
     Crosstalk,

@@ -51,7 +51,6 @@ INFORMATIVE_TESTS: Mapping[str, tuple[str, ...]] = {
     "inertia": ("sweep", "multisine", "ride", "burst"),
     "force_lag": ("sweep", "multisine", "ride", "burst", "many_rates_triangle"),
     "saturation": ("hits", "article_triangle", "ride", "growing_triangle"),
-    "rebound_valve": ("many_rates_triangle", "sweep", "multisine", "ride"),
     "frame_resonance": ("sweep", "multisine", "ride", "many_rates_triangle"),
     "bead_snap": ("article_triangle", "growing_triangle", "many_rates_triangle", "ride", "hits"),
     "adhesion": ("article_triangle", "growing_triangle", "many_rates_triangle", "single_rate_triangle"),

@@ -19,6 +19,7 @@ from concealed.wide.foreign import (
     HealingSoftening,
     LoopedRim,
     QuadraticDashpot,
+    ReboundValve,
     RootDashpot,
     StretchedRelaxation,
     UnevenDashpot,
@@ -75,6 +76,15 @@ def test_dampers_follow_their_law(
     assert force[inward] == pytest.approx(in_force, rel=1e-3)
     assert force[outward] == pytest.approx(out_force, rel=1e-3)
     assert quicker[inward] == pytest.approx(doubled * in_force, rel=1e-3)
+
+
+def test_a_rebound_valve_opens_on_the_way_back_alone(flat_motion: Flat, added: Added) -> None:
+    """At 10 mm/s beyond 4 mm/s: 300 N s/m times 6 mm/s; at 3 mm/s it is shut."""
+    quick, slow = triangle(flat_motion, 0.01), triangle(flat_motion, 0.003)
+    force = added(ReboundValve(300.0, 0.004), quick)
+    assert force[at(quick, True, 0.0125)] == 0.0
+    assert force[at(quick, False, 0.0125)] == pytest.approx(-1.8, rel=1e-3)
+    assert np.abs(added(ReboundValve(300.0, 0.004), slow))[slow.deflection > 0.006].max() == 0.0
 
 
 def test_breakaway_friction_peaks_after_a_reversal(flat_motion: Flat, added: Added) -> None:

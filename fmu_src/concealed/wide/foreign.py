@@ -71,6 +71,23 @@ class QuadraticDashpot(LinearDashpot):
 
 
 @dataclass(frozen=True)
+class ReboundValve(LinearDashpot):
+    """A valve that opens on the way back only, beyond a rate: F = -c (-v - v_0) below -v_0, else nothing."""
+
+    threshold: float
+
+    @classmethod
+    def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "ReboundValve":
+        """Threshold at a half to all of the typical rate."""
+        return cls(300.0, conditions.typical_rate * rng.uniform(0.5, 1.0))
+
+    def parallel(self, contact: Contact) -> FloatArray:
+        """Damping force [N]."""
+        beyond = np.maximum(-contact.motion.rate - self.threshold, 0.0)
+        return -self.strength * beyond * contact.touching
+
+
+@dataclass(frozen=True)
 class BreakawayFriction(Effect):
     """Friction with a peak after each reversal: F = f z (1 + p u e^(1 - u)), u = s/(3 r).
 
@@ -257,6 +274,7 @@ FOREIGN: tuple[type[Effect], ...] = (
     UnevenDashpot,
     RootDashpot,
     QuadraticDashpot,
+    ReboundValve,
     BreakawayFriction,
     AsymmetricFriction,
     BroadIwanFriction,
