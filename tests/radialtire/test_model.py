@@ -78,7 +78,7 @@ def test_time_counts_from_the_first_moment() -> None:
 
 def test_the_rate_is_that_of_the_tire_and_not_of_the_reading() -> None:
     # a linear tire K with a spring 1/k in series moves at 1 / (1 + k K) of the rate read: half of it here
-    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0))
+    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0))
     tire = tire_with(("series_compliance", (1.0 / STIFFNESS, 0.0)), damped, law=LINEAR)
     time = np.linspace(0.0, 0.1, 201)
     force = drive(tire, time, 0.01 + 0.1 * time)
