@@ -31,7 +31,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
+from indentations import indentation, power_law_fit, read_hysitron, recorded
 from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
@@ -134,9 +134,9 @@ def brain(folder: Path) -> Finding:
         "Hertz's law fitted to the approach, B = 1.5",
         verdict,
         "the second half of the withdrawal",
-        before / PER_NANONEWTON,
-        after / PER_NANONEWTON,
-        verdict.fit.noise / PER_NANONEWTON,
+        1e9 * before,
+        1e9 * after,
+        1e9 * verdict.fit.noise,
         "nN",
         (f"held at constant force for 3 s, the indentation grows by {found.creep:.2f} um: it creeps",),
         (Refusal(("pressure_leak",), "there is no pressure; a law that fades with time is relaxation here"),),
@@ -155,19 +155,15 @@ def gel(folder: Path) -> Finding:
         "Hertz's law fitted to the approach, B = 1.5",
         verdict,
         "another curve (example1_creep), whole",
-        before / PER_NANONEWTON,
-        after / PER_NANONEWTON,
-        verdict.fit.noise / PER_NANONEWTON,
+        1e9 * before,
+        1e9 * after,
+        1e9 * verdict.fit.noise,
         "nN",
         (
             f"held at constant force for 3 s, the indentation grows by {first.creep:.2f} um in this curve and by "
             f"{other.creep:.2f} um in the other",
         ),
     )
-
-
-PER_NANOMETRE, PER_MICRONEWTON = 5e-5, 4e-2
-"""The indenter as a tire: 1 nm is 0.05 mm, 1 uN is 0.04 N; its compliance of 0.00664 nm/uN is then 8.3e-6 m/N."""
 
 
 def indenter(folder: Path) -> Finding:
@@ -181,9 +177,9 @@ def indenter(folder: Path) -> Finding:
     own = (depth - compliance * force)[loading]
     corrected = power_law_fit(own - own[0], force[loading])
     a, b, zero = raw
-    x = (depth[loading] - depth[start] - zero) * PER_NANOMETRE
-    tire = baseline_law(a * PER_MICRONEWTON / (100.0 * PER_NANOMETRE) ** b, b)
-    r = recorded("loading", time[loading], x, force[loading] * PER_MICRONEWTON)
+    x = 1e-9 * (depth[loading] - depth[start] - zero)
+    tire = baseline_law(1e-6 * a / 1e-7**b, b)
+    r = recorded("loading", time[loading], x, 1e-6 * force[loading])
     verdict = diagnose([part(r, slice(0, None, 2))], tire)
     before, after = errors(verdict, tire, r, slice(1, None, 2))
     return Finding(
@@ -191,9 +187,9 @@ def indenter(folder: Path) -> Finding:
         f"the power law that fits the loading, B = {b:.2f}: {100 * before / r.force.max():.2f} % off",
         verdict,
         "the samples between those fitted",
-        before / PER_MICRONEWTON,
-        after / PER_MICRONEWTON,
-        verdict.fit.noise / PER_MICRONEWTON,
+        1e6 * before,
+        1e6 * after,
+        1e6 * verdict.fit.noise,
         "uN",
         (
             f"the file's header gives the machine {compliance:.5f} nm/uN, {compliance * force[peak]:.0f} nm of the "

@@ -18,11 +18,13 @@ from .robust_scale import robust_sigma
 
 FloatArray = NDArray[np.float64]
 
-LEAST_NOISE = 1e-9
-"""Smallest noise [m] that is returned: no gauge reads a tire's deflection to a nanometre."""
+LEAST_NOISE, LEAST_PART = 1e-9, 1e-7
+"""Smallest noise [m] that is returned, and as a part of the span where that is less (below 10 mm): no gauge reads a
+tire's deflection to a nanometre, and none reads a ten-millionth of its span."""
 
-FINEST_STEP = 5e-7
-"""Smallest step [m] that is a gauge's: finer ones are the digits of a file, rounded below every other noise."""
+FINEST_STEP, FINEST_PART = 5e-7, 1e-4
+"""Smallest step [m] that is a gauge's, and as a part of the span where that is less (below 5 mm): finer ones are the
+digits of a file, rounded below every other noise."""
 
 LEAST_LEVELS = 100
 """Steps from the smallest to the largest reading; fewer are a staircase that the rig was driven through."""
@@ -38,17 +40,18 @@ ROUNDED_ALONE = 0.05
 
 
 def deflection_noise(deflection: FloatArray) -> float:
-    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least 1e-9 m.
+    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least `_least`.
 
     Readings rounded to steps q without other noise have q / sqrt(12), those with other noise at least that.
     """
+    least = _least(deflection, LEAST_NOISE, LEAST_PART)
     random = robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0)
     step = gauge_step(deflection)
     rounding = step / np.sqrt(12.0)
     # A smooth motion that is only rounded has second differences of -q, 0 and q.
     if step > 0.0 and np.mean(np.abs(np.diff(deflection, 2)) > 1.5 * step) < ROUNDED_ALONE:
-        return float(max(rounding, LEAST_NOISE))
-    return float(max(random, rounding, LEAST_NOISE))
+        return float(max(rounding, least))
+    return float(max(random, rounding, least))
 
 
 def gauge_step(deflection: FloatArray) -> float:
@@ -58,7 +61,9 @@ def gauge_step(deflection: FloatArray) -> float:
     or 2 q and the next sample undoes it. A motion driven at constant speed, given in exact numbers, lies on a grid too,
     but its motion per sample changes only at corners and stays changed.
     """
-    step = _common_step(np.diff(np.unique(deflection)))
+    gaps = np.diff(np.unique(deflection))
+    finest = _least(deflection, FINEST_STEP, FINEST_PART)
+    step = _common_step(gaps[gaps > _least(deflection, LEAST_NOISE, LEAST_PART)], finest)
     if step == 0.0 or np.ptp(deflection) < LEAST_LEVELS * step:
         return 0.0
     changes = np.diff(np.rint(np.diff(deflection) / step))
@@ -67,11 +72,16 @@ def gauge_step(deflection: FloatArray) -> float:
     return step if np.count_nonzero(undone) >= LEAST_UNDONE else 0.0
 
 
-def _common_step(gaps: FloatArray) -> float:
-    """Return the largest step of which all `gaps` are multiples, by Euclid's algorithm; 0 where it is no gauge's."""
-    gaps = gaps[gaps > LEAST_NOISE]
+def _least(deflection: FloatArray, size: float, part: float) -> float:
+    """Return a size [m], or a part of the readings' span where that is less: a small specimen has a finer gauge."""
+    span = float(np.ptp(deflection))
+    return min(size, part * span) if span > 0.0 else size
+
+
+def _common_step(gaps: FloatArray, finest: float) -> float:
+    """Return the largest step of which all `gaps` are multiples, by Euclid's algorithm; 0 where it is below `finest`."""
     step = float(gaps.min(initial=np.inf))
-    while FINEST_STEP <= step < np.inf:
+    while finest <= step < np.inf:
         multiples = np.rint(gaps / step)
         remainder = np.abs(gaps - multiples * step)
         if remainder.max() <= GRID_TOLERANCE * step:
