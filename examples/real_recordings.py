@@ -17,9 +17,15 @@ pneumatic_cylinder_pressure_friction/
     6e0bcb4633bd53b2a8544cdbd497c4c06539afc7; CC0, E. Zillen, H. Vallery, G. Smit
 
 None of them is a tire. A sphere pressed into tissue follows the tire's own law with B = 1.5; the indenter's does with
-B = 2. Micrometres and nanonewtons are told as millimetres and newtons there, time is left as it is, and every figure is
-printed in the unit of its recording. The damper and the piston are read as they are: they pull and push, and their
-baseline is a part that is held at both ends, a straight line through their readings or a preload alone.
+B = 2. All are diagnosed in metres and newtons as they were read, and every figure is printed in the unit of its
+recording. The damper and the piston pull and push: their baseline is a part that is held at both ends, a straight line
+through their readings or a preload alone.
+
+What micrometres and nanonewtons cannot show: series compliance, friction, saturation and a law of another shape have
+bounds in SI that are a tire's (at most 1e-4 m/N; a breakaway distance of at least 1e-5 m; at least 1 N; a reference
+deflection of at least 1e-4 m). The diagnosis leaves them out there, says so beside its verdict, and the lines `not
+shown` name them. Of the indenter's loading, less than a micrometre, it then says that something unknown is
+missing, where a law of another shape would do.
 """
 
 from __future__ import annotations
@@ -81,12 +87,13 @@ class Finding:
         v = self.verdict
         found = ", ".join(v.names) or "nothing is missing"
         alternatives = "; or ".join(
-            " + ".join(alternative.names) or "nothing" for alternative in v.alternatives
+            " + ".join(a.names) or "nothing" for a in v.alternatives if not np.isnan(a.probability)
         )
         lines = [
             f"baseline   {self.baseline}",
             f"found      {found} (confidence {100 * v.confidence:.0f} %)".replace("_", " "),
             *([f"           could also be {alternatives}".replace("_", " ")] if alternatives else []),
+            *(f"not shown  {line}".replace("_", " ") for line in self.not_shown()),
             *([f"           unknown depends on {', '.join(v.unexplained_by)}"] if v.unexplained else []),
             f"RMSE       {self.before:.3g} -> {self.after:.3g} {self.unit} on {self.held_out}; "
             f"noise {self.noise:.2g} {self.unit}",
@@ -97,6 +104,14 @@ class Finding:
             textwrap.fill(line, 110, initial_indent="  ", subsequent_indent=13 * " ") for line in lines
         )
         return "\n".join([self.title, *wrapped])
+
+    def not_shown(self) -> list[str]:
+        """The effects that these recordings cannot show, or their size not, by the reason."""
+        reasons: dict[str, list[str]] = {}
+        for a in self.verdict.alternatives:
+            if np.isnan(a.probability):
+                reasons.setdefault(a.reason, []).extend(set(a.names) - set(self.verdict.names))
+        return [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
 
 
 def part(recording: Recording, samples: slice) -> Recording:

@@ -18,13 +18,12 @@ from .robust_scale import robust_sigma
 
 FloatArray = NDArray[np.float64]
 
-LEAST_NOISE, LEAST_PART = 1e-9, 1e-7
-"""Smallest noise [m] that is returned, and as a part of the span where that is less (below 10 mm): no gauge reads a
-tire's deflection to a nanometre, and none reads a ten-millionth of its span."""
+LEAST_NOISE, FINEST_STEP = 1e-9, 5e-7
+"""Smallest noise [m] that is returned, and smallest step [m] that is a gauge's: no gauge reads a tire's deflection to a
+nanometre, and finer steps are the digits of a file, rounded below every other noise."""
 
-FINEST_STEP, FINEST_PART = 5e-7, 1e-4
-"""Smallest step [m] that is a gauge's, and as a part of the span where that is less (below 5 mm): finer ones are the
-digits of a file, rounded below every other noise."""
+SMALL = 1e-3
+"""Span [m] below which both shrink with it: a smaller specimen has a finer gauge."""
 
 LEAST_LEVELS = 100
 """Steps from the smallest to the largest reading; fewer are a staircase that the rig was driven through."""
@@ -40,11 +39,12 @@ ROUNDED_ALONE = 0.05
 
 
 def deflection_noise(deflection: FloatArray) -> float:
-    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least `_least`.
+    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least 1e-9 m,
+    or a millionth of their span where that is less.
 
     Readings rounded to steps q without other noise have q / sqrt(12), those with other noise at least that.
     """
-    least = _least(deflection, LEAST_NOISE, LEAST_PART)
+    least = LEAST_NOISE * _shrunk(deflection)
     random = robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0)
     step = gauge_step(deflection)
     rounding = step / np.sqrt(12.0)
@@ -61,9 +61,8 @@ def gauge_step(deflection: FloatArray) -> float:
     or 2 q and the next sample undoes it. A motion driven at constant speed, given in exact numbers, lies on a grid too,
     but its motion per sample changes only at corners and stays changed.
     """
-    gaps = np.diff(np.unique(deflection))
-    finest = _least(deflection, FINEST_STEP, FINEST_PART)
-    step = _common_step(gaps[gaps > _least(deflection, LEAST_NOISE, LEAST_PART)], finest)
+    gaps, shrunk = np.diff(np.unique(deflection)), _shrunk(deflection)
+    step = _common_step(gaps[gaps > LEAST_NOISE * shrunk], FINEST_STEP * shrunk)
     if step == 0.0 or np.ptp(deflection) < LEAST_LEVELS * step:
         return 0.0
     changes = np.diff(np.rint(np.diff(deflection) / step))
@@ -72,10 +71,10 @@ def gauge_step(deflection: FloatArray) -> float:
     return step if np.count_nonzero(undone) >= LEAST_UNDONE else 0.0
 
 
-def _least(deflection: FloatArray, size: float, part: float) -> float:
-    """Return a size [m], or a part of the readings' span where that is less: a small specimen has a finer gauge."""
+def _shrunk(deflection: FloatArray) -> float:
+    """Return the readings' span over SMALL, at most 1; 1 where nothing moves."""
     span = float(np.ptp(deflection))
-    return min(size, part * span) if span > 0.0 else size
+    return min(span / SMALL, 1.0) if span > 0.0 else 1.0
 
 
 def _common_step(gaps: FloatArray, finest: float) -> float:
