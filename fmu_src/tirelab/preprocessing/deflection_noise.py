@@ -78,7 +78,7 @@ def _shrunk(deflection: FloatArray) -> float:
 
 
 def _common_step(gaps: FloatArray, finest: float) -> float:
-    """Return the largest step of which all `gaps` are multiples, by Euclid's algorithm; 0 where it is below `finest`."""
+    """Return the largest step of which all `gaps` are multiples, by Euclid's algorithm; 0 if below `finest`."""
     step = float(gaps.min(initial=np.inf))
     while finest <= step < np.inf:
         multiples = np.rint(gaps / step)
