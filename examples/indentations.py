@@ -42,7 +42,7 @@ def recorded(name: str, time: FloatArray, deflection: FloatArray, force: FloatAr
 
 @dataclass(frozen=True)
 class Indentation:
-    """A sphere in a soft specimen, as a tire: 1 um is 1 mm, 1 nN is 100 N; coefficient [N/cm^1.5] from the approach.
+    """A sphere in a soft specimen: indentation [m] and force [N]; coefficient [N/cm^1.5] from the approach.
 
     turned: sample at which the hold ends; creep [um]: what the indentation grows in the hold
     """
@@ -56,7 +56,6 @@ class Indentation:
 CANTILEVER = 0.061
 """Stiffness of the cantilever [nN/nm], from the header of the files."""
 
-PER_NANONEWTON = 100.0
 ADHESION = 0.15
 """Part of the largest force below which the specimen clings to the sphere and its law ends."""
 
@@ -77,14 +76,14 @@ def indentation(path: Path) -> Indentation:
     starts = np.quantile(pressed[approach], [0.2, 0.5, 0.8, 0.95])
     fits = [least_squares(miss, [np.median(force[:300]), 0.1, start]) for start in starts]
     baseline, coefficient, contact = min(fits, key=lambda fit: float(fit.cost)).x
-    x, f = 1e-3 * (pressed - contact), PER_NANONEWTON * (force - baseline)
+    x, f = 1e-6 * (pressed - contact), 1e-9 * (force - baseline)
     first = int(np.argmax(x > 0.0))
     last = int(np.flatnonzero(f > ADHESION * f.max())[-1])
     hold = slice(approach.stop, approach.stop + segments[1]["seriesTime"].size)
-    tire_like = recorded(path.stem[:24], time[first:last], x[first:last], f[first:last])
+    pressing = recorded(path.stem[:24], time[first:last], x[first:last], f[first:last])
     return Indentation(
-        tire_like,
-        coefficient * PER_NANONEWTON * 10.0**1.5,
+        pressing,
+        coefficient * 1e-9 * 1e4**1.5,
         hold.stop - first,
         float(pressed[hold][-100:].mean() - pressed[hold][:100].mean()),
     )

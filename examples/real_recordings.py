@@ -17,9 +17,15 @@ pneumatic_cylinder_pressure_friction/
     6e0bcb4633bd53b2a8544cdbd497c4c06539afc7; CC0, E. Zillen, H. Vallery, G. Smit
 
 None of them is a tire. A sphere pressed into tissue follows the tire's own law with B = 1.5; the indenter's does with
-B = 2. Micrometres and nanonewtons are told as millimetres and newtons there, time is left as it is, and every figure is
-printed in the unit of its recording. The damper and the piston are read as they are: they pull and push, and their
-baseline is a part that is held at both ends, a straight line through their readings or a preload alone.
+B = 2. All are diagnosed in metres and newtons as they were read, and every figure is printed in the unit of its
+recording. The damper and the piston pull and push: their baseline is a part that is held at both ends, a straight line
+through their readings or a preload alone.
+
+What micrometres and nanonewtons cannot show: series compliance, friction, saturation and a law of another shape have
+bounds in SI that are a tire's (at most 1e-4 m/N; a breakaway distance of at least 1e-5 m; at least 1 N; a reference
+deflection of at least 1e-4 m). The diagnosis leaves them out there, says so beside its verdict, and the lines `not
+shown` name them. Of the indenter's loading, less than a micrometre, it then says that something unknown is
+missing, where a law of another shape would do.
 """
 
 from __future__ import annotations
@@ -31,7 +37,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
+from indentations import indentation, power_law_fit, read_hysitron, recorded
 from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
@@ -81,12 +87,13 @@ class Finding:
         v = self.verdict
         found = ", ".join(v.names) or "nothing is missing"
         alternatives = "; or ".join(
-            " + ".join(alternative.names) or "nothing" for alternative in v.alternatives
+            " + ".join(a.names) or "nothing" for a in v.alternatives if not np.isnan(a.probability)
         )
         lines = [
             f"baseline   {self.baseline}",
             f"found      {found} (confidence {100 * v.confidence:.0f} %)".replace("_", " "),
             *([f"           could also be {alternatives}".replace("_", " ")] if alternatives else []),
+            *(f"not shown  {line}".replace("_", " ") for line in self.not_shown()),
             *([f"           unknown depends on {', '.join(v.unexplained_by)}"] if v.unexplained else []),
             f"RMSE       {self.before:.3g} -> {self.after:.3g} {self.unit} on {self.held_out}; "
             f"noise {self.noise:.2g} {self.unit}",
@@ -97,6 +104,14 @@ class Finding:
             textwrap.fill(line, 110, initial_indent="  ", subsequent_indent=13 * " ") for line in lines
         )
         return "\n".join([self.title, *wrapped])
+
+    def not_shown(self) -> list[str]:
+        """The effects that these recordings cannot show, or their size not, by the reason."""
+        reasons: dict[str, list[str]] = {}
+        for a in self.verdict.alternatives:
+            if np.isnan(a.probability):
+                reasons.setdefault(a.reason, []).extend(set(a.names) - set(self.verdict.names))
+        return [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
 
 
 def part(recording: Recording, samples: slice) -> Recording:
@@ -134,9 +149,9 @@ def brain(folder: Path) -> Finding:
         "Hertz's law fitted to the approach, B = 1.5",
         verdict,
         "the second half of the withdrawal",
-        before / PER_NANONEWTON,
-        after / PER_NANONEWTON,
-        verdict.fit.noise / PER_NANONEWTON,
+        1e9 * before,
+        1e9 * after,
+        1e9 * verdict.fit.noise,
         "nN",
         (f"held at constant force for 3 s, the indentation grows by {found.creep:.2f} um: it creeps",),
         (Refusal(("pressure_leak",), "there is no pressure; a law that fades with time is relaxation here"),),
@@ -155,19 +170,15 @@ def gel(folder: Path) -> Finding:
         "Hertz's law fitted to the approach, B = 1.5",
         verdict,
         "another curve (example1_creep), whole",
-        before / PER_NANONEWTON,
-        after / PER_NANONEWTON,
-        verdict.fit.noise / PER_NANONEWTON,
+        1e9 * before,
+        1e9 * after,
+        1e9 * verdict.fit.noise,
         "nN",
         (
             f"held at constant force for 3 s, the indentation grows by {first.creep:.2f} um in this curve and by "
             f"{other.creep:.2f} um in the other",
         ),
     )
-
-
-PER_NANOMETRE, PER_MICRONEWTON = 5e-5, 4e-2
-"""The indenter as a tire: 1 nm is 0.05 mm, 1 uN is 0.04 N; its compliance of 0.00664 nm/uN is then 8.3e-6 m/N."""
 
 
 def indenter(folder: Path) -> Finding:
@@ -181,9 +192,9 @@ def indenter(folder: Path) -> Finding:
     own = (depth - compliance * force)[loading]
     corrected = power_law_fit(own - own[0], force[loading])
     a, b, zero = raw
-    x = (depth[loading] - depth[start] - zero) * PER_NANOMETRE
-    tire = baseline_law(a * PER_MICRONEWTON / (100.0 * PER_NANOMETRE) ** b, b)
-    r = recorded("loading", time[loading], x, force[loading] * PER_MICRONEWTON)
+    x = 1e-9 * (depth[loading] - depth[start] - zero)
+    tire = baseline_law(1e-6 * a / 1e-7**b, b)
+    r = recorded("loading", time[loading], x, 1e-6 * force[loading])
     verdict = diagnose([part(r, slice(0, None, 2))], tire)
     before, after = errors(verdict, tire, r, slice(1, None, 2))
     return Finding(
@@ -191,9 +202,9 @@ def indenter(folder: Path) -> Finding:
         f"the power law that fits the loading, B = {b:.2f}: {100 * before / r.force.max():.2f} % off",
         verdict,
         "the samples between those fitted",
-        before / PER_MICRONEWTON,
-        after / PER_MICRONEWTON,
-        verdict.fit.noise / PER_MICRONEWTON,
+        1e6 * before,
+        1e6 * after,
+        1e6 * verdict.fit.noise,
         "uN",
         (
             f"the file's header gives the machine {compliance:.5f} nm/uN, {compliance * force[peak]:.0f} nm of the "

@@ -56,7 +56,7 @@ class TireCorrection(Fmi2Slave):
         self.default_experiment = DefaultExperiment(start_time=0.0, stop_time=1.0, step_size=1e-3)
         content = json.loads((Path(self.resources) / "correction.json").read_text(encoding="utf-8"))
         self._tire = from_text(json.dumps(content["corrected"]))
-        self._law = from_text(json.dumps(content["believed"])).law
+        self._believed = from_text(json.dumps(content["believed"]))
         self._moves = bool(content["moves"])
         self._start = float(content["surface_radius"])
         self._inputs = [0.0, self._start, 0.0]
@@ -103,7 +103,7 @@ class TireCorrection(Fmi2Slave):
             check_inputs(x, radius)
             force, state = self._tire.step(x, radius, time, self._state)
             inside = self._tire.tire_deflection(x, radius, time, self._state) if self._moves else x
-            additional = force - power_law.force(inside, *self._law.coefficients(radius))
+            additional = force - self._law_force(inside, radius)
             self._outputs = (inside, additional, simulated + additional)
             if math.isfinite(self._outputs[2]):
                 return state, ""
@@ -112,6 +112,13 @@ class TireCorrection(Fmi2Slave):
             reason = str(error)
         self._outputs = (math.nan, math.nan, math.nan)
         return self._state, reason
+
+    def _law_force(self, deflection: float, radius: float) -> float:
+        """Return the force [N] of the law of the simulation, without any effect."""
+        coefficients = self._believed.law.coefficients(radius)
+        if self._believed.two_sided:
+            return self._believed.preload + power_law.two_sided(deflection, *coefficients)
+        return power_law.force(deflection, *coefficients)
 
     def setup_experiment(
         self, start_time: float, stop_time: float | None = None, tolerance: float | None = None

@@ -58,6 +58,7 @@ DERIVED = (
     "preprocessing/data_checks.FEWEST_STEPS",
     "preprocessing/deflection_noise.LEAST_NOISE",
     "preprocessing/deflection_noise.FINEST_STEP",
+    "preprocessing/deflection_noise.SMALL",
     "preprocessing/deflection_noise.LEAST_LEVELS",
     "preprocessing/deflection_noise.GRID_TOLERANCE",
     "preprocessing/robust_scale.MEDIAN_TO_SIGMA",

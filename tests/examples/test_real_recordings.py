@@ -66,12 +66,12 @@ def curve(path: Path, *, coefficient: float, contact: float, baseline: float, cr
 def test_contact_law_and_creep_are_found_in_an_indentation(indentations: ModuleType, tmp_path: Path) -> None:
     curve(tmp_path / "curve.txt", coefficient=0.25, contact=4.0, baseline=3.0, creep=1.0)
     found = indentations.indentation(tmp_path / "curve.txt")
-    # 1 um is 1 mm and 1 nN is 100 N: 0.25 nN/um^1.5 is 25 N/mm^1.5, times 10^1.5 per cm^1.5
-    assert found.coefficient == pytest.approx(25.0 * 10.0**1.5, rel=1e-3)
+    # 1e4 um are 1 cm: 0.25 nN/um^1.5 is 0.25e-9 N / (1e-4 cm)^1.5
+    assert found.coefficient == pytest.approx(0.25e-9 * 1e6, rel=1e-3)
     # means over a tenth of a second at both ends of the hold, which sinks evenly for three
     assert found.creep == pytest.approx(1.0 - 0.1 / 3.0, abs=1e-3)
-    assert found.recording.deflection.max() == pytest.approx(9e-3, abs=1e-5)
-    assert found.recording.force[0] < 1.0
+    assert found.recording.deflection.max() == pytest.approx(9e-6, abs=1e-8)
+    assert found.recording.force[0] < 0.01e-9
 
 
 def test_a_hysitron_file_gives_columns_and_compliance(indentations: ModuleType, tmp_path: Path) -> None:
@@ -116,6 +116,9 @@ def test_the_tissue_relaxes_and_the_correction_holds_where_it_was_not_fitted(
     for found in (real_recordings.brain(data / FOLDERS[0]), real_recordings.gel(data / FOLDERS[0])):
         assert "viscoelastic_relaxation" in found.verdict.names
         assert found.after < 0.3 * found.before
+        assert found.verdict.recordings[0].deflection.max() < 20e-6  # as it was read, in metres
+        assert not {"saturation", "rate_independent_hysteresis"} & set(found.verdict.names)
+        assert any("saturation: its limit is at least 1 N" in line for line in found.not_shown())
 
 
 @pytest.mark.slow

@@ -115,7 +115,8 @@ def insufficient_excitation(
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
     held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
     if timed and held < LONG_ENOUGH:
-        lacks.append(f"no hold: hold 10 s at {650.0 * dataset.max_deflection:.0f} mm")
+        level = 650.0 * dataset.max_deflection
+        lacks.append(f"no hold: hold 10 s at {level:.{'0f' if level >= 1.0 else '2g'}} mm")
     if max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
         lacks.append("no repeated cycle: drive each cycle twice")
     return lacks

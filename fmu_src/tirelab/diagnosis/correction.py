@@ -70,7 +70,8 @@ class Corrected:
 
     def notes(self) -> list[str]:
         """Return what a reader of the figures has to know."""
-        law = f"{self.believed.tire.law.name}, which leaves {self.believed.rmse:.3g} N of it"
+        held = " of a part held at both ends" if self.believed.tire.two_sided else ""
+        law = f"{self.believed.tire.law.name}{held}, which leaves {self.believed.rmse:.3g} N of it"
         runs = "as the simulated force plus the output additional_force of Correction.fmu, given the same deflection"
         if self.system is not None:
             runs = f"as {SYSTEM}, which couples {_name(self.believed)} with Correction.fmu"

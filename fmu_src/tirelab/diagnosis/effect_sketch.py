@@ -85,7 +85,7 @@ def _larger(effect: Effect, values: State, index: int) -> State:
 def _motion(recordings: Sequence[Recorded], *, slow: bool) -> Test:
     deep = float(np.quantile(np.concatenate([r.deflection for r in recordings]), DEEPEST))
     speeds = np.concatenate([np.abs(np.gradient(r.deflection, r.time)) for r in recordings])
-    fast = max(float(np.quantile(speeds, TYPICAL)), 1e-6)
+    fast = max(float(np.quantile(speeds, TYPICAL)), 1e-12)
     longest = max(float(np.ptp(r.time)) for r in recordings)
     length = longest if slow else 2.0 * CYCLES * deep / fast
     phase = np.linspace(0.0, float(CYCLES), SAMPLES)

@@ -76,7 +76,7 @@ def law_changes(
 def _change(
     radius: float, deepest: float, tires: tuple[TireModel, TireModel], estimates: Mapping[str, Estimate]
 ) -> LawChange:
-    x = np.linspace(0.0, max(deepest, 1e-6), POINTS)
+    x = np.linspace(0.0, max(deepest, 1e-12), POINTS)
     motion = Test("ramp", np.arange(POINTS, dtype=float), x, np.full(POINTS, radius))
     before, after = (_bare(tire) for tire in tires)
     a, b = before.law.coefficients(radius), after.law.coefficients(radius)

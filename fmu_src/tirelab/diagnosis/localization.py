@@ -112,7 +112,7 @@ def localize(
     axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, dataset, samples.kept)]
     looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
     # Where the noise was taken for too large, the densest span has more than all samples together.
-    whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-12)
+    whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-300)
     found = [s for axis, bins in axes for s in _spans(axis, replace(bins, whole=whole), looked_at)]
     return tuple(sorted(found, key=lambda s: -s.concentration))
 

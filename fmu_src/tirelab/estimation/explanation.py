@@ -17,8 +17,9 @@ from radialtire import TireModel
 from ..preprocessing.dataset import Recorded
 from ..regressors.dataset import Dataset, dataset_of
 from ..regressors.excitation import Excitation, excitation_of
-from ..regressors.law import LAW, candidates, law_signature
+from ..regressors.law import LAW, SHAPE, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
+from ..regressors.out_of_size import out_of_size
 from ..regressors.signature import in_other_noise, signatures_of
 from ..selection.discrepancy import discrepancy_of, usual_form_error
 from ..selection.marginal_likelihood import normal_equations, parts_of
@@ -132,7 +133,7 @@ def explain_misfit(
     excitation = excitation_of(dataset, timed=timed)
     impossible = excitation.channels.impossible
     allowed = [name for name in candidates() if name in catalogue and name not in impossible]
-    hidden = excitation.reasons(allowed)
+    hidden = excitation.reasons(allowed) | out_of_size((*allowed, SHAPE), dataset.scales)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
     raw = (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))

@@ -44,10 +44,11 @@ def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False)
             )
 
 
-def check_signal(dataset: Dataset, levels: Sequence[float]) -> None:
+def check_signal(dataset: Dataset, levels: Sequence[float], *, beside: bool = False) -> None:
     """Raise PoorRecording where the deflection is noise, or the force does not follow it.
 
-    levels [N]: noise floor of each recording
+    levels [N]: noise floor of each recording; beside: whether the force is what a simulation leaves of the recorded one
+    beside its law, which of a part without a law may be noise alone
     """
     for number, (record, level) in enumerate(zip(dataset.experiments, levels, strict=True), start=1):
         motion = record.motion
@@ -60,6 +61,8 @@ def check_signal(dataset: Dataset, levels: Sequence[float]) -> None:
             raise PoorRecording(
                 f"recording {number} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
+        if beside and record.two_sided:
+            continue
         # The force of a part that is held at both ends may follow the rate alone, as a damper's does.
         elastic = record.force if record.two_sided else record.elastic(motion.deflection)
         related = float(np.corrcoef(record.force, elastic)[0, 1])

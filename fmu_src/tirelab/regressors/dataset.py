@@ -214,7 +214,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         simulate(tire, blocks, blocks),
         averaged,
         counts,
-        max(noise, 1e-6 * float(np.ptp(recording.force)), 1e-12),
+        max(noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
         floor,
         gauge,
         size,

@@ -72,6 +72,40 @@ class Maxwell({base}):
 """A spring of 80 kN/m beside a spring of 20 kN/m on a damper of 0.5 s: FMI 3.0."""
 
 
+DAMPER = """
+from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
+
+class Damper(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.stroke = 0.0
+        self.force = 0.0
+        self.before = 0.0
+        continuous = Fmi2Variability.continuous
+        self.register_variable(Real("stroke", causality=Fmi2Causality.input, variability=continuous))
+        self.register_variable(Real("force", causality=Fmi2Causality.output, variability=continuous))
+
+    def exit_initialization_mode(self):
+        self.before = self.stroke
+        self.force = 0.0
+
+    def do_step(self, current_time, step_size):
+        self.force = 1500.0 * (self.stroke - self.before) / step_size
+        self.before = self.stroke
+        return True
+"""
+"""F = 1500 N s/m dx/dt and no spring, the rate from the last step: FMI 2.0, Co-Simulation."""
+
+
+def damper(folder: Path) -> Path:
+    """Write Damper.fmu of pythonfmu (FMI 2.0 Co-Simulation)."""
+    from pythonfmu import FmuBuilder
+
+    script = folder / "damper.py"
+    script.write_text(DAMPER, encoding="utf-8")
+    return Path(FmuBuilder.build_FMU(script, dest=folder))
+
+
 def spring_damper(folder: Path, misbehave: str = "pass") -> Path:
     """Write SpringDamper.fmu of pythonfmu (FMI 2.0 Co-Simulation); misbehave: a statement for each step."""
     from pythonfmu import FmuBuilder

@@ -120,3 +120,19 @@ def test_random_noise_is_measured(sigma: float) -> None:
     time = np.arange(0.0, DURATION, 0.01)
     noise = sigma * np.random.default_rng(3).standard_normal(time.size)
     assert deflection_noise(sine(time, 0.0413) + noise) == pytest.approx(sigma, rel=0.05)
+
+
+@pytest.mark.parametrize("scale", [1e-4, 1e-3, 1.0])
+def test_a_gauge_of_a_small_specimen_has_its_own_noise_and_step(scale: float) -> None:
+    """The same motion in micrometres: noise and steps are as much smaller."""
+    time = np.arange(0.0, DURATION, 0.01)
+    noisy = sine(time, 0.0413) + 8e-6 * np.random.default_rng(7).normal(size=time.size)
+    assert deflection_noise(scale * noisy) == pytest.approx(scale * 8e-6, rel=0.05)
+    reading = scale * rounded(sine(time, 0.0413), 50e-6)
+    assert gauge_step(reading) == pytest.approx(scale * 50e-6, rel=1e-6)
+
+
+def test_the_floors_of_a_tires_recording_do_not_depend_on_its_span() -> None:
+    time = np.arange(0.0, DURATION, 0.01)
+    for depth in (0.1, 1.0, 4.0):  # 2.5 mm to 100 mm
+        assert deflection_noise(depth * sine(time, 0.0413)) == LEAST_NOISE
