@@ -194,8 +194,15 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
         found = dated if len(dated) == 1 else []
     if found:
         return _in_fitting_units(headers, channel, found)
-    for may_be in (_may_be_foreign, _may_be_counted, _may_be_with_source, _may_be_qualified):
-        found = [i for i, header in free if may_be(header, channel)]
+    sourceless = [(i, _without_source(header)) for i, header in free]
+    for may_be, columns in (
+        (_may_be_foreign, free),
+        (_may_be_counted, free),
+        (_may_be, sourceless),
+        (_may_be_foreign, sourceless),
+        (_may_be_qualified, free),
+    ):
+        found = [i for i, header in columns if may_be(header, channel)]
         if found:
             break
     return _in_fitting_units(headers, channel, found) if channel.required or len(found) == 1 else []
@@ -363,13 +370,9 @@ def _may_be_counted(header: Header, channel: Channel) -> bool:
     return _may_be(bare, channel) or _may_be_foreign(bare, channel)
 
 
-def _may_be_with_source(header: Header, channel: Channel) -> bool:
-    """Whether the name is the channel's where its source in brackets is left out: `Load(Actuator 1:Load) (N)`."""
-    base, bracket, _ = header.name.partition("(")
-    if not (bracket and base.strip() and channel.required):
-        return False
-    bare = Header(base.strip(), header.unit, header.text, header.dated)
-    return _may_be(bare, channel) or _may_be_foreign(bare, channel)
+def _without_source(header: Header) -> Header:
+    """Return a column without what its name says in brackets of its source: `Load(Actuator 1:Load) (N)`."""
+    return Header(header.name.partition("(")[0].strip(), header.unit, header.text, header.dated)
 
 
 def _may_be_qualified(header: Header, channel: Channel) -> bool:

@@ -74,6 +74,14 @@ class TestColumns:
         np.testing.assert_allclose(found.force, force, rtol=1e-5)
         np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
 
+    def test_our_own_names_go_before_foreign_ones_with_a_source_too(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],Position(A:Position) (mm),Displacement(A:Digital position) (cm),Load(A:Load) (N)"
+        path = write_rows(tmp_path / "a.csv", header, time, time, deflection, force)
+        np.testing.assert_allclose(
+            read_recording(path, radius="flat").deflection, deflection / 100.0, rtol=1e-5
+        )
+
     def test_of_two_sources_none_is_chosen(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         header = "time [s],stroke [cm],left cell load [N],right cell load [N]"
