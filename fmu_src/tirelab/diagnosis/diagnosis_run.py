@@ -115,7 +115,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     fitted = [_read(file, asked.reading, report) for file in files]
     kept = [_read(file, asked.reading, report) for file in kept_files]
     _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
-    _check_depth([*fitted, *kept])
+    _check_depth(fitted, kept)
     origin = {
         "command": command_line(
             asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading, asked.rig
@@ -324,9 +324,15 @@ def _check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                 )
 
 
-def _check_depth(recordings: Sequence[Recording]) -> None:
-    """Refuse at once what the corrected FMU would refuse when all is done: a deflection beyond the wheel's radius."""
-    for recording in recordings:
+def _check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
+    """Refuse at once deflections that would fail when all is done: none above 0, or one beyond the wheel's radius."""
+    if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
+        raise TirelabError(
+            f"{', '.join(r.name for r in fitted)}: no deflection is above 0, and only what happens above it can be "
+            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or subtract "
+            "the gauge's zero before the export"
+        )
+    for recording in (*fitted, *kept):
         deepest = int(np.argmax(recording.deflection))
         if recording.deflection[deepest] > DEFLECTION_HIGHEST:
             at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"

@@ -10,6 +10,7 @@ from radialtire import read_tire
 from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise, tire_of
+from tirelab.identification.table import law_table, with_uncertainty
 from tirelab.recordings.recording import Recording, write_recording
 from tirelab.simulation.simulate import simulate
 
@@ -56,6 +57,9 @@ def test_a_part_that_is_only_pulled_has_its_line_too(start: float) -> None:
     assert fits["linear"].value("k") == pytest.approx(20.0, rel=0.01)
     assert fits["linear"].value("F0") == pytest.approx(30.0, abs=4.0)
     assert all(np.isfinite(fit.rmse) for fit in fits.values())
+    # the laws with a gap have no force here, so a constant of exactly 0 has no uncertainty to round to
+    assert law_table(tuple(fits.values())).row_count == len(fits)
+    assert with_uncertainty(0.0, 0.0) == "0 ± 0"
 
 
 def test_few_deflections_far_apart_have_laws() -> None:
