@@ -19,6 +19,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
+from radialtire.model import DEFLECTION_HIGHEST
 
 from ..computing.staging import staged
 from ..errors import TirelabError
@@ -114,6 +115,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     fitted = [_read(file, asked.reading, report) for file in files]
     kept = [_read(file, asked.reading, report) for file in kept_files]
     _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
+    _check_depth(fitted, kept)
     origin = {
         "command": command_line(
             asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading, asked.rig
@@ -320,6 +322,25 @@ def _check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                     f"{other_file} and {file} share {max(one.time[0], other.time[0]):.6g} to "
                     f"{min(one.time[-1], other.time[-1]):.6g} s; give each part of a file once"
                 )
+
+
+def _check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
+    """Refuse at once deflections that would fail when all is done: none above 0, or one beyond the wheel's radius."""
+    if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
+        raise TirelabError(
+            f"{', '.join(r.name for r in fitted)}: no deflection is above 0, and only what happens above it can be "
+            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or subtract "
+            "the gauge's zero before the export"
+        )
+    for recording in (*fitted, *kept):
+        deepest = int(np.argmax(recording.deflection))
+        if recording.deflection[deepest] > DEFLECTION_HIGHEST:
+            at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"
+            raise TirelabError(
+                f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
+                f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit and its zero, or diagnose a "
+                "part: FILE@10s:20s (times), FILE@100:2000 (rows)"
+            )
 
 
 def _without_time(recordings: Sequence[Recording]) -> list[str]:

@@ -18,6 +18,7 @@ from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset, Experiment, Recorded, dataset_of
 from ..preprocessing.kinematics import BoolArray, FloatArray, Motion
 from ..simulation.simulate import simulate, smoothed_motion
+from .untimed import is_timed
 
 FITTED = 0.7
 """Part of each recording's time that is fitted where its end is held out."""
@@ -39,7 +40,10 @@ class Part:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """What was fitted and what was held out; by: "recordings given", "recording NAME" or "time block A-B s"."""
+    """What was fitted and what was held out.
+
+    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"
+    """
 
     by: str
     fitted: tuple[Part, ...]
@@ -133,6 +137,8 @@ def _parts(recordings: Sequence[Recorded]) -> tuple[list[BoolArray], str]:
             return kept, f"recording {recordings[number].name}"
     kept = [r.time < r.time[0] + FITTED * (r.time[-1] - r.time[0]) for r in recordings]
     r = recordings[0]
-    start = float(r.time[kept[0].size - int(np.sum(~kept[0]))])
+    first = kept[0].size - int(np.sum(~kept[0]))
     more = " and the ends of the others" if len(recordings) > 1 else ""
-    return kept, f"time block {start:.4g}-{float(r.time[-1]):.4g} s{more}"
+    if not is_timed([r]):
+        return kept, f"samples {first + 1}-{r.time.size}{more}"
+    return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"

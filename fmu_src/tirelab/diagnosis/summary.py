@@ -107,12 +107,19 @@ def _listed(sentence: str, alternatives: Sequence[Alternative], sets: Sequence[S
         return []
     titles = [set_title(names) for names in sets]
     if len({r.reason for r in alternatives}) == 1:
-        return [f"{sentence.format(listed(titles, 'or'))}.", f"{_capital(alternatives[0].reason)}."]
+        return [f"{sentence.format(_either(titles, sets))}.", f"{_capital(alternatives[0].reason)}."]
     by_reason: dict[str, list[str]] = {}
     for title, alternative in zip(titles, alternatives, strict=True):
         by_reason.setdefault(alternative.reason, []).append(title)
-    reasoned = [f"{listed(group, 'or')} ({reason})" for reason, group in by_reason.items()]
-    return [f"{sentence.format(listed(reasoned, 'or'))}."]
+    reasoned = [f"{_either(group, sets)} ({reason})" for reason, group in by_reason.items()]
+    return [f"{sentence.format(_either(reasoned, sets))}."]
+
+
+def _either(titles: Sequence[str], sets: Sequence[Sequence[str]]) -> str:
+    """Return "a, b or c"; with semicolons where a title names several effects and has commas of its own."""
+    if len(titles) < 2 or not any(len(names) > 1 for names in sets):
+        return listed(titles, "or")
+    return f"{'; '.join(titles[:-1])}; or {titles[-1]}"
 
 
 def _capital(text: str) -> str:

@@ -289,11 +289,14 @@ def _shifted(s: _Samples, name: str) -> LawFit:
 
 
 def _power_start(s: _Samples, begins: float) -> Array:
-    """Return A and B through the largest force and that at half its deflection."""
+    """Return A and B through the largest force and that at half its deflection; where one of these was not recorded,
+    as of a part that is only pulled, a straight line as steep as the samples are."""
     beyond = np.maximum(s.x - begins, 0.0)
     top = float(beyond.max()) or 1.0
-    high = float(np.median(s.force[beyond > 0.9 * top]))
-    half = float(np.median(s.force[np.abs(beyond - 0.5 * top) < 0.1 * top]))
+    far, half_way = s.force[beyond > 0.9 * top], s.force[np.abs(beyond - 0.5 * top) < 0.1 * top]
+    if not (far.size and half_way.size):
+        return np.array([float(_lstsq([np.ones_like(s.x), s.x], s)[0][1]), 1.0])
+    high, half = float(np.median(far)), float(np.median(half_way))
     ratio = high / half if half > 0.0 < high else 2.0
     exponent = float(np.clip(np.log(ratio) / np.log(1.9), 0.3, 4.0))
     return np.array([high / (0.95 * top) ** exponent, exponent])

@@ -79,6 +79,8 @@ def with_uncertainty(value: float, uncertainty: float) -> str:
     """Return "value ± uncertainty", the uncertainty with two digits and the value to the same place."""
     if not math.isfinite(uncertainty):
         return f"{digits(value, 4)} ± ?"
+    if uncertainty == 0.0:
+        return f"{digits(value, 4)} ± 0"
     if uncertainty < 1e-9 * abs(value):
         return f"{digits(value, 9)} ± {uncertainty:.0e}"
     places = 1 - math.floor(math.log10(uncertainty))

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import Match, assignments_text, columns_listed
+from .channels import UNIT_OF, Match, assignments_text, columns_listed, unit_of_column
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import quoted
 from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units
+from .units import measures
 
 FloatArray = NDArray[np.float64]
 
@@ -76,7 +77,7 @@ def asked(
     """Return the error that asks for all that is lacking, with guesses from the sizes of the numbers."""
     headers = table.headers
     values = _numbers(table, {**matches}, headers)
-    guessed = _guessed_columns(lacking.columns, matches, values) if lacking.columns else {}
+    guessed = _guessed_columns(lacking.columns, matches, values, headers) if lacking.columns else {}
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
     likely = guessed_units(sized)
@@ -169,7 +170,7 @@ def _numbers(table: Table, matches: Mapping[str, Match], headers: Sequence[Heade
             )
         except RecordingError:
             continue
-        if len(read.values[0]) > 1:
+        if np.count_nonzero(np.isfinite(read.values[0])) > 1:
             found[index] = read.values[0]
     return found
 
@@ -185,9 +186,15 @@ def rises(values: FloatArray) -> bool:
 
 
 def _guessed_columns(
-    missing: Sequence[str], matches: Mapping[str, Match], values: Mapping[int, FloatArray]
+    missing: Sequence[str],
+    matches: Mapping[str, Match],
+    values: Mapping[int, FloatArray],
+    headers: Sequence[Header],
 ) -> dict[str, int]:
-    """Return a likely column for each channel that has none: time rises, of the others the larger is the force."""
+    """Return a likely column for each channel that has none: time rises, others go by their unit, else by their size.
+
+    A unit tells where one column alone states a fitting one; of two columns without, the larger is the force.
+    """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
     guessed: dict[str, int] = {}
@@ -196,7 +203,13 @@ def _guessed_columns(
         if clocks:
             guessed["time"] = clocks[0]
             free.remove(clocks[0])
-    both = [name for name in ("deflection", "force") if name in missing]
+    for name in ("deflection", "force"):
+        fits = [i for i in free if measures(unit_of_column(headers[i], name) or "", UNIT_OF[name])]
+        if name in missing and len(fits) == 1:
+            guessed[name] = fits[0]
+            free.remove(fits[0])
+    free = [i for i in free if headers[i].unit is None]
+    both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     if len(both) == 2 and len(free) == 2:
         small, large = sorted(free, key=lambda i: float(np.nanmax(np.abs(values[i]))))
         guessed |= {"deflection": small, "force": large}

@@ -193,10 +193,26 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
         dated = [i for i, header in free if header.dated]
         found = dated if len(dated) == 1 else []
     if found:
-        return found
-    found = [i for i, header in free if _may_be_foreign(header, channel)]
-    found = found or [i for i, header in free if _may_be_counted(header, channel)]
-    return found if channel.required or len(found) == 1 else []
+        return _in_fitting_units(headers, channel, found)
+    sourceless = [(i, _without_source(header)) for i, header in free]
+    for may_be, columns in (
+        (_may_be_foreign, free),
+        (_may_be_counted, free),
+        (_may_be, sourceless),
+        (_may_be_foreign, sourceless),
+        (_may_be_qualified, free),
+    ):
+        found = [i for i, header in columns if may_be(header, channel)]
+        if found:
+            break
+    return _in_fitting_units(headers, channel, found) if channel.required or len(found) == 1 else []
+
+
+def _in_fitting_units(headers: Sequence[Header], channel: Channel, found: list[int]) -> list[int]:
+    """Return the columns without those in a unit of something else, such as the volts of the same sensor."""
+    units = {i: unit_of_column(headers[i], channel.name) for i in found}
+    fitting = [i for i, unit in units.items() if unit and measures(unit, channel.unit)]
+    return [i for i in found if i in fitting or not units[i]] if fitting else found
 
 
 def _trials(found: Mapping[str, Sequence[int]], columns: Mapping[str, str]) -> int:
@@ -352,6 +368,21 @@ def _may_be_counted(header: Header, channel: Channel) -> bool:
         return False
     bare = Header(name, header.unit, header.text, header.dated)
     return _may_be(bare, channel) or _may_be_foreign(bare, channel)
+
+
+def _without_source(header: Header) -> Header:
+    """Return a column without what its name says in brackets of its source: `Load(Actuator 1:Load) (N)`."""
+    return Header(header.name.partition("(")[0].strip(), header.unit, header.text, header.dated)
+
+
+def _may_be_qualified(header: Header, channel: Channel) -> bool:
+    """Whether the name ends in a word of the channel, and its unit fits: `Lead actuator force [kN]`."""
+    unit = unit_of_column(header, channel.name)
+    if channel.name not in ("deflection", "force") or unit is None or not measures(unit, channel.unit):
+        return False
+    name = header.name if header.unit else header.name.removesuffix(unit)
+    words = _words(name.partition("(")[0]).split()
+    return any(" ".join(words[i:]) in channel.words for i in range(1, len(words)))
 
 
 def _words(name: str) -> str:

@@ -122,7 +122,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     conversions, without_unit = _conversions(origin, headers, settings.units)
     lacking = tuple(name for name in found.missing if name != "time")
     no_time = "time" not in matches and interval is None
-    if no_time and settings.columns.get("time") is None and (lacking or _may_hold_time(table, matches)):
+    if no_time and settings.columns.get("time") is None and _may_hold_time(table, matches):
         lacking = ("time", *lacking)
     wanted = Lacking(lacking, without_unit, radius is None and "radius" not in matches)
     if wanted:

@@ -47,6 +47,7 @@ class Rows:
 def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Columns) -> Rows:
     """The rows with a value in every required channel; an optional channel with many blanks is left out.
 
+    Of equal rows with one time the first is kept, with a note: some machines write the end of a step of a test twice.
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
     """
     values = dict(zip(headers, columns.values, strict=True))
@@ -79,6 +80,14 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             notes.append(f"skipped as empty: {_places(columns, np.flatnonzero(empty))}")
         kept = np.flatnonzero(~(lacking | empty))
         values = {name: column[kept] for name, column in values.items()}
+    repeated = _repeated(values)
+    if len(repeated):
+        whole = np.arange(samples) if kept is None else kept
+        notes.append(
+            f"skipped as equal to the row before, its time among it: {_places(columns, whole[repeated])}"
+        )
+        kept = np.delete(whole, repeated)
+        values = {name: np.delete(column, repeated) for name, column in values.items()}
     left = samples if kept is None else len(kept)
     if left < 2:
         raise RecordingError(
@@ -86,6 +95,16 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             "a recording needs at least two"
         )
     return Rows(origin, headers, values, kept, columns, tuple(notes))
+
+
+def _repeated(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+    """Return the rows that equal the one before in every channel, the time among them."""
+    time = values.get("time")
+    if time is None:
+        return np.empty(0, dtype=np.intp)
+    found = np.flatnonzero(time[1:] == time[:-1]) + 1
+    same = [column[found] == column[found - 1] for column in values.values()]
+    return found[np.logical_and.reduce(same)] if len(found) else found
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

@@ -141,6 +141,20 @@ def conversion(unit: str, si: str) -> Conversion:
     return Conversion(unit, si, 1.0 if divisor > 1 else factor, float(divisor), offset, absolute)
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of anything that pint knows, or of a share: V, deg, N/mm, %."""
+    words = _JOINT.split(text.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").strip())
+    if text.strip() in ("%", "-"):
+        return True
+    if not all(_UNIT.fullmatch(word) for word in words):
+        return False
+    try:
+        _registry().Unit(text)
+    except Exception:  # as in conversion
+        return False
+    return True
+
+
 def measures(unit: str, si: str) -> bool:
     """Whether a text is a unit of what the SI unit measures."""
     try:

@@ -50,6 +50,28 @@ def test_a_file_given_twice_is_refused(idle: None, damped_run: Any, tmp_path: Pa
     refused("ride.csv is given twice", [ride, detour], tmp_path / "out")
 
 
+def test_a_deflection_beyond_the_wheel_is_refused_before_all_the_work(
+    idle: None, damped_run: Any, tmp_path: Path
+) -> None:
+    """The FMU takes no more than the wheel's radius, 0.33 m."""
+    lines = ["time [s],deflection [m],force [N],radius [m]"]
+    lines += [f"{0.1 * i},{0.004 * i},{8.0 * i},inf" for i in range(100)]
+    deep = tmp_path / "deep.csv"
+    deep.write_text("\n".join(lines), encoding="utf-8")
+    ride, out = damped_run.rides / "ride.csv", tmp_path / "out"
+    refused(r"deep: the deflection is 0\.396 m at 9\.9 s, and a tire takes 0\.33 m at most", [deep], out)
+    refused("deep: the deflection is 0.396 m", [ride], out, held_out=[deep])
+
+
+def test_a_part_that_is_only_pulled_is_asked_for_its_signs(idle: None, tmp_path: Path) -> None:
+    lines = ["time [s],deflection [mm],force [N],radius [m]"]
+    lines += [f"{0.1 * i},{-50 + 0.3 * i},{-80 + 0.2 * i},inf" for i in range(100)]
+    (tmp_path / "pulled.csv").write_text("\n".join(lines), encoding="utf-8")
+    reading = Reading(columns={"deflection": "+deflection", "force": "+force"})
+    said = "pulled: no deflection is above 0.*turn both signs, --columns deflection=-NAME,force=-NAME"
+    refused(said, [tmp_path / "pulled.csv"], tmp_path / "out", reading=reading)
+
+
 def test_a_folder_that_cannot_be_written_is_refused(
     idle: None, damped_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

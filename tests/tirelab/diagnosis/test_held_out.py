@@ -8,6 +8,7 @@ from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.held_out import split
 from tirelab.estimation.explanation import catalogue_names, explain_misfit
 from tirelab.preprocessing.dataset import dataset_of
+from tirelab.recordings.recording import Recording
 
 
 def error_of(missed):
@@ -48,6 +49,18 @@ def test_the_end_of_a_single_recording_is_held_out():
     # 29.995 s of which the first 70 % are fitted.
     assert verdict.fit.held_out_by == "time block 21-30 s"
     assert verdict.fit.held_out_after < 0.5 * verdict.fit.held_out_before
+
+
+def test_without_a_clock_the_end_is_named_by_its_samples():
+    """Seconds that count samples would be told as if they had been measured."""
+    drive = damped(3, samples=1000)
+    without = Recording(
+        "untimed", np.arange(1000.0), drive.deflection, drive.surface_radius, drive.force, timed=False
+    )
+    found = explain_misfit([without], TireModel(), ("force_offset",), lambda stage: None, timed=False)
+    before = [without.force - flat_force(without.deflection)]
+    held_out = split([without], dataset_of([without], TireModel()), before, found.of(("force_offset",)))
+    assert held_out.by == "samples 701-1000"
 
 
 def test_given_recordings_are_preferred(damped_run):

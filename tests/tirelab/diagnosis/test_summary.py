@@ -78,6 +78,18 @@ def test_one_reason_is_said_once_and_several_each():
     assert "These recordings cannot rule out viscous damping (one surface) or force lag (one rate)." in told
 
 
+def test_sets_of_several_effects_stand_between_semicolons():
+    """With commas nobody can tell where one set ends: friction, damping and lag may be one, two or three."""
+    sets = (("viscous_damping", "force_lag"), ("inertia",), ("force_offset", "force_drift", "inertia"))
+    same = [Alternative(names, 1.0, "one surface", 0.1) for names in sets]
+    told = summarise((), same, (), 0.4, STAYED)
+    either = "viscous damping and force lag; inertia; or force offset, force drift and inertia"
+    assert f"These recordings cannot rule out {either}. One surface." in told
+    other = [*same[:2], Alternative(sets[2], 1.0, "one rate", 0.1)]
+    told = summarise((), other, (), 0.4, STAYED)
+    assert "viscous damping and force lag; or inertia (one surface); or force offset, force drift" in told
+
+
 def test_what_may_act_in_addition_is_separated_from_what_may_replace_the_verdict():
     reason = "one pressure"
     beside = [

@@ -10,6 +10,7 @@ from radialtire import read_tire
 from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise, tire_of
+from tirelab.identification.table import law_table, with_uncertainty
 from tirelab.recordings.recording import Recording, write_recording
 from tirelab.simulation.simulate import simulate
 
@@ -45,6 +46,27 @@ MADE = {
     ),
     "piecewise": (BOTH, np.interp(BOTH, [-0.02, -0.012, 0.004, 0.02], [-300.0, 0.0, 0.0, 900.0]), {}),
 }
+
+
+@pytest.mark.parametrize("start", [-0.05, -0.02])
+def test_a_part_that_is_only_pulled_has_its_line_too(start: float) -> None:
+    """A gauge whose zero is above the whole stroke: no deflection is positive, and half of the largest was not seen."""
+    x = np.linspace(start, start + 0.015, 600)
+    fits = {fit.name: fit for fit in fit_laws([recording(x, 30.0 + 2e4 * x)])}
+    assert fits["linear"].rmse == pytest.approx(2.0, rel=0.08)
+    assert fits["linear"].value("k") == pytest.approx(20.0, rel=0.01)
+    assert fits["linear"].value("F0") == pytest.approx(30.0, abs=4.0)
+    assert all(np.isfinite(fit.rmse) for fit in fits.values())
+    # the laws with a gap have no force here, so a constant of exactly 0 has no uncertainty to round to
+    assert law_table(tuple(fits.values())).row_count == len(fits)
+    assert with_uncertainty(0.0, 0.0) == "0 ± 0"
+
+
+def test_few_deflections_far_apart_have_laws() -> None:
+    """Two steps of a gauge, none near half of the largest deflection."""
+    x = np.repeat([0.0, 0.02], 300)
+    fits = {fit.name: fit for fit in fit_laws([recording(x, 4e4 * x)])}
+    assert fits["linear"].value("k") == pytest.approx(40.0, rel=0.01)
 
 
 @pytest.mark.parametrize("name", MADE)

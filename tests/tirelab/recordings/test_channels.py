@@ -48,6 +48,57 @@ class TestColumns:
         chosen = read_recording(path, radius="flat", columns={"deflection": "#3"})
         assert chosen.deflection.max() == pytest.approx(0.05)
 
+    def test_volts_beside_the_reading_they_stand_for_are_not_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],force (V),force (N),stroke (V),stroke (mm),temp (V),temp (C)"
+        values = (time, force / 200.0, force, deflection / 9.0, 10.0 * deflection, time / 50.0, time)
+        found = read_recording(write_rows(tmp_path / "a.csv", header, *values), radius="flat")
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+        assert found.temperature is not None
+        np.testing.assert_allclose(found.temperature, time + 273.15)
+
+    @pytest.mark.parametrize(
+        ("stroke", "cell"),
+        [
+            ("Position(Actuator (0,1):Position) (cm)", "Load(Actuator (0,1):Load) (N)"),
+            ("Lead Actuator Displacement [cm]", "Lead Actuator Force [N]"),
+            ("actuator_stroke_cm", "upper load cell (N)"),
+        ],
+    )
+    def test_a_channel_with_its_source_in_its_name(self, tmp_path: Path, stroke: str, cell: str) -> None:
+        time, deflection, force = loading()
+        header = f'time [s],"{stroke}","{cell}","Mean force so far"'
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, time)
+        found = read_recording(path, radius="flat")
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+
+    def test_our_own_names_go_before_foreign_ones_with_a_source_too(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],Position(A:Position) (mm),Displacement(A:Digital position) (cm),Load(A:Load) (N)"
+        path = write_rows(tmp_path / "a.csv", header, time, time, deflection, force)
+        np.testing.assert_allclose(
+            read_recording(path, radius="flat").deflection, deflection / 100.0, rtol=1e-5
+        )
+
+    def test_of_two_sources_none_is_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],stroke [cm],left cell load [N],right cell load [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, force)
+        assert "'left cell load [N]' (#3) and 'right cell load [N]' (#4)" in refusal(path, radius="flat")
+
+    def test_what_is_proposed_goes_by_the_units_before_the_sizes(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],Cell 1 [kN],Displacment [mm],"
+        path = write_rows(tmp_path / "a.csv", header, time, force / 1e3, 10.0 * deflection)
+        lines = path.read_text(encoding="utf-8").splitlines()
+        path.write_text("\n".join([lines[0], *(f"{line}," for line in lines[1:])]), encoding="utf-8")
+        said = refusal(path, radius="flat")
+        assert "--columns deflection=#3,force=#2" in said
+        # a column without a number, as a comma at the end of each row leaves it, is none to propose
+        assert "NAME" not in said
+
     def test_a_doubtful_optional_channel_can_be_left_out(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         header = "time [s],deflection [cm],force [N],temp [degC],temperature [degC]"

@@ -87,3 +87,15 @@ def test_an_optional_channel_with_few_blanks_costs_their_rows() -> None:
 def test_too_few_rows_are_refused(columns: dict[str, list[float]], sentence: str) -> None:
     with pytest.raises(RecordingError, match=sentence):
         rows_of(**columns)
+
+
+def test_a_row_written_twice_is_kept_once_and_named() -> None:
+    rows = rows_of(time=[0.0, 1.0, 1.0, 2.0], force=[5.0, 6.0, 6.0, 7.0])
+    assert rows.notes == ("skipped as equal to the row before, its time among it: row 4",)
+    np.testing.assert_array_equal(rows.values["force"], [5.0, 6.0, 7.0])
+    assert rows.place(2) == "row 5"
+    # two forces at one time are no copy: which is right is not decided here
+    other = rows_of(time=[0.0, 1.0, 1.0, 2.0], force=[5.0, 6.0, 6.5, 7.0])
+    assert other.kept is None
+    # without a clock nothing says that equal readings are one
+    assert rows_of(force=[5.0, 5.0, 6.0]).kept is None

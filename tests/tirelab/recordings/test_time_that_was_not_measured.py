@@ -69,6 +69,17 @@ def test_a_column_that_rises_like_a_clock_is_asked_about(tmp_path: Path) -> None
     assert read_recording(path, radius="flat", columns={"time": "Elapsed"}).timed
 
 
+def test_a_time_is_not_asked_for_where_no_column_can_be_one(tmp_path: Path) -> None:
+    """A command with time=NAME to copy would ask for what was never measured."""
+    _, deflection, force = loading()
+    path = write_rows(tmp_path / "a.csv", "Channel A,Channel B", deflection, force)
+    with pytest.raises(RecordingError, match="no column for deflection, force") as caught:
+        read_recording(path, radius="flat")
+    assert "time" not in str(caught.value)
+    columns, units = {"deflection": "#1", "force": "#2"}, {"deflection": "cm", "force": "N"}
+    assert not read_recording(path, radius="flat", columns=columns, units=units).timed
+
+
 def test_arrays_and_frames_alike() -> None:
     _, deflection, force = loading()
     arrays = Recording.from_arrays(None, deflection / 100.0, force, "flat")

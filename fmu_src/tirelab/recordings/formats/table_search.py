@@ -6,7 +6,7 @@ import csv
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ..units import QUANTITIES, measures, split_header
+from ..units import QUANTITIES, is_unit, measures, split_header
 from ..vocabulary import foreign_channel
 from .clock import is_clock
 from .number_style import style_of
@@ -89,9 +89,16 @@ def is_value(cell: str, separator: str) -> bool:
 
 
 def is_units(cells: Sequence[str]) -> bool:
-    """Whether a row holds units, in brackets or not, and nothing else; some columns may have none."""
-    units = [unit for unit in map(bare_unit, cells) if unit]
-    return bool(units) and all(any(measures(unit, si) for si in QUANTITIES) for unit in units)
+    """Whether a row holds units, in brackets or not, and nothing else; some columns may have none.
+
+    One of them at least is a channel's. Of the others, those in brackets may be anything (N/tex, %), since machines
+    derive all sorts of columns; those without have to be known as units, and longer than a letter, since a, b and c are
+    units too, unless they are volts or amperes.
+    """
+    filled = [(cell.strip(), bare_unit(cell)) for cell in cells if bare_unit(cell)]
+    fits = [any(measures(unit, si) for si in QUANTITIES) for _, unit in filled]
+    bare = [unit for (cell, unit), fit in zip(filled, fits, strict=True) if cell == unit and not fit]
+    return any(fits) and all(is_unit(unit) and (len(unit) > 1 or unit in "VA%") for unit in bare)
 
 
 def bare_unit(cell: str) -> str:

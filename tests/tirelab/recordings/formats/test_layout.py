@@ -71,6 +71,22 @@ class TestPreamble:
         assert "units taken from row 3, below the names" in recording.notes
         assert "text between the names and the numbers skipped: row 2" in recording.notes
 
+    @pytest.mark.parametrize(
+        "units",
+        [
+            '"(s)";"(mm)";"(N)";"(MPa)";"(N/tex)";"(mm/mm)";',
+            "(s);(mm);(N);(%);(°);(count);",
+            "s;mm;N;V;N/mm;deg;",
+        ],
+    )
+    def test_units_of_columns_that_are_no_channels_are_units_too(self, path: Path, units: str) -> None:
+        names = "Zeit;Weg;Kraft;Tensile stress;Tenacity;Tensile strain (Extension);Count"
+        numbers = "\n".join(f"{line};1,5;2,5;3,5;4" for line in rows().splitlines())
+        recording = read(path, f"{names}\n{units}\n{numbers}\n")
+        np.testing.assert_allclose(recording.deflection, np.round(X, 3) / 1000.0)
+        np.testing.assert_allclose(recording.force, np.round(F, 3))
+        assert "units taken from row 2, below the names" in recording.notes
+
 
 class TestLanguages:
     @pytest.mark.parametrize(
