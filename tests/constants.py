@@ -76,7 +76,6 @@ DERIVED = (
     "estimation/laplace.LAW_SCALES",
     "estimation/laplace.FORM_SCALES",
     "estimation/uncertainty.DETERMINED",
-    "diagnosis/acceptance.WORSE",
     "diagnosis/localization.LOCATED",
     "diagnosis/discriminating_test.DECISIVE",
     "diagnosis/confidence.FURTHEST",
