@@ -1,7 +1,7 @@
 """The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT]
 
 REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static. Dampers, pistons and springs
-are read as they are; micrometres and nanonewtons are told as millimetres and newtons, as there.
+are read as they are; errors of indentations are printed in nanonewtons.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
-from indentations import PER_NANONEWTON, indentation, power_law_fit, read_hysitron, recorded
+from indentations import indentation, power_law_fit, read_hysitron, recorded
 from real_recordings import of, piston_recordings, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.identification.part_laws import fit_laws, tire_of
@@ -30,7 +30,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Real:
-    """fitted: samples of `whole` that are fitted; kept: held-out ones; unit: newtons of ours to one of theirs."""
+    """fitted: samples of `whole` that are fitted; kept: held-out ones; unit [N]: of what is printed."""
 
     name: str
     whole: Recording
@@ -105,7 +105,7 @@ def brain(folder: Path) -> Real:
         slice(0, half),
         slice(half, None),
         law(found.coefficient, 1.5),
-        PER_NANONEWTON,
+        1e-9,
         "relaxation, 0.03 (approach and hold)",
     )
 
@@ -120,13 +120,13 @@ def gel(folder: Path) -> Real:
         slice(0, half),
         slice(half, None),
         law(found.coefficient, 1.5),
-        PER_NANONEWTON,
+        1e-9,
         "relaxation, 0.03 (approach and hold)",
     )
 
 
 def indenter(folder: Path) -> Real:
-    """Loading of a pyramid with a compliant machine."""
+    """Loading of a pyramid with a compliant machine; enlarged, since A at 1 cm would be beyond its bound."""
     columns, _ = read_hysitron(folder / "Exp-50mN_0000.hld")
     force, depth, t = columns["Force_µN"], columns["Disp_nm"], columns["Time_s"]
     peak = int(np.argmax(force))

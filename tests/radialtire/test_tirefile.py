@@ -160,7 +160,10 @@ def test_the_noise_of_the_reading_is_a_parameter_where_a_rate_is_looked_at() -> 
 def test_parameters_can_be_replaced_by_name() -> None:
     tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0)), ("inertia", (2.0,)))
     other = with_parameters(tire, {"viscous_damping.damping": 1.0, "law.flat_coefficient": 600.0})
-    assert other.effects == tire_with(("viscous_damping", (1.0, 1.0, 0.0, 0.0, 1.0)), ("inertia", (2.0,))).effects
+    assert (
+        other.effects
+        == tire_with(("viscous_damping", (1.0, 1.0, 0.0, 0.0, 1.0)), ("inertia", (2.0,))).effects
+    )
     assert other.law == Hull1996(flat_coefficient=600.0)
     assert with_parameters(tire, {}) == tire
 

@@ -14,6 +14,7 @@ from ..estimation.findings import NamedEffect
 from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
+from ..preprocessing.end_of_travel import said_of
 from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
 from .acceptance import accept
@@ -93,7 +94,9 @@ def diagnose(
         remainder=left,
         unexplained_by=unexplained,
         residual_models=remainder,
-        summary=_said(summarise(effects, alternatives, remainder, confidence, fit, test), contradiction),
+        summary=_said(
+            summarise(effects, alternatives, remainder, confidence, fit, test), contradiction, fitted
+        ),
         where=places_told(places, timed),
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
@@ -107,8 +110,9 @@ def diagnose(
     )
 
 
-def _said(summary: str, contradiction: Contradiction | None) -> str:
-    return summary if contradiction is None else f"{summary} {contradiction.sentence}"
+def _said(summary: str, contradiction: Contradiction | None, fitted: Sequence[Recorded]) -> str:
+    doubts = ("" if contradiction is None else contradiction.sentence, said_of(fitted))
+    return " ".join(part for part in (summary, *doubts) if part)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

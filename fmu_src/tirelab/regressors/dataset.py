@@ -17,6 +17,7 @@ from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
 
 from ..preprocessing.dataset import Recorded
+from ..preprocessing.end_of_travel import beyond_travel
 from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .gauge import destepped, staircase_step
@@ -168,6 +169,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     stiffness = _stiffness(motion.deflection, baseline)
     floor = noise_floor(misfit, stiffness, gauge, step)
     resolved = _away_from_corners(motion.resolved, misfit) & ~_spikes(misfit)
+    followed = ~beyond_travel(recording.deflection, recording.force)
     interval = float(np.median(np.diff(recording.time)))
     loudness = float(np.std(misfit)) / max(white_level(misfit), 1e-300)
     blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
@@ -182,6 +184,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     counts: BoolArray = np.asarray(good.all(axis=1))
     if counts.mean() < COUNTED:
         good, counts = np.ones_like(good), np.ones_like(counts)
+    counts &= followed[:whole].reshape(-1, size).all(axis=1)
     averaged = misfit[:whole].reshape(-1, size).mean(axis=1)
     before, after = np.arange((size - 1) // 2, whole, size), np.arange(size // 2, whole, size)
 
