@@ -9,9 +9,10 @@ from .files import answer_json, baseline_table, write, write_answer, write_basel
 from .kinds import derived_right, draw
 from .scenario import KINDS
 from .trial import Answer, FileTruth, Record, Trial, rerun
-from .wide.drawing import WIDE_KINDS
+from .wide.drawing import IN_TURN, WIDE_KINDS
 
 __all__ = [
+    "IN_TURN",
     "KINDS",
     "WIDE_KINDS",
     "Answer",

@@ -81,7 +81,11 @@ def _csv(record: Record) -> str:
         strict=True,
     )
     lines = [f"{t:.6f},{x:.5f},{radii[r]},{f:.3f}" for t, x, r, f in columns]
-    return "\n".join([HEADER, *lines, ""])
+    if record.pressure is None:
+        return "\n".join([HEADER, *lines, ""])
+    pressures = (1e-3 * record.pressure).tolist()
+    lines = [f"{line},{p:.1f}" for line, p in zip(lines, pressures, strict=True)]
+    return "\n".join([f"{HEADER},pressure [kPa]", *lines, ""])
 
 
 def _centimetres(radius: float) -> float | str:

@@ -10,16 +10,22 @@ from .measurement import Instrument
 from .motion import FINEST_STEP, FloatArray, Motion, even_grid, rounded
 from .reading import estimated
 from .sizing import Size
-from .tires import PowerTire
+from .tires import INFLATION, PowerTire
 
 Parameters = Mapping[str, object]
+
+#: The name of the effect that acts by the gauge pressure, which is recorded where it is hidden.
+PRESSURE = "inflation_pressure"
+#: Noise of the pressure's reading over the reading [1], and its step [Pa].
+PRESSURE_NOISE, PRESSURE_STEP = 2e-3, 100.0
 
 
 @dataclass(frozen=True)
 class Record:
     """One recording as the rig wrote it down.
 
-    time [s], deflection [m], radius [m] (convex > 0, concave < 0, flat = inf), force [N]; of one shape.
+    time [s], deflection [m], radius [m] (convex > 0, concave < 0, flat = inf), force [N]; of one shape; so is the gauge
+    pressure [Pa] where it was measured.
     """
 
     name: str
@@ -28,6 +34,7 @@ class Record:
     deflection: FloatArray
     radius: FloatArray
     force: FloatArray
+    pressure: FloatArray | None = None
 
 
 @dataclass(frozen=True)
@@ -112,7 +119,26 @@ def recorded(
     by_rate = motion.recorded(bench.force(estimated(motion, near)) - clean)
     error = force - motion.recorded(clean) - by_stiffness
     floor, read_floor = (float(np.sqrt(np.mean(e**2))) for e in (error, error - by_rate))
-    return Record(name, motion.name, time, readings, radius, force), (floor, read_floor)
+    pressure = _pressure(bench, motion, rng)
+    return Record(name, motion.name, time, readings, radius, force, pressure), (floor, read_floor)
+
+
+def _pressure(bench: Bench, motion: Motion, rng: np.random.Generator) -> FloatArray | None:
+    """Gauge pressure [Pa] as it is read, None where nothing that acts through it by its reading is on the bench."""
+    level = next((e.gauge_pressure() for e in bench.effects if e.name == PRESSURE), None)
+    if level is None:
+        return None
+    contact = bench.contact(motion)
+    ratio = np.full_like(motion.time, level)
+    for effect in bench.effects:
+        ratio = (
+            ratio
+            * effect.pressure_ratio(motion)
+            * effect.gas_ratio(np.maximum(contact.deflection, 0.0), motion.radius)
+        )
+    true = INFLATION * motion.recorded(ratio)
+    noisy = true * (1.0 + PRESSURE_NOISE * rng.standard_normal(true.size))
+    return np.asarray(PRESSURE_STEP * np.round(noisy / PRESSURE_STEP), dtype=np.float64)
 
 
 def rerun(

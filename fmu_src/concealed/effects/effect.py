@@ -121,6 +121,10 @@ class Effect(ABC):
         """Pressure over inflation pressure as a function of time."""
         return 1.0
 
+    def gauge_pressure(self) -> float:
+        """Gauge pressure over inflation pressure at which the tire was pressed."""
+        return 1.0
+
     def gas_ratio(self, deflection: FloatArray, radius: FloatArray) -> FloatArray | float:
         """Pressure over inflation pressure as a function of the tire's deflection."""
         return 1.0

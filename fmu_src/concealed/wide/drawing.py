@@ -20,11 +20,13 @@ from ..equivalence import SIGNIFICANCE, TELLING, Equivalent, Hidden, completing,
 from ..regressors import NAMES
 from ..tires import PowerTire
 from ..trial import Answer, Parameters, Record, Trial, recorded
-from . import press
+from . import press, pressure
 from .worlds import WORLDS, World
 
 #: The kinds that are drawn only where they are asked for.
-WIDE_KINDS = tuple(WORLDS)
+WIDE_KINDS = (*WORLDS, pressure.KIND)
+#: Those of them of which a proof of all kinds draws in turn; which these are decides what its seeds mean.
+IN_TURN = tuple(WORLDS)
 #: Streams of random numbers of these trials stand apart from those of the other kinds by this key.
 STREAM = 1_000_003
 ATTEMPTS, PATIENCE = 400, 40
@@ -55,6 +57,8 @@ class WideAnswer(Answer):
 
 def draw(seed: int, kind: str) -> Trial:
     """Draw one trial of a wide kind from a seed; errors: Undrawable where no world of the seed is fair."""
+    if kind == pressure.KIND:
+        return pressure.draw(seed)
     number = WIDE_KINDS.index(kind)
     first = int(stream(seed, STREAM, number).integers(MANY))
     for attempt in range(ATTEMPTS):

@@ -61,7 +61,7 @@ def loud(rng: np.random.Generator, turn: int) -> World | None:
     plan = replace(planned(rng, kind), poorly_excited=False, may_hide=False)
     setup = drawn_setup(rng, plan)
     forms = [BY_NAME[n][int(rng.integers(len(BY_NAME[n])))] for n in plan.wanted]
-    return _of_plan(rng, plan, _alike(setup, plan), forms, (LOUD, (QUIETER_LOUD, QUIETER_LOUD)))
+    return of_plan(rng, plan, as_baseline(setup, plan), forms, (LOUD, (QUIETER_LOUD, QUIETER_LOUD)))
 
 
 def foreign(rng: np.random.Generator, turn: int) -> World | None:
@@ -75,8 +75,8 @@ def foreign(rng: np.random.Generator, turn: int) -> World | None:
         table = fitted_table(tire, setup.limits.deepest, setup.limits.surfaces)
         setup = replace(setup, tire=tire, baseline=table, source="table")
     else:
-        setup = _alike(setup, plan)
-    return _of_plan(rng, plan, setup, [] if of_law else [form], (STRANGE, (QUIETER, 1.0)))
+        setup = as_baseline(setup, plan)
+    return of_plan(rng, plan, setup, [] if of_law else [form], (STRANGE, (QUIETER, 1.0)))
 
 
 def outside(rng: np.random.Generator, turn: int) -> World | None:
@@ -84,11 +84,11 @@ def outside(rng: np.random.Generator, turn: int) -> World | None:
     form = OUTSIDE[turn % len(OUTSIDE)]
     names = ("recalibration",) if rng.random() < OUTSIDE_TIRE else ()
     plan = Plan("open", names, form, False, False)
-    setup = _alike(drawn_setup(rng, plan), plan)
+    setup = as_baseline(drawn_setup(rng, plan), plan)
     # a knee at one force shows on surfaces of unlike stiffness only; on one surface it is one at a deflection
     if form is StiffeningTread and len(setup.limits.surfaces) < 2:
         return None
-    return _of_plan(rng, plan, setup, [form], (BEYOND, (QUIETER, 1.0)))
+    return of_plan(rng, plan, setup, [form], (BEYOND, (QUIETER, 1.0)))
 
 
 def first_file(rng: np.random.Generator, turn: int) -> World | None:
@@ -122,7 +122,7 @@ WORLDS: Mapping[str, Callable[[np.random.Generator, int], World | None]] = {
 }
 
 
-def _of_plan(
+def of_plan(
     rng: np.random.Generator,
     plan: Plan,
     setup: Setup,
@@ -152,7 +152,7 @@ def _of_plan(
     return World(plan.names, bench, setup.baseline, setup.source, train, heldout, instrument, sizes)
 
 
-def _alike(setup: Setup, plan: Plan) -> Setup:
+def as_baseline(setup: Setup, plan: Plan) -> Setup:
     """The setup with the baseline's own tire, unless another tire is planned: at this loudness any other one shows."""
     return setup if plan.another_tire else replace(setup, tire=setup.baseline)
 

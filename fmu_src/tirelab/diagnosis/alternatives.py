@@ -9,7 +9,7 @@ import numpy as np
 from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
-from ..planning.waveforms import Limits
+from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.dataset import Dataset
 from ..preprocessing.kinematics import BoolArray, FloatArray
 
@@ -88,7 +88,7 @@ def reason_of(
     common = set.intersection(*differing) if differing else set()
     lacks = insufficient_excitation(explanation, dataset, limits)
     if "static" in common:
-        return "they depend on deflection and surface only: repeat at a second pressure (2 bar, say)"
+        return f"they depend on deflection and surface only: {second_pressure(limits)}"
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):

@@ -188,7 +188,13 @@ def _delivered(
     _write(folder, content, verdict)
     write_report(
         folder / REPORT,
-        {**content, **verdict.page_content(), **origin, "warnings": [*more, *warnings]},
+        {
+            **content,
+            **verdict.page_content(),
+            **origin,
+            "warnings": [*more, *warnings],
+            "delivered": of_correction.get("correction"),
+        },
         fitted,
         on_fitted.before,
         on_fitted.after,

@@ -55,7 +55,7 @@ class Rig:
 
     def limits(self, duration: float) -> Limits:
         """Return the limits of one motion of this duration [s]."""
-        return Limits(self.stroke, self.speed, self.sampling, duration, self.surfaces)
+        return Limits(self.stroke, self.speed, self.sampling, duration, self.surfaces, self.pressures)
 
     @property
     def test_limits(self) -> Limits:

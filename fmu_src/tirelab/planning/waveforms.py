@@ -16,6 +16,7 @@ class Limits:
     """What the rig can do: largest deflection [m], fastest motion [m/s], sampling step [s], longest test [s].
 
     surfaces [m]: radii that can be mounted; none: those that were recorded
+    pressures [Pa]: gauge pressures that can be held; none: not known
     """
 
     deepest: float = 0.025
@@ -23,6 +24,15 @@ class Limits:
     step: float = 0.005
     longest: float = 60.0
     surfaces: tuple[float, ...] = ()
+    pressures: tuple[float, ...] = ()
+
+
+def second_pressure(limits: Limits | None) -> str:
+    """Return the advice to record at another pressure, with those that the rig can hold where they are known."""
+    held = () if limits is None or len(limits.pressures) < 2 else limits.pressures
+    figures = [f"{1e-5 * pressure:.3g}" for pressure in held]
+    named = f" ({', '.join(figures[:-1])} or {figures[-1]} bar)" if figures else ""
+    return f"repeat at a second pressure{named}"
 
 
 Waveform = Callable[[Limits], FloatArray]

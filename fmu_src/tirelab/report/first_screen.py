@@ -10,6 +10,7 @@ from radialtire import CATALOGUE
 
 from ..names import REFITTED_LAW, UNKNOWN
 from . import titles, words
+from .delivered import delivered_of
 
 MOST = 70
 """Characters of a headline at most."""
@@ -66,8 +67,9 @@ def sureness(verdict: Mapping[str, Any]) -> str:
     return f"{word[0].upper()}{word[1:]}: {words.percent(verdict['confidence'])}"
 
 
-def lead(verdict: Mapping[str, Any]) -> str:
+def lead(diagnosis: Mapping[str, Any]) -> str:
     """Return one sentence on what is missing, after the headline."""
+    verdict = diagnosis["verdict"]
     names = [effect["name"] for effect in verdict["effects"]]
     physics = [CATALOGUE[name].statement for name in names if name in CATALOGUE]
     if undecided(verdict):
@@ -77,6 +79,8 @@ def lead(verdict: Mapping[str, Any]) -> str:
     if verdict["unexplained"]:
         return "No known effect explains the difference."
     if names:
+        if delivered_of(diagnosis).beside:
+            return "The part is as elastic as the simulation's law with other coefficients: no physics is missing."
         return "The tire is elastic as the law says, with other coefficients: no physics is missing."
     return "The difference between simulation and recordings is noise."
 
@@ -106,19 +110,18 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
 
     reasons: of each alternative what the recordings lack, as "lack: action"
     """
-    verdict, fit = diagnosis["verdict"], diagnosis["fit"]
+    verdict, fit, given = diagnosis["verdict"], diagnosis["fit"], delivered_of(diagnosis)
     test = verdict["separating_test"]
     errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
     clean = not verdict["unexplained"] and max(errors) <= AT_THE_FLOOR * max(fit["noise"], 1e-12)
     if verdict["confidence"] >= SURE and clean:
-        return NextStep(
-            "Nothing: use this tire." if verdict["effects"] else "Nothing: use the baseline tire."
-        )
+        return NextStep(given.use if verdict["effects"] else given.leave)
     if test is not None:
         return NextStep(_drive(test), _decides(test), drive=True)
     if verdict["unexplained"]:
         return NextStep(
-            "Repeat one recording with another tire.", "What comes back is the rig's, not the tire's."
+            f"Repeat one recording with another {given.kind}.",
+            f"What comes back is the rig's, not the {given.kind}'s.",
         )
     if verdict["alternatives"] and (found := actions(reasons)):
         return NextStep(
@@ -127,10 +130,10 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
         )
     if not clean:
         return NextStep(
-            "Repeat one recording with another tire.",
+            f"Repeat one recording with another {given.kind}.",
             "The error left is more than the noise: what comes back is the rig's.",
         )
-    return NextStep("Nothing: use this tire." if verdict["effects"] else "Nothing: use the baseline tire.")
+    return NextStep(given.use if verdict["effects"] else given.leave)
 
 
 def actions(reasons: Sequence[str]) -> list[str]:

@@ -20,6 +20,7 @@ from ..errors import TirelabError
 from ..names import REFITTED_LAW
 from ..recordings.recording import Recording
 from . import explore, first_screen, titles, words
+from .delivered import delivered_of
 from .loops import Case, draw_difference, draw_loops
 from .places import Located, draw_where, shaded
 from .residuals import (
@@ -63,6 +64,7 @@ BESIDE = (
     "located",
     "law_changes",
     "sketches",
+    "delivered",
 )
 """What a diagnosis may have besides the content of diagnosis.json."""
 
@@ -94,6 +96,7 @@ def write_report(
         date          when, as text; files: (name, SHA-256) of every file that was read
         law_changes   [{"radius" [m], "deflection" [m], "difference" [N]}]: the refitted law less the baseline's
         sketches      effect -> {"deflection" [m], "force" [N], "varied": parameter -> force [N]}
+        delivered     the entry "correction" of diagnosis.json, of a correction beside a simulation
         located       residuals [N] in which the places lie, one array for each recording; without, those before
     before, after: simulated forces [N], one array for each recording; held_out: the same for the held-out
     recordings
@@ -129,6 +132,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         first=_first_screen(diagnosis, fitted, reasons),
         style=explore.style() + Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
+        delivered=delivered_of(diagnosis),
         verdict=verdict,
         effects=[_effect(effect, diagnosis["sketches"] or {}) for effect in verdict["effects"]],
         alternatives=_alternatives(verdict),
@@ -187,7 +191,7 @@ def _first_screen(
     test = verdict["separating_test"] or {}
     return {
         "headline": first_screen.headline(diagnosis),
-        "lead": first_screen.lead(verdict),
+        "lead": first_screen.lead(diagnosis),
         "sure": first_screen.sureness(verdict),
         "undecided": first_screen.undecided(verdict),
         "figures": first_screen.figures(diagnosis),
@@ -202,8 +206,7 @@ def _first_screen(
         "links": [
             (title, name)
             for title, name in (
-                ("Tire", diagnosis.get("tire")),
-                ("FMU", diagnosis.get("corrected_fmu")),
+                *delivered_of(diagnosis).files,
                 ("Drive file", test.get("file")),
                 ("Data of the plots", diagnosis.get("data")),
                 ("Numbers", "diagnosis.json" if diagnosis.get("tire") else None),

@@ -99,11 +99,12 @@ def print_diagnosis(
     step = first_screen.next_step(diagnosis, lacking)
     if not step.drive:
         console.print(Text(f"What to do next: {step.action} {step.why}".rstrip()))
-    files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"], "diagnosis.json"]
+    files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"]]
+    files += [(diagnosis.get("correction") or {}).get("system"), "diagnosis.json"]
     files += [diagnosis["data"]] if diagnosis.get("data") else []
     if verdict["separating_test"] is not None:
         files.append(verdict["separating_test"]["file"])
-    console.print(Text(f"Written to {printable(str(out))}: {', '.join(files)}"))
+    console.print(Text(f"Written to {printable(str(out))}: {', '.join(filter(None, files))}"))
 
 
 def printable(text: str) -> str:

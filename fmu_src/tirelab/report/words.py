@@ -12,7 +12,7 @@ from radialtire import CATALOGUE, FLAT_RADIUS
 from ..names import REFITTED_LAW
 
 LAW_STATEMENT = (
-    "the elastic law has other coefficients than in the baseline tire; a refitted law is not missing physics"
+    "the elastic law has other coefficients than in the baseline; a refitted law is not missing physics"
 )
 
 NORMAL_95 = 1.96

@@ -32,7 +32,7 @@ SETTINGS_SCHEMA = 5
 """Version of the rig and of the scores; a folder of another version is not continued."""
 
 ALL_KINDS = "all"
-"""Trials of the drawn kinds and of each wide kind in turn."""
+"""Trials of the drawn kinds and of each wide kind but pressure in turn."""
 
 Show = Callable[[str], None]
 
@@ -56,7 +56,7 @@ class BlindTrials:
         """The kind of one trial, None where it is drawn."""
         if self.kind != ALL_KINDS:
             return self.kind
-        kinds = (None, *concealed.WIDE_KINDS)
+        kinds = (None, *concealed.IN_TURN)
         return kinds[number % len(kinds)]
 
     @property

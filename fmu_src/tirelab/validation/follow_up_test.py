@@ -39,7 +39,10 @@ def run_recommended_test(folders: Folders, seed: int, number: int, kind: str | N
         raise TirelabError(f"{test}: the rig refuses it: {error}") from None
     path = folders.test(trial_key(number))
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_recording(Recording("test", record.time, record.deflection, record.radius, record.force), path)
+    made = Recording(
+        "test", record.time, record.deflection, record.radius, record.force, pressure=record.pressure
+    )
+    write_recording(made, path)
     return path
 
 

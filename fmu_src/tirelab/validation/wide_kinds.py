@@ -1,4 +1,4 @@
-"""Figures of the wide kinds of trial (loud, press, foreign, outside), each with its interval and its limit.
+"""Figures of the wide kinds of trial (loud, press, foreign, outside, pressure), each with its interval and its limit.
 
 A verdict may state a remainder beside its names in all of these kinds: "unknown" is left out of every comparison.
 """
@@ -47,8 +47,9 @@ def claimed(score: Score) -> Names:
 def sound(score: Score) -> bool:
     """Whether the verdict is right in the sense of its kind; this is what its confidence is compared with.
 
-    loud: the named effects are a right set; press: they are, whether or not the law is refitted; foreign: they hold a
-    right set, and nothing else is above a half; outside: nothing that is not there is above a half; else: exact
+    loud, pressure: the named effects are a right set; press: they are, whether or not the law is refitted; foreign:
+    they hold a right set, and nothing else is above a half; outside: nothing that is not there is above a half; else:
+    exact
     """
     if score.verdict is None:
         return False
@@ -126,6 +127,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         lambda score: bool(score.verdict) and sound(score),
         0.95,
     ),
+    ("pressure", "all hidden effects named and nothing else but a remainder", sound, 0.90),
+    ("pressure", "held-out misfit at most a quarter", corrected, 0.90),
 )
 """Kind, figure, what a trial has to meet, and the least rate."""
 

@@ -90,7 +90,7 @@ def test_the_log_odds_are_those_of_the_verdict_that_is_delivered() -> None:
 @pytest.mark.parametrize(
     ("one", "other", "said"),
     [
-        (("recalibration",), ("gas_compression",), "repeat at a second pressure (2 bar, say)"),
+        (("recalibration",), ("gas_compression",), "surface only: repeat at a second pressure"),
         (("warm_up",), ("pressure_leak",), "repeat the first cycle after a rest"),
         (LOOP, DAMPING, "one speed only: repeat at "),
     ],
@@ -126,3 +126,17 @@ def test_a_second_surface_is_asked_for_only_where_one_can_be_mounted() -> None:
     assert "press on a second surface" in "; ".join(
         insufficient_excitation(asked, RIDE, Limits(surfaces=(math.inf, 0.254)))
     )
+
+
+@pytest.mark.parametrize(
+    ("pressures", "said"),
+    [
+        ((), "second pressure"),
+        ((2e5,), "second pressure"),
+        ((2e5, 3e5, 3.447e5), "pressure (2, 3 or 3.45 bar)"),
+    ],
+)
+def test_the_second_pressure_is_one_that_the_rig_holds(pressures: tuple[float, ...], said: str) -> None:
+    asked = explained(("recalibration", 0.0, 1.0))
+    limits = Limits(pressures=pressures)
+    assert reason_of(("recalibration",), ("gas_compression",), asked, RIDE, limits).endswith(said)

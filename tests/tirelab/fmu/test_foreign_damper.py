@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,9 @@ from click.testing import CliRunner
 from drives import FloatArray, ride
 from fmpy.ssp.simulation import simulate_ssp
 from foreign_models import damper
+from rich.console import Console
 from tirelab.cli import main
+from tirelab.report.terminal import print_diagnosis
 
 DAMPING, PRESS, SLIP, REACH, NOISE = 1500.0, 120.0, 60.0, 4e-4, 3.0
 SIGNS = "time=time,deflection=+x,force=+F"
@@ -91,6 +94,26 @@ def test_the_coupled_system_reaches_the_figures(beside_fmu: tuple[Path, dict[str
     reached = np.sqrt(np.mean((force - recorded)[5:-2] ** 2))
     assert reached == pytest.approx(np.sqrt(np.mean((corrected - recorded)[5:-2] ** 2)), rel=1e-2)
     assert reached == pytest.approx(content["fit"]["held_out_after"], rel=0.1)
+
+
+def test_report_and_terminal_tell_of_the_correction_and_not_of_a_tire(
+    beside_fmu: tuple[Path, dict[str, Any]],
+) -> None:
+    folder, content = beside_fmu
+    text = Console(file=io.StringIO(), width=200)
+    sure = {**content["verdict"], "confidence": 0.95, "separating_test": None}
+    print_diagnosis(text, {**content, "verdict": sure}, folder)
+    assert isinstance(text.file, io.StringIO)
+    printed = text.file.getvalue()
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    for shown in (printed, page):
+        assert "use this tire" not in shown
+        assert "baseline tire" not in shown
+        assert "Corrected.ssp" in shown
+        assert "Correction.fmu" in shown
+    assert "Nothing: use Corrected.ssp, which couples Damper.fmu with Correction.fmu." in printed
+    assert "Beside: <bdi>Damper.fmu</bdi>" in page
+    assert ">Coupled system (SSP)<" in page
 
 
 def test_beside_the_force_in_a_column(tmp_path: Path) -> None:

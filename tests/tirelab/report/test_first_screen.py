@@ -162,3 +162,28 @@ def test_actions_are_told_once() -> None:
 def test_confidence_is_told_in_words_and_as_a_number() -> None:
     assert first_screen.sureness({"confidence": 0.82}) == "Fairly sure: 82 %"
     assert first_screen.sureness({"confidence": 0.3}) == "One of several possibilities: 30 %"
+
+
+@pytest.mark.parametrize(
+    ("system", "simulation", "sizes", "action"),
+    [
+        ("C.ssp", "model.fmu", {"inertia": 9.0}, "Nothing: use C.ssp, which couples model.fmu with C.fmu."),
+        (
+            None,
+            None,
+            {"inertia": 9.0},
+            "Nothing: add the output additional_force of C.fmu to the force of your simulation.",
+        ),
+        ("C.ssp", "model.fmu", {}, "Nothing: use model.fmu as it is."),
+    ],
+)
+def test_beside_a_simulation_it_is_told_what_to_do_with_that(
+    system: str | None, simulation: str | None, sizes: dict[str, float | None], action: str
+) -> None:
+    given = diagnosis(sizes) | {"correction": {"fmu": "C.fmu", "system": system, "simulation": simulation}}
+    assert first_screen.next_step(given).action == action
+    unknown = diagnosis({}, unexplained=True) | {"correction": given["correction"]}
+    assert first_screen.next_step(unknown).action == "Repeat one recording with another part."
+    assert "simulation" in first_screen.lead(
+        diagnosis({"recalibration": 9.0}) | {"delivered": given["correction"]}
+    )

@@ -1,0 +1,45 @@
+"""What a diagnosis delivers, in a reader's words: a corrected tire, or a correction that runs beside a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Delivered:
+    """this: what is corrected, in a sentence ("the tire", "model.fmu"); kind: what is tested, "tire" or "part"
+    use, leave: what to do where the correction, or what was there before, is all that is needed
+    files: the files that are to be used, each with its title
+    """
+
+    this: str
+    kind: str
+    use: str
+    leave: str
+    files: tuple[tuple[str, str | None], ...]
+
+    @property
+    def beside(self) -> bool:
+        """Whether it is a correction beside a simulation."""
+        return self.kind == "part"
+
+
+def delivered_of(diagnosis: Mapping[str, Any]) -> Delivered:
+    """Return what is delivered by a diagnosis: the content of diagnosis.json, with "delivered" on a page of which
+    "correction" is something else.
+    """
+    found = diagnosis.get("delivered") or diagnosis.get("correction")
+    if not (isinstance(found, Mapping) and "simulation" in found):
+        files = (("Tire", diagnosis.get("tire")), ("FMU", diagnosis.get("corrected_fmu")))
+        return Delivered(
+            "the tire", "tire", "Nothing: use this tire.", "Nothing: use the baseline tire.", files
+        )
+    name = found["simulation"] or "your simulation"
+    if found["system"] is None:
+        use = f"Nothing: add the output additional_force of {found['fmu']} to the force of {name}."
+    else:
+        use = f"Nothing: use {found['system']}, which couples {name} with {found['fmu']}."
+    files = (("Correction FMU", found["fmu"]), ("Coupled system (SSP)", found["system"]))
+    return Delivered(name, "part", use, f"Nothing: use {name} as it is.", files)
