@@ -730,12 +730,12 @@ static double rate_independent_hysteresis_slip(double y, double travel, double r
 }
 
 /* effects.rate_independent_hysteresis.py: Add the friction force [N]. */
-static Tuple16 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector7 values)
+static Tuple16 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8 values)
 {
     double friction;
     double mean;
     double slip_force = values.v[0], load_share = values.v[1], reach = values.v[2], memory = values.v[3], spread =
-        values.v[4], play = values.v[5], seat = values.v[6];
+        values.v[4], play = values.v[5], seat = values.v[6], rebound = values.v[7];
     double z = state.v[0], updated_at = state.v[1], direction = state.v[2], last = state.v[3], y1 = state.v[4], y2 =
         state.v[5], y3 = state.v[6], y4 = state.v[7];
     double x = instant.two_sided ? instant.deflection : greater(instant.deflection, 0.0);
@@ -772,16 +772,19 @@ static Tuple16 rate_independent_hysteresis_respond(double signal, Instant instan
     if (instant.deflection <= 0.0 && !instant.two_sided) {
         return (Tuple16){signal, after};
     }
+    if (friction < 0.0) {
+        friction *= rebound;
+    }
     return (Tuple16){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
 }
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
    ends always is. */
-static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector4 values)
+static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector5 values)
 {
     double size;
     double damping = values.v[0], rate_exponent = values.v[1], deflection_exponent = values.v[2], thinning =
-        values.v[3];
+        values.v[3], rebound = values.v[4];
     double x = instant.deflection;
     double v = instant.rate;
     if (x <= 0.0 && !instant.two_sided) {
@@ -796,6 +799,9 @@ static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing st
     }
     if (deflection_exponent != 0.0) {
         v *= pow(fabs(x) / DEPTH, deflection_exponent);
+    }
+    if (v < 0.0) {
+        v *= rebound;
     }
     return (Tuple8){signal + damping * v, state};
 }
@@ -890,33 +896,33 @@ static double through_parallel(double signal, Instant at, const double *p, const
 {
     if (p[49] != 0.0) {
         const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
-            Vector7 *)(p + 50));
+            Vector8 *)(p + 50));
         signal = t1.a;
         Vector8 after = t1.b;
         for (int i = 0; i < 8; i++)
             n[10 + i] = after.v[i];
     }
-    if (p[57] != 0.0) {
-        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 58));
+    if (p[58] != 0.0) {
+        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 59));
         signal = t2.a;
     }
-    if (p[62] != 0.0 && p[3] != 0.0) {
+    if (p[64] != 0.0 && p[3] != 0.0) {
         const Tuple18 t3 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 18), *(const Vector11
-            *)(p + 63));
+            *)(p + 65));
         signal = t3.a;
         Vector6 flowed = t3.b;
         for (int i = 0; i < 6; i++)
             n[18 + i] = flowed.v[i];
-    } else if (p[62] != 0.0) {
+    } else if (p[64] != 0.0) {
         const Tuple18 t4 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 18), *(const Vector11
-            *)(p + 63));
+            *)(p + 65));
         signal = t4.a;
         Vector6 after = t4.b;
         for (int i = 0; i < 6; i++)
             n[18 + i] = after.v[i];
     }
-    if (p[74] != 0.0) {
-        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 75));
+    if (p[76] != 0.0) {
+        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 77));
         signal = t5.a;
     }
     return signal;
@@ -931,8 +937,8 @@ static Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vec
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[79] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[80]}});
+    if (p[81] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[82]}});
         signal = t1.a;
     }
     return signal;
@@ -1151,31 +1157,31 @@ static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[81] != 0.0 && p[3] != 0.0) {
-        const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[82], p[83],
-            p[84]}});
+    if (p[83] != 0.0 && p[3] != 0.0) {
+        const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[84], p[85],
+            p[86]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
             n[24 + i] = flowed.v[i];
-    } else if (p[81] != 0.0) {
-        const Tuple24 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[82], p[83],
-            p[84]}});
+    } else if (p[83] != 0.0) {
+        const Tuple24 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[84], p[85],
+            p[86]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
             n[24 + i] = after.v[i];
     }
-    if (p[85] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[86]}});
+    if (p[87] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[88]}});
         signal = t3.a;
     }
-    if (p[87] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[88]}});
+    if (p[89] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[90]}});
         signal = t4.a;
     }
-    if (p[89] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[90], p[91]}});
+    if (p[91] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[92], p[93]}});
         signal = t5.a;
     }
     return signal;

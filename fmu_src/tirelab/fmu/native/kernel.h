@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "a267355780809288" /* what stands where in p and s */
+#define LAYOUT "75a871b192813930" /* what stands where in p and s */
 enum {
-    PARAMETERS = 92,
+    PARAMETERS = 94,
     STATES = 181,
     S_TIME = 0,
     S_STARTED = 4,
