@@ -42,9 +42,12 @@ def unpacked_archive(fmu: Path, folder: Path) -> Path:
 
 
 def guid_of(fmu: Path) -> str:
-    """The GUID of an unpacked FMU; that of the slave plain_tire has no description."""
+    """The GUID of an unpacked FMU, FMI 3.0's token; that of the slave plain_tire has no description."""
     description = fmu / "modelDescription.xml"
-    return ElementTree.parse(description).getroot().get("guid", "") if description.is_file() else GUID
+    if not description.is_file():
+        return GUID
+    root = ElementTree.parse(description).getroot()
+    return root.get("guid") or root.get("instantiationToken", "")
 
 
 def numbers(text: str) -> list[float]:
