@@ -94,7 +94,7 @@ def test_each_call_in_each_state_of_co_simulation(in_each_state: dict[str, Any])
 
 NAN_AFTER_HALF_A_SECOND = """
     import sys
-    for name in ("radialtire", "tirelab", "bicycle_tire_fmu"):
+    for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "fmu_description"):
         sys.modules[name] = None
     import numpy as np
     from fmpy import simulate_fmu
@@ -208,7 +208,7 @@ def test_the_first_instance_starts_no_other_program(bench: Bench, tire: Path, tm
 INSTANCE = """
     import json, sys
     from ctypes import *
-    for name in ("radialtire", "tirelab", "bicycle_tire_fmu"):
+    for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "fmu_description"):
         sys.modules[name] = None
     from pathlib import Path
     folder = Path(sys.argv[1])
