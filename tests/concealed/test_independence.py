@@ -65,6 +65,6 @@ sys.path.insert(0, {str(repository / "fmu_src")!r})
 import concealed
 print(len(concealed.draw(5).train))
 """
-    done = subprocess.run([sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert int(done.stdout) >= 1

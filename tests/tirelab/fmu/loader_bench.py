@@ -76,7 +76,7 @@ class Bench:
         fmu: Path | None = None,
         uri: str | None = None,
         environment: Mapping[str, str] | None = None,
-        seconds: float = 60.0,
+        seconds: float = 120.0,
     ) -> subprocess.CompletedProcess[str]:
         """Run the C host, well or not; it is ended after so many seconds."""
         command = self.command(*mode, fmu=fmu, uri=uri)
@@ -89,7 +89,7 @@ class Bench:
         fmu: Path | None = None,
         uri: str | None = None,
         environment: Mapping[str, str] | None = None,
-        seconds: float = 60.0,
+        seconds: float = 120.0,
     ) -> str:
         """Run the C host, which must end well and complain of nothing; return what it printed."""
         result = self.attempt(*mode, fmu=fmu, uri=uri, environment=environment, seconds=seconds)
