@@ -9,8 +9,9 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Element
 
+from fmu_description import BASE_UNITS, OPTIONS, complete
 from pythonfmu.default_experiment import DefaultExperiment
 from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Status, Fmi2Variability
 from pythonfmu.fmi2slave import Fmi2Slave
@@ -46,37 +47,6 @@ STOP_TIME, STEP_SIZE = 1.0, 2e-4
 
 ON_TIME = 1e-3
 """Part of a step by which its start may differ from the end of the last one: hosts add times up in their own ways."""
-
-BASE_UNITS: dict[str, dict[str, str]] = {
-    "m": {"m": "1"},
-    "s": {"s": "1"},
-    "kg": {"kg": "1"},
-    "K": {"K": "1"},
-    "N": {"kg": "1", "m": "1", "s": "-2"},
-    "Pa": {"kg": "1", "m": "-1", "s": "-2"},
-    "N/m": {"kg": "1", "s": "-2"},
-    "N.s/m": {"kg": "1", "s": "-1"},
-    "N/s": {"kg": "1", "m": "1", "s": "-3"},
-    "N/s2": {"kg": "1", "m": "1", "s": "-4"},
-    "m/s": {"m": "1", "s": "-1"},
-    "m/s2": {"m": "1", "s": "-2"},
-    "m3": {"m": "3"},
-    "1/s": {"s": "-1"},
-    "1/m": {"m": "-1"},
-    "1/cm": {"m": "-1", "factor": "100"},
-    "1/N": {"kg": "-1", "m": "-1", "s": "2"},
-    "s/m": {"m": "-1", "s": "1"},
-    "m/N": {"kg": "-1", "s": "2"},
-    "1": {},
-}
-"""Units as products of SI base units; one that is not here (N/cm^B) has no fixed dimension: it stands in words only."""
-
-DISPLAY_UNITS: dict[str, dict[str, str]] = {
-    "m": {"mm": "1000", "cm": "100", "in": "39.37007874015748"},
-    "N": {"kN": "0.001", "lbf": "0.22480894309971047"},
-    "N/m": {"N/mm": "0.001", "kN/m": "0.001"},
-    "Pa": {"bar": "1e-05", "psi": "0.00014503773773020923"},
-}
 
 TRAITS: dict[int, dict[str, str]] = {
     DEFLECTION: {
@@ -339,16 +309,9 @@ class BicycleTire(Fmi2Slave):
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         """Return the model description with units, bounds and dependencies, which pythonfmu does not write."""
-        options = {
-            "needsExecutionTool": "false",
-            "canGetAndSetFMUstate": "true",
-            "canSerializeFMUstate": "true",
-            **(model_options or {}),
-        }
         import hashlib  # here, since it takes 10 ms, which an instance need not spend
 
-        root: Element = super().to_xml(options)
-        del root.attrib["generationDateAndTime"]
+        root: Element = super().to_xml({**OPTIONS, **(model_options or {})})
         name = self._tire.name or MODEL
         root.set("modelName", name)
         source = f" ({self._tire.source})" if self._tire.source else ""
@@ -373,35 +336,11 @@ class BicycleTire(Fmi2Slave):
         if self._tire.bare:  # damping, inertia or a wrong zero can make the force negative
             for vr in (RADIAL_FORCE, RADIAL_STIFFNESS):
                 traits[vr] = {**traits[vr], "min": "0"}
-        variables = root.find("ModelVariables")
-        structure = root.find("ModelStructure")
-        assert variables is not None
-        assert structure is not None
-        for vr, variable in enumerate(variables):
-            variable[0].attrib.update(traits.get(vr, {}))
+        channels = range(self._first_channel, self._first_channel + len(self._channels))
+        inputs = [DEFLECTION, SURFACE_RADIUS, *channels]
+        outputs = [inputs] * (FIRST_PARAMETER - RADIAL_FORCE)
+        complete(root, traits, outputs, range(FIRST_PARAMETER, self._first_channel))
+        for vr, variable in enumerate(root.findall("ModelVariables/ScalarVariable")):
             if "start" in variable[0].attrib:  # pythonfmu writes 16 digits, which are not always the number
                 variable[0].set("start", repr(float(self.get_real([vr])[0])))
-
-        units = Element("UnitDefinitions")
-        for name in sorted({trait["unit"] for trait in traits.values() if "unit" in trait}):
-            unit = SubElement(units, "Unit", name=name)
-            SubElement(unit, "BaseUnit", BASE_UNITS[name])
-            for display, factor in {name: "1", **DISPLAY_UNITS.get(name, {})}.items():
-                SubElement(unit, "DisplayUnit", name=display, factor=factor)
-        root.insert(1, units)
-
-        channels = range(self._first_channel, self._first_channel + len(self._channels))
-        inputs = [DEFLECTION + 1, SURFACE_RADIUS + 1, *(vr + 1 for vr in channels)]
-        parameters = [vr + 1 for vr in range(FIRST_PARAMETER, self._first_channel)]
-        outputs = structure.find("Outputs")
-        assert outputs is not None
-        unknowns = SubElement(structure, "InitialUnknowns")
-        for output in outputs:
-            output.set("dependencies", " ".join(map(str, inputs)))
-            SubElement(
-                unknowns,
-                "Unknown",
-                index=output.get("index", ""),
-                dependencies=" ".join(map(str, inputs + parameters)),
-            )
         return root

@@ -14,8 +14,9 @@ import json
 import math
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Element
 
+from fmu_description import OPTIONS, complete
 from pythonfmu.default_experiment import DefaultExperiment
 from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Status, Fmi2Variability
 from pythonfmu.fmi2slave import Fmi2Slave
@@ -41,7 +42,8 @@ VARIABLES = (
 INPUTS = 3
 """Number of inputs: the variables before the outputs."""
 
-BASE_UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}}
+USES = ((0, 1), (0, 1), (0, 1, 2))
+"""The inputs that each output depends on."""
 
 
 class TireCorrection(Fmi2Slave):
@@ -156,29 +158,8 @@ class TireCorrection(Fmi2Slave):
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         """Return the model description with units and dependencies, which pythonfmu does not write."""
-        options = {
-            "needsExecutionTool": "false",
-            "canGetAndSetFMUstate": "true",
-            "canSerializeFMUstate": "true",
-            **(model_options or {}),
-        }
-        root: Element = super().to_xml(options)
-        del root.attrib["generationDateAndTime"]
+        root: Element = super().to_xml({**OPTIONS, **(model_options or {})})
         named = ", ".join(effect.name for effect, _ in self._tire.effects) or "a refitted law"
         root.set("description", f"What a simulation of a tire lacks: {named}; used beside that simulation")
-        variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
-        assert variables is not None
-        assert structure is not None
-        for variable, (_, _, unit, _) in zip(variables, VARIABLES, strict=True):
-            variable[0].set("unit", unit)
-        units = Element("UnitDefinitions")
-        for name, base in BASE_UNITS.items():
-            SubElement(SubElement(units, "Unit", name=name), "BaseUnit", base)
-        root.insert(1, units)
-        outputs = structure.find("Outputs")
-        assert outputs is not None
-        unknowns = SubElement(structure, "InitialUnknowns")
-        for output, uses in zip(outputs, ("1 2", "1 2", "1 2 3"), strict=True):
-            output.set("dependencies", uses)
-            SubElement(unknowns, "Unknown", index=output.get("index", ""), dependencies=uses)
+        complete(root, {vr: {"unit": unit} for vr, (_, _, unit, _) in enumerate(VARIABLES)}, USES)
         return root

@@ -19,7 +19,30 @@ settings.register_profile(
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 
+LONGEST = (
+    "test_readme.py",
+    "test_pages.py",
+    "test_diagnose.py",
+    "test_diagnose_command.py",
+    "test_interactive.py",
+    "test_correction.py",
+    "test_channels.py",
+    "test_make.py",
+    "test_output.py",
+    "test_page.py",
+    "test_build_command.py",
+    "test_contradiction.py",
+    "test_open.py",
+)
+"""Files that take longest, begun first: with a file to each worker, one of them must not run alone at the end."""
+
 REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Order the files by LONGEST; the tests of a file keep their order."""
+    rank = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 
 
 @pytest.fixture(scope="session")

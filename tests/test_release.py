@@ -32,6 +32,7 @@ CARRIED = (
     "tirelab/py.typed",
     "radialtire/py.typed",
     "bicycle_tire_fmu.py",
+    "fmu_description.py",
     "tirelab/diagnosis/calibration.json",
     "tirelab/report/report.html.jinja",
     "tirelab/report/uplot/uPlot.iife.min.js",

@@ -17,6 +17,9 @@ CHROMIUM = next(
 OPTIONS = ("--no-sandbox", "--disable-gpu", "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1")
 """No name is resolved: whatever asks the network fails."""
 
+PATIENCE = 120_000
+"""[ms] for which the browser waits; half a minute, as Playwright has it, is short on a busy machine."""
+
 
 @contextmanager
 def browser() -> Iterator[Any]:
@@ -25,7 +28,7 @@ def browser() -> Iterator[Any]:
     if CHROMIUM is None:
         pytest.skip("no chromium on this machine")
     with api.sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=list(OPTIONS))
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=list(OPTIONS), timeout=PATIENCE)
         yield opened
         opened.close()
 
@@ -35,6 +38,7 @@ class Watched:
 
     def __init__(self, browser: Any, **context: Any) -> None:
         self.context = browser.new_context(**context)
+        self.context.set_default_timeout(PATIENCE)
         self.page = self.context.new_page()
         self.said: list[str] = []
         self.asked: list[str] = []

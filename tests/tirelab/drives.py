@@ -68,3 +68,14 @@ def saved(drive: Drive, file: Path) -> Path:
         Recording(file.stem, drive.time, drive.deflection, drive.surface_radius, drive.force), file
     )
     return file
+
+
+def long_ride(samples: int) -> tuple[list[Recording], list[FloatArray], list[FloatArray]]:
+    """Return a recording of a linear tire at 1 kHz, with its force before and after a damper: what a report draws."""
+    rng = np.random.default_rng(3)
+    time = np.arange(samples) * 1e-3
+    x = 0.012 * (1.0 - np.cos(3.0 * time + 0.7 * np.sin(0.11 * time)))
+    before = 9e4 * x
+    after = before + 200.0 * np.gradient(x, time)
+    force = after + rng.normal(0.0, 5.0, samples)
+    return [Recording("long", time, x, np.full(samples, np.inf), force)], [before], [after]

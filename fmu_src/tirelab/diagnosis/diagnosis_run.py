@@ -5,10 +5,8 @@ The command, the batch and the blind trials all call `run_diagnosis`.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -29,7 +27,6 @@ from ..fmu.replay import replay
 from ..fmu.system import SYSTEM
 from ..planning.rig import read_rig
 from ..recordings.files import recording_files
-from ..recordings.metadata import read_sidecar
 from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
@@ -39,6 +36,7 @@ from .believed_force import Believed, believed_of, simulated_by
 from .correction import CORRECTION, deliver, write_corrected
 from .diagnose import PoorRecording, diagnose
 from .outcome import DATA, DIAGNOSIS, FMU, REPORT, TEST, TIRE, Replayed, content_of
+from .provenance import command_line, files_read, sha256
 from .verdict import Verdict
 
 AGREEMENT = 1e-9
@@ -116,12 +114,16 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     kept = [_read(file, asked.reading, report) for file in kept_files]
     _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
     _check_depth(fitted, kept)
+    beside = [file for file in (asked.simulation, asked.rig) if file is not None]
     origin = {
         "command": command_line(
             asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading, asked.rig
         ),
         "date": datetime.now().astimezone().isoformat(timespec="seconds"),
-        "files": [(str(file), _sha256(file)) for file in _files_read([*files, *kept_files], asked)],
+        "files": [
+            (str(file), sha256(file))
+            for file in files_read([*files, *kept_files], asked.reading.settings, beside)
+        ],
     }
     believed = _simulation(asked, model, fitted, kept, report)
     if believed is not None:
@@ -203,53 +205,12 @@ def _delivered(
     return content, [*more, *warnings]
 
 
-def _files_read(recordings: Sequence[Path], asked: Request) -> list[Path]:
-    """Return the files that a diagnosis depends on: the recordings, their settings, and the tire file."""
-    named = asked.reading.settings
-    parts = [split_piece(given) for given in recordings]
-    found = [file for file, _ in parts]
-    if named is not None:
-        found.append(named)
-    else:
-        for file, piece in parts:
-            found += [file.parent / name for name in read_sidecar(file, trial=piece.trial).sources]
-    return list(dict.fromkeys([*found, *(f for f in (asked.simulation, asked.rig) if f is not None)]))
-
-
-def _sha256(file: Path) -> str:
-    with file.open("rb") as stream:
-        digest = hashlib.sha256()
-        while block := stream.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
-
-
 def diagnose_files(recordings: Sequence[Path], tire: Path | None, out: Path) -> None:
     """Diagnose files with the baseline of a tire file, None for the article's, into the folder `out`.
 
     The data behind the plots is not written: hundreds of blind trials would fill a disk with it.
     """
     run_request(Request(tuple(recordings), out, tire, samples=False), None)
-
-
-def command_line(
-    recordings: Sequence[Path],
-    out: Path,
-    tire: Path | Simulation | None,
-    held_out: Sequence[Path],
-    reading: Reading,
-    rig: Path | None = None,
-) -> str:
-    """Return the command that repeats a diagnosis."""
-    words = ["tirelab", "diagnose", *map(str, recordings)]
-    if isinstance(tire, Simulation):
-        words += tire.words()
-    elif tire is not None:
-        words += ["--tire", str(tire)]
-    words += [] if rig is None else ["--rig", str(rig)]
-    words += ["--out", str(out), *reading.words()]
-    words += [word for file in held_out for word in ("--held-out", str(file))]
-    return shlex.join(words)
 
 
 def _baseline(

@@ -33,7 +33,7 @@ from .loader import Compiler, compile_loader
 
 SHELL = "bicycle_tire_fmu"
 CORRECTION_SHELL, CORRECTION = "tire_correction_fmu", "Correction"
-PHYSICS = "radialtire"
+PHYSICS, DESCRIPTION = "radialtire", "fmu_description"
 WRAPPER = "resources/pythonfmu"
 BUILD_TIME = ("__main__", "builder", "csvbuilder", "deploy", "osutil")
 """Modules of pythonfmu that make FMUs and that no FMU needs."""
@@ -131,10 +131,11 @@ def _sources(shell: str) -> dict[str, bytes]:
     """The files that go into the FMU, by their names in the source tree."""
     package = Path(radialtire.__file__).parent
     found = {f"{PHYSICS}/{f.relative_to(package).as_posix()}": f.read_bytes() for f in package.rglob("*.py")}
-    spec = importlib.util.find_spec(shell)
-    assert spec is not None
-    assert spec.origin is not None
-    found[f"{shell}.py"] = Path(spec.origin).read_bytes()
+    for module in (DESCRIPTION, shell):
+        spec = importlib.util.find_spec(module)
+        assert spec is not None
+        assert spec.origin is not None
+        found[f"{module}.py"] = Path(spec.origin).read_bytes()
     return dict(sorted(found.items()))
 
 
@@ -150,17 +151,19 @@ def _packed(content: _Content, work: Path) -> dict[str, bytes]:
     mark = digest.hexdigest()[:12]
     stage = work / "stage"
     for name, data in sources.items():
-        target = stage / name.replace(PHYSICS, f"{PHYSICS}_{mark}", 1).replace(shell, f"{shell}_{mark}", 1)
+        target = stage / re.sub(rf"^({PHYSICS}|{DESCRIPTION}|{shell})\b", rf"\1_{mark}", name)
         target.parent.mkdir(parents=True, exist_ok=True)
-        text = re.sub(rf"^from {PHYSICS}\b", f"from {PHYSICS}_{mark}", data.decode(), flags=re.MULTILINE)
+        own = rf"^from ({PHYSICS}|{DESCRIPTION})\b"
+        text = re.sub(own, rf"from \1_{mark}", data.decode(), flags=re.MULTILINE)
         target.write_text(text, encoding="utf-8")
     (stage / content.file).write_text(content.text, encoding="utf-8")
 
     script = stage / f"{shell}_{mark}.py"
     path_before, modules_before = list(sys.path), set(sys.modules)
     try:
+        beside = [f"{PHYSICS}_{mark}", f"{DESCRIPTION}_{mark}.py", content.file]
         archive = FmuBuilder.build_FMU(
-            script, dest=work / "packed", project_files=[stage / f"{PHYSICS}_{mark}", stage / content.file]
+            script, dest=work / "packed", project_files=[stage / name for name in beside]
         )
     finally:
         sys.path[:] = path_before

@@ -6,7 +6,7 @@ from drives import damped, flat_force, ride
 from radialtire import TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.held_out import split
-from tirelab.estimation.explanation import catalogue_names, explain_misfit
+from tirelab.estimation.explanation import explain_misfit
 from tirelab.preprocessing.dataset import dataset_of
 from tirelab.recordings.recording import Recording
 
@@ -24,7 +24,9 @@ def test_the_fit_does_not_use_the_held_out_recording():
     both it would be 350, as far off as the baseline is.
     """
     rides = [damped(1), damped(2, damping=200.0)]
-    found = explain_misfit(rides, TireModel(), catalogue_names(), lambda stage: None).of(("viscous_damping",))
+    found = explain_misfit(rides, TireModel(), ["viscous_damping"], lambda stage: None).of(
+        ("viscous_damping",)
+    )
     before = [r.force - flat_force(r.deflection) for r in rides]
     held_out = split(rides, dataset_of(rides, TireModel()), before, found)
     assert held_out.by == "recording ride 2"

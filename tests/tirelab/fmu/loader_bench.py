@@ -42,9 +42,12 @@ def unpacked_archive(fmu: Path, folder: Path) -> Path:
 
 
 def guid_of(fmu: Path) -> str:
-    """The GUID of an unpacked FMU; that of the slave plain_tire has no description."""
+    """The GUID of an unpacked FMU, FMI 3.0's token; that of the slave plain_tire has no description."""
     description = fmu / "modelDescription.xml"
-    return ElementTree.parse(description).getroot().get("guid", "") if description.is_file() else GUID
+    if not description.is_file():
+        return GUID
+    root = ElementTree.parse(description).getroot()
+    return root.get("guid") or root.get("instantiationToken", "")
 
 
 def numbers(text: str) -> list[float]:
@@ -73,7 +76,7 @@ class Bench:
         fmu: Path | None = None,
         uri: str | None = None,
         environment: Mapping[str, str] | None = None,
-        seconds: float = 60.0,
+        seconds: float = 120.0,
     ) -> subprocess.CompletedProcess[str]:
         """Run the C host, well or not; it is ended after so many seconds."""
         command = self.command(*mode, fmu=fmu, uri=uri)
@@ -86,7 +89,7 @@ class Bench:
         fmu: Path | None = None,
         uri: str | None = None,
         environment: Mapping[str, str] | None = None,
-        seconds: float = 60.0,
+        seconds: float = 120.0,
     ) -> str:
         """Run the C host, which must end well and complain of nothing; return what it printed."""
         result = self.attempt(*mode, fmu=fmu, uri=uri, environment=environment, seconds=seconds)

@@ -40,7 +40,7 @@ def in_python(bench: Bench, code: str, *arguments: object) -> str:
     """
     text = textwrap.dedent(start) + textwrap.dedent(code)
     command = [sys.executable, "-I", "-W", "ignore", "-c", text, *map(str, arguments)]
-    result = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    result = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert result.stderr == ""
     assert result.returncode == 0
     return result.stdout

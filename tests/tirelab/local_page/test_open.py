@@ -43,7 +43,7 @@ def opened(tmp_path: Path) -> Iterator[tuple[str, Path]]:
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{20,}/", address)
         yield address, folder
         program.send_signal(signal.SIGINT)
-        _, said = program.communicate(timeout=60)
+        _, said = program.communicate(timeout=120)
     assert program.returncode == 0
     assert "Traceback" not in said
 

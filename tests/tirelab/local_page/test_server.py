@@ -38,7 +38,7 @@ def ask(
     served: Server, method: str, path: str, body: bytes | None = None, **headers: str
 ) -> tuple[int, Any, http.client.HTTPMessage]:
     """Ask under the token; the answer as JSON where it is."""
-    connection = http.client.HTTPConnection(HOST, served.server_address[1], timeout=30)
+    connection = http.client.HTTPConnection(HOST, served.server_address[1], timeout=120)
     given = {name.replace("_", "-"): text for name, text in headers.items()}
     connection.request(method, f"/{served.token}/{path}", body, given)
     answer = connection.getresponse()
@@ -66,7 +66,7 @@ def test_it_is_bound_to_this_machine_alone(served: Server) -> None:
 
 @pytest.mark.parametrize("path", ["/", "/state", "/wrong/state", "//state", "/wrong/", "/%2e%2e/state"])
 def test_without_the_token_nothing_is_answered(served: Server, path: str) -> None:
-    connection = http.client.HTTPConnection(HOST, served.server_address[1], timeout=30)
+    connection = http.client.HTTPConnection(HOST, served.server_address[1], timeout=120)
     connection.request("GET", path)
     answer = connection.getresponse()
     assert answer.status == 403
@@ -213,14 +213,14 @@ def test_settings_that_make_no_sense_are_one_sentence(served: Server, ride: byte
 
 
 def test_what_is_too_large_or_of_unknown_length_is_refused(served: Server) -> None:
-    connection = http.client.HTTPConnection(HOST, served.server_address[1], timeout=30)
+    connection = http.client.HTTPConnection(HOST, served.server_address[1], timeout=120)
     connection.putrequest("POST", f"/{served.token}/recordings?name=a.csv")
     connection.putheader("Content-Length", "2000001")
     connection.endheaders()  # the answer comes before a byte of it is sent
     answer = connection.getresponse()
     assert answer.status == 413
     assert "at most 2 MB are taken" in json.loads(answer.read())["problem"]
-    with socket.create_connection((HOST, served.server_address[1]), timeout=30) as raw:
+    with socket.create_connection((HOST, served.server_address[1]), timeout=120) as raw:
         text = f"POST /{served.token}/recordings?name=a.csv HTTP/1.1\r\nHost: {served.hosts[0]}\r\n\r\n"
         raw.sendall(text.encode())
         assert b" 411 " in raw.recv(4096)
@@ -228,7 +228,7 @@ def test_what_is_too_large_or_of_unknown_length_is_refused(served: Server) -> No
 
 
 def test_a_connection_that_breaks_leaves_nothing(served: Server) -> None:
-    with socket.create_connection((HOST, served.server_address[1]), timeout=30) as raw:
+    with socket.create_connection((HOST, served.server_address[1]), timeout=120) as raw:
         head = f"POST /{served.token}/recordings?name=a.csv HTTP/1.1\r\nHost: {served.hosts[0]}\r\n"
         raw.sendall(f"{head}Content-Length: 900\r\n\r\n1,2".encode())
         raw.shutdown(socket.SHUT_WR)

@@ -15,7 +15,8 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 import fmpy.validation
-from bicycle_tire_fmu import BASE_UNITS, BicycleTire
+from bicycle_tire_fmu import BicycleTire
+from fmu_description import BASE_UNITS
 from radialtire import Flow, TireModel, flat_law, parameters_of, write_tire
 from radialtire.tirefile import to_text
 

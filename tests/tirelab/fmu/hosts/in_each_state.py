@@ -25,7 +25,7 @@ from ctypes import (
 from pathlib import Path
 from xml.etree import ElementTree
 
-for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "concealed"):
+for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "fmu_description", "concealed"):
     sys.modules[name] = None  # importing them from here on is an ImportError
 
 LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)

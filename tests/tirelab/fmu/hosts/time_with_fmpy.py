@@ -5,7 +5,7 @@ from pathlib import Path
 from time import perf_counter
 from xml.etree import ElementTree
 
-for name in ("radialtire", "tirelab", "bicycle_tire_fmu"):
+for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "fmu_description"):
     sys.modules[name] = None  # importing them from here on is an ImportError
 
 from fmpy.fmi2 import FMU2Slave

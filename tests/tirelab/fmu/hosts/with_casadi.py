@@ -7,7 +7,7 @@ force and its derivative by the deflection at the start, and the deflections at 
 import json
 import sys
 
-for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "concealed"):
+for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "fmu_description", "concealed"):
     sys.modules[name] = None  # importing them from here on is an ImportError
 
 import casadi

@@ -10,7 +10,7 @@ import os
 import sys
 from pathlib import Path
 
-for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "concealed"):
+for name in ("radialtire", "tirelab", "bicycle_tire_fmu", "fmu_description", "concealed"):
     sys.modules[name] = None  # importing them from here on is an ImportError
 
 import fmpy

@@ -1,21 +1,15 @@
-"""What the native FMU refuses: data of another version, cut off or changed; wrong inputs; calls in any order."""
+"""What the native FMU refuses: data of another version, cut off or changed; wrong inputs."""
 
 from __future__ import annotations
 
 import math
-import os
-import subprocess
 from pathlib import Path
 
 import pytest
-from loader_bench import guid_of, unpacked_archive
+from loader_bench import unpacked_archive
 from native_me import Unit
 from radialtire import TireModel
-from tirelab.fmu.native.make import c_files, source_files
 from tirelab.fmu.native.pack import build_native_fmu, checksum
-
-FUZZ = Path(__file__).parents[1] / "fuzz.c"
-SECONDS = 5
 
 
 @pytest.fixture
@@ -72,35 +66,3 @@ def test_inputs_that_no_tire_has_are_refused_at_the_start(
 ) -> None:
     with pytest.raises(AssertionError, match=words):
         Unit(folder, inputs, exchange=False)
-
-
-@pytest.mark.skipif(os.name == "nt", reason="the sanitizers are gcc's and clang's")
-def test_any_calls_in_any_order_under_the_sanitizers(folder: Path, tmp_path: Path) -> None:
-    """Some seconds here; for ten minutes set TIRELAB_FUZZ_SECONDS=600."""
-    for name, content in source_files(2).items():
-        (tmp_path / name).write_bytes(content)
-    flags = ["-std=c11", "-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
-    program = tmp_path / "fuzz"
-    compiled = subprocess.run(
-        [
-            "gcc",
-            *flags,
-            "-I",
-            str(tmp_path),
-            "-o",
-            program,
-            FUZZ,
-            *(tmp_path / name for name in c_files(2)),
-            "-lm",
-        ],
-        capture_output=True,
-        text=True,
-    )
-    if compiled.returncode and "asan" in compiled.stderr:
-        pytest.skip("gcc has no sanitizers here")
-    assert compiled.returncode == 0, compiled.stderr
-    seconds = os.environ.get("TIRELAB_FUZZ_SECONDS", str(SECONDS))
-    words = [(folder / "resources").as_uri(), guid_of(folder), seconds, "1"]
-    done = subprocess.run([program, *words], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert "calls" in done.stdout

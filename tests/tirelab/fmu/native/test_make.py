@@ -18,18 +18,17 @@ def test_the_kernel_is_that_of_the_python() -> None:
 
 
 @pytest.mark.parametrize("fmi", VERSIONS)
-@pytest.mark.parametrize("platform", PLATFORMS[:2], ids=lambda platform: str(platform.fmi3))
-def test_the_binaries_for_linux_are_those_of_the_sources(
-    platform: Platform, fmi: int, tmp_path: Path
-) -> None:
+def test_the_binary_for_linux_is_that_of_the_sources(fmi: int, tmp_path: Path) -> None:
     pytest.importorskip("ziglang")
+    platform = PLATFORMS[0]
+    assert platform.fmi3 == "x86_64-linux"
     compile_for(platform, fmi, tmp_path / "made")
     assert (tmp_path / "made").read_bytes() == platform.library(fmi).read_bytes()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fmi", VERSIONS)
-@pytest.mark.parametrize("platform", PLATFORMS[2:], ids=lambda platform: str(platform.fmi3))
+@pytest.mark.parametrize("platform", PLATFORMS[1:], ids=lambda platform: str(platform.fmi3))
 def test_the_other_binaries_are_those_of_the_sources(platform: Platform, fmi: int, tmp_path: Path) -> None:
     """Minutes, where ziglang has to make the C library of Windows first."""
     pytest.importorskip("ziglang")
