@@ -9,7 +9,8 @@ What the rival cannot follow of c,
 is twice the log likelihood ratio that is to be expected: the T-optimal criterion (A. C. Atkinson, V. V. Fedorov,
 Biometrika 62, 57 (1975)), averaged over the draws of c (J. Lopez-Fidalgo et al., J. R. Stat. Soc. B 69, 231 (2007)).
 V = 1 + f^2 |c|^2 / e is the variance, in units of the noise, of what the forms miss: f of the response, in e effective
-samples, as in `selection.discrepancy`.
+samples, as in `selection.discrepancy`. f is the form error of the true effect, which is the best set's: under that one
+floor a diagnosis judges all sets (`estimation.ranking`).
 
 Two models of equal standing: the log likelihood ratio is normal with mean S^2/2 and variance S^2, so the right one is
 the likelier one with probability Phi(S/2). A rival within the true model, M without i: twice the ratio is noncentral
@@ -26,12 +27,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE
 from scipy.special import ndtr
 from scipy.stats import ncx2
 
+from ..estimation.form_error import form_error
 from ..regressors.law import LAW
-from ..selection.discrepancy import EFFECTIVE, usual_form_error
+from ..selection.discrepancy import EFFECTIVE
 from ..selection.search import PRIOR_ODDS
 from .responses import PRIOR_OF_LAW
 
@@ -128,8 +129,7 @@ def _weights(rival: frozenset[str], size: float, places: Mapping[str, slice], co
 def _of(question: Question, model: _Model, places: Mapping[str, slice]) -> FloatArray:
     place, size = places[question.truth], question.size
     power = size**2 * np.diag(model.gram)[place]
-    form_error = CATALOGUE[question.truth].form_error if question.truth != LAW else 0.0
-    variance = 1.0 + (usual_form_error() ** 2 + form_error**2) * power / EFFECTIVE
+    variance = 1.0 + form_error(question.truth) ** 2 * power / EFFECTIVE
     separation = size**2 * model.left(place, variance)
     if not question.nested:
         return np.asarray(ndtr(0.5 * np.sqrt(separation)))

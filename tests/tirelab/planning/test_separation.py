@@ -10,7 +10,7 @@ from scipy.stats import norm
 from tirelab.planning.responses import PRIOR_OF_LAW
 from tirelab.planning.separation import Question, probabilities, questions_of
 from tirelab.regressors.law import LAW
-from tirelab.selection.discrepancy import EFFECTIVE, usual_form_error
+from tirelab.selection.discrepancy import EFFECTIVE, Discrepancy
 from tirelab.selection.search import PRIOR_ODDS
 
 PLACES = {
@@ -29,7 +29,7 @@ def columns(rows: int = 400, level: float = 1.0) -> NDArray[np.float64]:
 
 
 def variance(power: float, name: str) -> float:
-    return 1.0 + (usual_form_error() ** 2 + CATALOGUE[name].form_error ** 2) * power / EFFECTIVE
+    return 1.0 + CATALOGUE[name].form_error ** 2 * power / EFFECTIVE
 
 
 def test_an_effect_in_anothers_place_as_the_whole_covariance_has_it() -> None:
@@ -106,3 +106,21 @@ def test_every_effect_is_asked_for_against_every_other() -> None:
         (LAW, frozenset({"inertia"})),
         (LAW, frozenset({"force_drift"})),
     }
+
+
+def test_the_variance_is_the_floor_under_which_a_diagnosis_judges_all_sets() -> None:
+    """What `Discrepancy.above` makes of the best set's form error, a root mean square over n blocks."""
+    n, size, strong = 900, 0.02, 4000.0
+    floor = Discrepancy(n, EFFECTIVE, 1.0, 2.0).above(
+        CATALOGUE["inertia"].form_error * size * strong / math.sqrt(n)
+    )
+    assert floor.lowest == pytest.approx(variance((size * strong) ** 2, "inertia"), rel=1e-12)
+
+
+def test_a_loud_response_is_told_up_to_what_its_own_form_may_miss() -> None:
+    """Orthogonal to the other response: S^2 tends to e / f^2 as it grows."""
+    gram = np.diag([1e12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12])
+    question = Question("inertia", frozenset({"force_drift"}), 1.0, nested=False)
+    (found,) = probabilities(gram, PLACES, [question])
+    most = math.sqrt(EFFECTIVE) / CATALOGUE["inertia"].form_error
+    assert found[0] == pytest.approx(norm.cdf(0.5 * most), abs=1e-6)

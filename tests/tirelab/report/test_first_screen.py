@@ -81,7 +81,7 @@ def test_where_the_recordings_cannot_decide_that_is_the_headline() -> None:
     doubtful = {"alternatives": [["viscous_damping"]]}
     assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.49, **doubtful)).startswith("Undecided: ")
     assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.51, **doubtful)).startswith("Inertia, ")
-    assert "cannot tell" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful)["verdict"])
+    assert "cannot tell" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful))
 
 
 def test_alarm_is_where_something_is_wrong() -> None:
