@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..regressors.dataset import Dataset
+from ..regressors.law import form_error
 from ..regressors.signature import size_of
 from ..selection.discrepancy import Discrepancy
-from .form_error import form_error, form_errors, smooth_functions
+from .form_error import form_errors, smooth_functions
 from .laplace import Linearised, laplace_evidence
 from .least_squares import Minimum, Objective, begun, minimised
 from .problem import EstimationProblem, Values, problem_of

@@ -17,10 +17,9 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE
 
 from ..regressors.dataset import Dataset
-from ..regressors.law import LAW, SHAPE
+from ..regressors.law import LAW, form_error
 from ..regressors.signature import size_of
 
 FloatArray = NDArray[np.float64]
@@ -44,11 +43,6 @@ def smooth_functions(dataset: Dataset) -> FloatArray:
         groups.append(np.column_stack([(radius == r).astype(float) for r in dataset.radii]))
     parts = [g / np.sqrt(max(float(np.mean(np.sum(g**2, axis=1))), 1e-300)) for g in groups]
     return np.asarray(np.concatenate(parts, axis=1) / np.sqrt(len(parts)))
-
-
-def form_error(name: str) -> float:
-    """Return the declared form error of an effect or of the law."""
-    return CATALOGUE[SHAPE if name == LAW else name].form_error
 
 
 def form_errors(curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray) -> FloatArray:

@@ -30,8 +30,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import ncx2
 
-from ..estimation.form_error import form_error
-from ..regressors.law import LAW
+from ..regressors.law import LAW, form_error
 from ..selection.discrepancy import EFFECTIVE
 from ..selection.search import PRIOR_ODDS
 from .responses import PRIOR_OF_LAW

@@ -43,6 +43,11 @@ def candidates() -> tuple[str, ...]:
     return tuple(name for name in CATALOGUE if name != SHAPE)
 
 
+def form_error(name: str) -> float:
+    """Return the declared form error of an effect or of the law."""
+    return CATALOGUE[SHAPE if name == LAW else name].form_error
+
+
 def law_signature(dataset: Dataset) -> Signature:
     """Return the law's signature; its size 1 is that of a change of A by FACTOR."""
     gather = dataset.gathered

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
-from tirelab.estimation.form_error import form_error, form_errors, smooth_functions
+from tirelab.estimation.form_error import form_errors, smooth_functions
 from tirelab.names import REFITTED_LAW
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, dataset_of
+from tirelab.regressors.law import form_error
 from tirelab.simulation.simulate import simulate
 
 
