@@ -123,6 +123,7 @@ class TireModel:
     follow (see `tracking`); 0 takes the deflection as exact
     two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
     and can pull. A tire on the ground can do neither.
+    inflated: whether air carries its load: without, nothing of a pressure is looked for
     preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring
     remainder: a force without physics that is added to all others, None where nobody asked for one
     """
@@ -136,6 +137,7 @@ class TireModel:
     two_sided: bool = False
     preload: float = 0.0
     remainder: LearnedRemainder | None = None
+    inflated: bool = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))

@@ -81,6 +81,8 @@ def to_text(tire: TireModel) -> str:
     }
     if tire.two_sided:
         content |= {"two_sided": True, "preload": tire.preload}
+    if not tire.inflated:
+        content |= {"inflated": False}
     if tire.remainder is not None:
         learned = tire.remainder
         law = {} if learned.law is None else {"law": _law_entry(learned.law)}
@@ -104,6 +106,7 @@ def from_text(text: str) -> TireModel:
         "tested_range",
         "two_sided",
         "preload",
+        "inflated",
         "learned_remainder",
     }
     entry = _entry(content, "the tire", known, {"schema", "law"})
@@ -119,7 +122,8 @@ def from_text(text: str) -> TireModel:
             name=_text(entry, "name"),
             source=_text(entry, "source"),
             reading_noise=entry.get("reading_noise", 0.0),
-            two_sided=_flag(entry, "two_sided"),
+            two_sided=_flag(entry, "two_sided", otherwise=False),
+            inflated=_flag(entry, "inflated", otherwise=True),
             preload=entry.get("preload", 0.0),
             remainder=_remainder(entry.get("learned_remainder")),
         )
@@ -199,8 +203,8 @@ def _text(entry: dict[str, Any], key: str) -> str:
     return value
 
 
-def _flag(entry: dict[str, Any], key: str) -> bool:
-    value = entry.get(key, False)
+def _flag(entry: dict[str, Any], key: str, *, otherwise: bool) -> bool:
+    value = entry.get(key, otherwise)
     if not isinstance(value, bool):
         raise TireFileError(f"{key} must be true or false, not {value!r}")
     return value

@@ -21,6 +21,7 @@ from radialtire import (
     with_parameters,
     write_tire,
 )
+from radialtire.tirefile import from_text, to_text
 
 TIRES = [
     TireModel(),
@@ -72,7 +73,7 @@ LAW = {"name": "hull1996"}
         ({"schema": 2, "law": LAW}, "schema 2 is not 1; use the version that wrote the file"),
         (
             {"schema": 1, "law": LAW, "colour": "red"},
-            "the tire has an unknown entry 'colour'; known are effects, law",
+            "the tire has an unknown entry 'colour'; known are effects, inflated, law",
         ),
         ({"schema": 1, "law": LAW, "name": 5}, "name must be text, not 5"),
         ({"schema": 1, "law": "hull1996"}, "the law must be an object with name, not 'hull1996'"),
@@ -176,3 +177,12 @@ def test_a_replacement_outside_its_bounds_is_refused() -> None:
 def test_a_parameter_that_does_not_exist_is_not_made_up() -> None:
     with pytest.raises(KeyError, match=r"inertia\.mass"):
         with_parameters(TireModel(), {"inertia.mass": 2.0})
+
+
+def test_a_part_without_air_says_so_in_its_file() -> None:
+    part = TireModel(inflated=False)
+    assert from_text(to_text(part)) == part
+    assert from_text(to_text(TireModel())).inflated
+    assert "inflated" not in to_text(TireModel())
+    with pytest.raises(TireFileError, match="inflated must be true or false, not 0"):
+        from_text(to_text(part).replace('"inflated": false', '"inflated": 0'))

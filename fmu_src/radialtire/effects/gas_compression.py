@@ -107,7 +107,7 @@ GAS_COMPRESSION = Effect(
     tell_tale="stiffening at large deflections in one proportion on every surface; a pressure channel shows it",
     imitators=("recalibration", "bottoming", "series_compliance"),
     source="polytropic gas law; 101.3 kPa over 344.7 kPa; 3 to 4 % of pressure at 25 mm is an estimate, bounds wide",
-    traits=("static",),
+    traits=("static", "air"),
     form_error=0.0086,
     changes=("pressure",),
 )

@@ -84,7 +84,7 @@ INFLATION_PRESSURE = Effect(
     source="MF-Tyre 6.1, pFz1 (Besselink, Schmeitz & Pacejka, Vehicle System Dynamics 48, 2010, S1); Dressel & "
     "Sadauckas, Appl. Sci. 10(9), 3156 (2020), doi 10.3390/app10093156; Renart & Roura-Grabulosa, Am. J. Phys. 87, 102 "
     "(2019); Hull, Wang & Moore 1996: 344.7 kPa",
-    traits=("static",),
+    traits=("static", "air"),
     form_error=0.013,
     reads=Reading("pressure", "reference"),
 )

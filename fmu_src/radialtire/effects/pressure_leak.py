@@ -78,7 +78,7 @@ PRESSURE_LEAK = Effect(
     tell_tale="a cycle that is repeated at the end is lower, in proportion to the force",
     imitators=("warm_up", "mullins_softening", "force_drift"),
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
-    traits=("slow",),
+    traits=("slow", "air"),
     form_error=0.0036,
     changes=("pressure",),
 )

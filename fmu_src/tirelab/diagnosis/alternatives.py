@@ -88,6 +88,8 @@ def reason_of(
     common = set.intersection(*differing) if differing else set()
     lacks = insufficient_excitation(explanation, dataset, limits)
     if "static" in common:
+        if not explanation.model.baseline.inflated:
+            return "they depend on the deflection only: no motion of this part tells them apart"
         return f"they depend on deflection and surface only: {second_pressure(limits)}"
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"

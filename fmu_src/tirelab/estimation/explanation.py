@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.dataset import Recorded
 from ..regressors.dataset import Dataset, dataset_of
@@ -132,6 +132,8 @@ def explain_misfit(
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=timed)
     impossible = excitation.channels.impossible
+    if not baseline.inflated:
+        impossible |= {name for name, effect in CATALOGUE.items() if "air" in effect.traits}
     allowed = [name for name in candidates() if name in catalogue and name not in impossible]
     hidden = excitation.reasons(allowed) | out_of_size((*allowed, SHAPE), dataset.scales)
     shown = [name for name in allowed if name not in hidden]

@@ -158,7 +158,10 @@ def _two_sided(fit: LawFit) -> TireModel:
 
 
 def _described(tire: TireModel, recordings: Sequence[Recording], name: str) -> TireModel:
-    """Return the tire with its name, its source and the range of the recordings."""
+    """Return the tire with its name, its source and the range of the recordings.
+
+    A part holds no air unless its pressure was recorded.
+    """
     recorded = ", ".join(dict.fromkeys(r.name for r in recordings))
     flat = 1.0 / FLAT_RADIUS
     curvature = 1.0 / float(recordings[0].surface_radius[0])
@@ -170,6 +173,7 @@ def _described(tire: TireModel, recordings: Sequence[Recording], name: str) -> T
             deflection_max=max(float(r.deflection.max()) for r in recordings),
             force_max=max(float(r.force.max()) for r in recordings),
         ),
+        inflated=any(r.pressure is not None for r in recordings),
         name=name or f"part identified from {recorded}",
         source=f"identified by tirelab from the recordings {recorded}",
     )

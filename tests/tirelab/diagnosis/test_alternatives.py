@@ -30,7 +30,7 @@ def explained(*sets: tuple[str, float, float], **more: Any) -> Any:
     return SimpleNamespace(
         evidence=evidence,
         probability=next(e.probability for e in evidence if e.names == names),
-        model=SimpleNamespace(names=names),
+        model=SimpleNamespace(names=names, baseline=more.get("baseline", TireModel())),
         confounded=more.get("confounded", ()),
         hidden=more.get("hidden", ()),
         excitation=SimpleNamespace(timed=True, one_speed=more.get("one_speed", False)),
@@ -126,6 +126,12 @@ def test_a_second_surface_is_asked_for_only_where_one_can_be_mounted() -> None:
     assert "press on a second surface" in "; ".join(
         insufficient_excitation(asked, RIDE, Limits(surfaces=(math.inf, 0.254)))
     )
+
+
+def test_no_second_pressure_is_asked_for_where_there_is_no_air() -> None:
+    part = explained(("", 0.0, 1.0), baseline=TireModel(inflated=False))
+    said = reason_of(("recalibration",), ("gas_compression",), part, RIDE)
+    assert said == "they depend on the deflection only: no motion of this part tells them apart"
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import damped, flat_force, ride
@@ -93,3 +95,18 @@ def test_the_sets_come_in_the_order_of_their_probability_but_for_the_median_one(
     # Damping alone is likelier than not: here the set of what is so, and the likeliest set, are one.
     assert set(order[0]) == {"viscous_damping"}
     assert list(order) == likely
+
+
+def test_nothing_of_a_pressure_is_looked_for_where_there_is_no_air() -> None:
+    """A force that falls by a tenth within a ride: a leak of a tire, and of a spring something else."""
+    ride = damped(1, samples=2000)
+    fall = 1.0 - 0.1 * (ride.time - ride.time[0]) / np.ptp(ride.time)
+    tire = replace(ride, force=ride.force * fall)
+    catalogue = ("pressure_leak", "gas_compression", "viscous_damping")
+
+    def compared(baseline: TireModel) -> set[str]:
+        found = explain_misfit([tire], baseline, catalogue, lambda stage: None)
+        return {n for e in found.evidence for n in e.names}
+
+    assert "pressure_leak" in compared(TireModel())
+    assert compared(TireModel(inflated=False)) == {"viscous_damping"}

@@ -143,6 +143,7 @@ def test_a_damper_without_a_spring_has_its_preload_alone() -> None:
     (linear,) = [fit for fit in fit_laws([damper]) if fit.name == "linear"]
     tire = tire_of(linear, [damper], "damper")
     assert tire.two_sided
+    assert not tire.inflated
     assert tire.preload == pytest.approx(120.0, abs=0.5)
     assert tire.law.coefficient < 10.0  # type: ignore[attr-defined]
     # third differences leave the noise of 1 N, and of a sine of 6.3 rad/s in steps of 10 ms its part of 2.5e-4
