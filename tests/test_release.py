@@ -37,9 +37,10 @@ CARRIED = (
     "tirelab/report/report.html.jinja",
     "tirelab/report/uplot/uPlot.iife.min.js",
     "tirelab/local_page/page.js",
-    "tirelab/fmu/native/binaries/x86_64-linux/BicycleTire.so",
-    "tirelab/fmu/native/binaries/x86_64-windows/BicycleTire.dll",
-    "tirelab/fmu/native/binaries/aarch64-darwin/BicycleTire.dylib",
+    "tirelab/fmu/native/binaries/fmi2/x86_64-linux/BicycleTire.so",
+    "tirelab/fmu/native/binaries/fmi2/x86_64-windows/BicycleTire.dll",
+    "tirelab/fmu/native/binaries/fmi2/aarch64-darwin/BicycleTire.dylib",
+    "tirelab/fmu/native/binaries/fmi3/x86_64-linux/BicycleTire.so",
 )
 """Files without which an installed tirelab would fail at work, not at its start."""
 
