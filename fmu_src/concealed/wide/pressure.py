@@ -141,7 +141,7 @@ def _levels(rng: np.random.Generator) -> tuple[float, ...]:
     """Two or three gauge pressures over the reference, in any order."""
     count = int(rng.integers(2, 4))
     while True:
-        levels = np.exp(rng.uniform(*np.log(LEVELS), count))
+        levels = np.exp(rng.uniform(np.log(LEVELS[0]), np.log(LEVELS[1]), count))
         if float(np.max(levels) / np.min(levels)) >= APART:
             return tuple(float(level) for level in levels)
 
