@@ -155,8 +155,8 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
         lines.append(f"no response within these limits: {', '.join(map(_title, plan.silent))}")
     if len(rig.pressures) > 1:
         lines.append(
-            "the plan holds the first pressure; at each other one slow triangles are repeated, whose worth is not "
-            "counted above: the tire is known at one pressure"
+            "slow triangles at another pressure than the first count for what they tell apart beside a gain with the "
+            "pressure that is not known; each pressure is driven at least once, for that gain: record the pressure"
         )
     return [*lines, f"written: {out / PLAN}, {out / 'plan.png'} and the drive files"]
 

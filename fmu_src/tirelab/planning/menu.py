@@ -31,6 +31,9 @@ CORNER = 0.3
 ALLOWED = 1.02
 """A difference of samples exceeds a sine's own rate by rounding only."""
 
+SLOW = "slow triangles"
+"""The motion that is driven at another pressure than the first."""
+
 FEWEST = 32
 """Samples of a motion at least."""
 
@@ -47,8 +50,8 @@ class Drive:
 
     @property
     def measured(self) -> Mapping[str, FloatArray]:
-        """The channels that are held, none: a plan is made for the tire at the pressure of its law."""
-        return {}
+        """The channels that are held: the pressure, where the rig can hold one."""
+        return {} if self.pressure is None else {"pressure": np.full(self.time.size, self.pressure)}
 
     @property
     def duration(self) -> float:
@@ -74,7 +77,9 @@ def drive_of(waveform: str, part: float, radius: float, rig: Rig, pressure: floa
 
 
 def menu(rig: Rig) -> tuple[Drive, ...]:
-    """Return all motions that keep within the limits of the rig."""
+    """Return all motions that keep within the limits of the rig: at its first pressure, and slow triangles on the first
+    surface at each other one.
+    """
     pressure = rig.pressures[0] if rig.pressures else None
     found = []
     for radius in rig.surfaces:
@@ -85,7 +90,9 @@ def menu(rig: Rig) -> tuple[Drive, ...]:
                 drive = drive_of(waveform, part, radius, rig, pressure)
                 if drive.fastest <= ALLOWED * rig.speed:
                     found.append(drive)
-    return tuple(found)
+    lengths = {len(d.time) for d in found}
+    others = [drive_of(SLOW, part, rig.surfaces[0], rig, p) for p in rig.pressures[1:] for part in LENGTHS]
+    return (*found, *(d for d in others if len(d.time) in lengths and d.fastest <= ALLOWED * rig.speed))
 
 
 def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
@@ -98,7 +105,9 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
     stride = int(max(1.0, stroke / (FINENESS * fastest * step)))
     away = _away(np.abs(acceleration) * step > CORNER * fastest, stride)
     rows = slice(stride // 2, None, stride)
-    moved = Drive(drive.name, drive.time[rows], drive.deflection[rows], drive.surface_radius[rows])
+    moved = Drive(
+        drive.name, drive.time[rows], drive.deflection[rows], drive.surface_radius[rows], drive.pressure
+    )
     return Experiment(
         drive.name,
         moved.time,
@@ -113,6 +122,7 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
         NoiseFloor(noise, 0.0, 0.0, 0.0),
         0.0,
         stride,
+        moved.measured,
     )
 
 

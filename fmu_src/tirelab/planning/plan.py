@@ -13,7 +13,7 @@ from radialtire import TireModel
 from ..errors import TirelabError
 from ..regressors.law import LAW
 from .choice import TOLD, Choice, Menu, chosen_of
-from .menu import LENGTHS, Drive, drive_of, menu
+from .menu import LENGTHS, SLOW, Drive, drive_of, menu
 from .responses import Responses, responses_of
 from .rig import Rig
 from .separation import Question, probabilities, questions_of
@@ -183,6 +183,8 @@ def planned(
     others = _at_other_pressures(rig)
     seconds = rig.time - sum(d.duration for d in others)
     choice = chosen_of(options, seconds, progress)
+    held = {drives[i].pressure for i in choice.chosen}
+    missing = [d for d in others if d.pressure not in held]
     progress("working out what is told")
     gram = options.gram(choice.chosen)
     pairs = zip(questions, choice.answers.tolist(), choice.possible.tolist(), strict=True)
@@ -190,7 +192,7 @@ def planned(
         rig,
         tire.name,
         max(q.size for q in questions),
-        (*(drives[i] for i in choice.chosen), *others),
+        (*(drives[i] for i in choice.chosen), *missing),
         _rows(questions, choice, gram, responses),
         tuple(Answer(*pair) for pair in pairs),
         responses.silent,
@@ -199,12 +201,11 @@ def planned(
 
 
 def _at_other_pressures(rig: Rig) -> tuple[Drive, ...]:
-    """Return the shortest slow triangles at every pressure but the first.
-
-    What depends on the deflection alone shows itself there, whatever the law's own change with the pressure.
+    """Return the shortest slow triangles at every pressure but the first: where nothing else asks for a pressure, the
+    force's own gain with it does.
     """
     part = min(LENGTHS)
-    return tuple(drive_of("slow triangles", part, rig.surfaces[0], rig, p) for p in rig.pressures[1:])
+    return tuple(drive_of(SLOW, part, rig.surfaces[0], rig, p) for p in rig.pressures[1:])
 
 
 def _rows(

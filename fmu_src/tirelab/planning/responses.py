@@ -4,6 +4,9 @@ Each effect is drawn a few times from its priors; a draw is made so strong that 
 of the rig is a stated part of the peak force, and taken as linear in that size. Everything that a plan needs to know of
 a motion are the products of these curves with each other over its rows, in units of the noise: products of several
 motions add up, since the tire begins each recording at rest.
+
+Where the rig holds several pressures the tire's force follows them with a usual gain (the effect that reads the
+pressure, nominal), which is not known: what it changes within its prior is a column that every model has.
 """
 
 from __future__ import annotations
@@ -36,6 +39,9 @@ SIZED_AT = 0.02
 PRIOR_OF_LAW = "prior of the law"
 """The columns of the law's signature at its declared standard deviations."""
 
+PRIOR_OF_GAIN = "prior of the gain"
+"""The column of a standard deviation of the gain with the pressure, which is there where several are held."""
+
 
 @dataclass(frozen=True)
 class Responses:
@@ -56,13 +62,14 @@ class Responses:
     @property
     def names(self) -> tuple[str, ...]:
         """Effects that respond, and the law."""
-        return tuple(name for name in self.places if name != PRIOR_OF_LAW)
+        return tuple(name for name in self.places if name not in (PRIOR_OF_LAW, PRIOR_OF_GAIN))
 
 
 def responses_of(
     drives: Sequence[Drive], tire: TireModel, rig: Rig, progress: Callable[[str], None]
 ) -> Responses:
     """Return the products of the responses of all effects and of a refitted law on the drives."""
+    tire, more = _at_pressures(tire, rig)
     experiments = [experiment_of(d, tire, rig.noise) for d in drives]
     peak = peak_force(drives, tire)
     dataset = Dataset(tuple(experiments), tire, _scales(experiments, rig, peak))
@@ -73,7 +80,9 @@ def responses_of(
     law = law_signature(dataset)
     prior = law.basis * size_of(FACTOR * dataset.stacked([e.baseline for e in experiments]))
     changes = _law_draws(prior, dataset, peak)
-    places = _places({name: len(values) for name, values in sets.items()}, changes.shape[1], prior.shape[1])
+    widths = {name: len(values) for name, values in sets.items()}
+    widths |= {LAW: changes.shape[1], PRIOR_OF_LAW: prior.shape[1]} | ({PRIOR_OF_GAIN: 1} if more else {})
+    places = _places(widths)
     grams, begin = [], 0
     for experiment in experiments:
         part = replace(dataset, experiments=(experiment,))
@@ -83,7 +92,8 @@ def responses_of(
             for name, found in sets.items()
             for values, size in found
         ]
-        whole = np.column_stack([*columns, changes[begin:end], prior[begin:end]])
+        gain = [part.response(other) for other in more]
+        whole = np.column_stack([*columns, changes[begin:end], prior[begin:end], *gain])
         grams.append(whole.T @ whole)
         begin = end
     silent = tuple(name for name in _of_motion() if name not in sets)
@@ -92,9 +102,30 @@ def responses_of(
     return Responses(tuple(drives), tuple(grams), places, silent, peak, mixed)
 
 
-def _places(draws: Mapping[str, int], changes: int, prior: int) -> dict[str, slice]:
+def _at_pressures(tire: TireModel, rig: Rig) -> tuple[TireModel, tuple[TireModel, ...]]:
+    """Return the tire whose force follows the pressures that the rig holds, and it with another gain; with fewer than
+    two pressures the tire as it is, and none.
+    """
+    reader = next(e for e in CATALOGUE.values() if e.reads is not None and e.reads.reference is not None)
+    if len(rig.pressures) < 2:
+        return tire, ()
+    own = {effect.name: values for effect, values in tire.effects}
+    assert reader.reads is not None
+    first = [
+        rig.pressures[0] if p.name == reader.reads.reference else p.nominal_value for p in reader.parameters
+    ]
+    values = own.get(reader.name, tuple(first))
+    other = [
+        v - p.prior.spread if p.role == "strength" and p.prior is not None else v
+        for p, v in zip(reader.parameters, values, strict=True)
+    ]
+    both = (arranged(tire, [(reader.name, tuple(given))]) for given in (values, other))
+    return next(both), (next(both),)
+
+
+def _places(widths: Mapping[str, int]) -> dict[str, slice]:
     places, begin = {}, 0
-    for name, width in (*draws.items(), (LAW, changes), (PRIOR_OF_LAW, prior)):
+    for name, width in widths.items():
         places[name] = slice(begin, begin + width)
         begin += width
     return places

@@ -33,7 +33,7 @@ from scipy.stats import ncx2
 from ..regressors.law import LAW, form_error
 from ..selection.discrepancy import EFFECTIVE
 from ..selection.search import PRIOR_ODDS
-from .responses import PRIOR_OF_LAW
+from .responses import PRIOR_OF_GAIN, PRIOR_OF_LAW
 
 FloatArray = NDArray[np.float64]
 
@@ -116,6 +116,8 @@ class _Model:
 
 def _weights(rival: frozenset[str], size: float, places: Mapping[str, slice], count: int) -> FloatArray:
     weights = np.zeros(count)
+    if PRIOR_OF_GAIN in places:
+        weights[places[PRIOR_OF_GAIN]] = 1.0
     for name in rival:
         if name == LAW:
             weights[places[PRIOR_OF_LAW]] = 1.0

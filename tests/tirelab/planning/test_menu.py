@@ -21,9 +21,13 @@ def test_every_motion_keeps_within_the_limits() -> None:
         assert drive.duration <= 0.25 * 80.0 + 0.005
 
 
-def test_the_first_pressure_is_held_and_none_where_none_is_given() -> None:
+def test_pressures_are_held_the_others_by_slow_triangles_and_none_where_none_is_given() -> None:
     assert {d.pressure for d in menu(RIG)} == {None}
-    assert {d.pressure for d in menu(replace(RIG, pressures=(2e5, 3e5)))} == {2e5}
+    drives = menu(replace(RIG, pressures=(2e5, 3e5)))
+    assert len([d for d in drives if d.pressure == 2e5]) == len(menu(RIG))
+    others = [d for d in drives if d.pressure != 2e5]
+    assert {(d.pressure, d.name) for d in others} == {(3e5, "slow triangles")}
+    assert others[0].measured["pressure"].tolist() == [3e5] * others[0].time.size
 
 
 def test_a_motion_that_is_too_fast_for_the_rig_is_left_out() -> None:

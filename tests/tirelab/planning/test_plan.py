@@ -47,10 +47,11 @@ def test_less_noise_needs_less_time(plan: RecordingPlan) -> None:
 
 def test_slow_triangles_at_each_other_pressure(plan: RecordingPlan) -> None:
     at_two = plan_recordings(TireModel(), replace(RIG, pressures=(2e5, 3e5)), 0.05)
-    assert [d.pressure for d in at_two.drives] == [2e5] * (len(at_two.drives) - 1) + [3e5]
-    assert at_two.drives[-1].name == "slow triangles"
+    others = [d for d in at_two.drives if d.pressure != 2e5]
+    assert {d.pressure for d in at_two.drives} == {2e5, 3e5}
+    assert {d.name for d in others} == {"slow triangles"}
     assert at_two.seconds <= RIG.time
-    assert file_name(7, at_two.drives[-1]) == "07_slow_triangles_flat_3bar.csv"
+    assert file_name(7, others[0]) == "07_slow_triangles_flat_3bar.csv"
 
 
 def test_its_content_is_json(plan: RecordingPlan) -> None:

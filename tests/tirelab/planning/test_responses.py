@@ -1,11 +1,14 @@
 """The products of all responses, against the responses themselves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
 from small_rig import RIG, few_effects, silent
 from tirelab.planning.menu import drive_of, experiment_of
-from tirelab.planning.responses import DRAWS, PRIOR_OF_LAW, Responses, responses_of
+from tirelab.planning.responses import DRAWS, PRIOR_OF_GAIN, PRIOR_OF_LAW, Responses, responses_of
+from tirelab.planning.separation import Question, probabilities
 from tirelab.regressors.law import LAW
 
 
@@ -67,3 +70,38 @@ def test_the_whole_catalogue_answers_but_what_needs_a_channel_to_be_set_anew() -
     read = {n for n, e in CATALOGUE.items() if e.reads is not None and e.reads.reference is not None}
     assert read
     assert told == {n for n, e in CATALOGUE.items() if "law" not in e.traits} - read
+
+
+@pytest.fixture
+def at_two(monkeypatch: pytest.MonkeyPatch) -> Responses:
+    """Slow triangles at the reference of 2 bar and at 3 bar."""
+    few_effects(monkeypatch, ("bottoming",))
+    rig = replace(RIG, pressures=(2e5, 3e5))
+    drives = [drive_of("slow triangles", 0.25, RIG.surfaces[0], rig, p) for p in rig.pressures]
+    return responses_of(drives, TireModel(), rig, silent)
+
+
+def test_at_another_pressure_the_law_grows_with_the_force_and_a_rim_does_not(at_two: Responses) -> None:
+    """The air carries 0.8 of the force: at 3 bar for 2 it is 1 + 0.8 x 0.5 = 1.4 of it."""
+    first, second = (np.diag(g) for g in at_two.grams)
+    law, rim = at_two.places[PRIOR_OF_LAW], at_two.places["bottoming"]
+    assert second[law] == pytest.approx(1.4**2 * first[law], rel=1e-6)
+    assert second[rim] == pytest.approx(first[rim], rel=1e-6)
+
+
+def test_the_gain_with_the_pressure_is_a_column_of_its_own(at_two: Responses) -> None:
+    """0.25 of half the force at the reference: nothing at 2 bar."""
+    (gain,) = range(*at_two.places[PRIOR_OF_GAIN].indices(99))
+    e = experiment_of(at_two.drives[0], TireModel(), RIG.noise)
+    force = e.baseline[e.counts] / e.noise
+    assert at_two.grams[0][gain, gain] == pytest.approx(0.0, abs=1e-12)
+    assert at_two.grams[1][gain, gain] == pytest.approx(float(np.sum((0.125 * force) ** 2)), rel=1e-6)
+
+
+def test_a_second_pressure_tells_a_rim_from_a_law_better_than_the_first_one_again(at_two: Responses) -> None:
+    question = Question("bottoming", frozenset({LAW}), 0.01, nested=True)
+    first, second = at_two.grams
+    again, other = (
+        float(np.mean(probabilities(first + more, at_two.places, [question])[0])) for more in (first, second)
+    )
+    assert other > again
