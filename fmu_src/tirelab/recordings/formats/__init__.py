@@ -27,6 +27,9 @@ LOADERS: dict[str, Callable[[Path], Table]] = {
     ".tdms": TdmsTable,
     ".xlsx": ExcelTable,
     ".xlsm": ExcelTable,
+    ".xls": ExcelTable,
+    ".xlsb": ExcelTable,
+    ".ods": ExcelTable,
 }
 """The file suffixes that can be read, in lower case."""
 
@@ -44,7 +47,7 @@ _SIGNATURES = (
     (b"BZh", "bzip2", "unpack it"),
     (b"\xfd7zXZ", "xz", "unpack it"),
     (b"\x28\xb5\x2f\xfd", "Zstandard", "unpack it"),
-    (b"\xd0\xcf\x11\xe0", "an old Excel workbook", "save it as .xlsx"),
+    (b"\xd0\xcf\x11\xe0", "an old Excel workbook", "rename it to .xls"),
 )
 
 
@@ -71,8 +74,6 @@ def open_table(path: Path, skip_rows: int | None = None) -> Table:
         for signature, kind, advice in _SIGNATURES:
             if start.startswith(signature):
                 raise RecordingError(f"{path.name}: is no text table but {kind}; {advice}")
-    if suffix == ".xls":
-        raise RecordingError(f"{path.name}: is an old Excel workbook; save it as .xlsx or .csv")
     if suffix not in LOADERS:
         raise RecordingError(
             f"{path.name}: recordings ending in {quoted(suffix)} cannot be read; "

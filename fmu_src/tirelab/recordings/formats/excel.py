@@ -1,86 +1,120 @@
-"""Excel workbooks (.xlsx), read with openpyxl: the values that Excel stored, never a formula worked out."""
+"""Workbooks (.xlsx, .xls, .xlsb, .ods): the values that are stored, never a formula worked out.
+
+The table of a sheet is found as that of a text: below lines about the test, with units below the names. Sheets with the
+same columns, as testing machines write one for each specimen, are tests side by side.
+"""
 
 import datetime
 from array import array
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from ..units import FLAT_WORDS, split_header
+from ..units import FLAT_WORDS, measures, split_header
+from ..vocabulary import foreign_channel
+from .layout import below_names
 from .libraries import load_library, reading_with
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, not_a_number, quoted
+from .table_search import SEARCHED, find_table
 
 MOST_ROWS = 1_048_576
 """The rows of a sheet (Excel's own limit)."""
 
+MOST_SHEETS = 200
+"""So many sheets of a workbook are looked at."""
+
+OTHERS = (".xls", ".xlsb", ".ods")
+"""The workbooks that openpyxl cannot read, and calamine can."""
+
+_NEEDED = (
+    ("deflection", "m", {"deflection", "displacement", "stroke", "travel", "compression"}),
+    ("force", "N", {"force", "load"}),
+)
+"""Of the two channels that are needed: the SI unit, and English words of their names."""
+
 _DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 
 
+@dataclass(frozen=True)
+class _Sheet:
+    """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns."""
+
+    title: str
+    header_row: int
+    first_row: int
+    headers: tuple[Header, ...]
+    notes: tuple[str, ...]
+
+
 class ExcelTable:
-    """The first sheet of a workbook that holds anything: a header row, and rows of numbers below it."""
+    """The columns of the first sheet that holds a recording, and beside them those of the sheets that are like it."""
 
     time_axis: int | None = None
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.library = load_library(path, "openpyxl", "openpyxl")
-        self.notes: tuple[str, ...] = ()
-        self.sheet = ""
-        self.header_row = 0
-        header: Sequence[Any] = ()
-        first: Sequence[Any] = ()
-        with reading_with(path, "an Excel workbook"), self._open() as book:
-            for sheet in book.worksheets:
-                rows = enumerate(sheet.iter_rows(values_only=True), 1)
-                start = list(islice(((n, row) for n, row in rows if _holds_any(row)), 2))
-                if start and not self.sheet:
-                    self.sheet = sheet.title
-                    self.header_row, header = start[0]
-                    first = start[1][1] if len(start) > 1 else ()
-                elif start:
-                    self.notes = (f"read from sheet {quoted(self.sheet)}; the workbook has others",)
-        if not self.sheet:
+        other = path.suffix.lower() in OTHERS
+        self.library = (
+            load_library(path, "python_calamine", "python-calamine")
+            if other
+            else load_library(path, "openpyxl", "openpyxl")
+        )
+        found: list[_Sheet] = []
+        with reading_with(path, "a workbook"), _opened(path, self.library) as book:
+            for title in book.titles[:MOST_SHEETS]:
+                head = [list(row) for row in islice(book.rows(title), SEARCHED)]
+                if any(map(_holds_any, head)):
+                    found.append(_sheet(path, title, head))
+        if not found:
             raise RecordingError(f"{path.name}: holds no header and no numbers; export the workbook anew")
-        if not any(isinstance(cell, str) for cell in header):
+        chosen = max(found, key=lambda sheet: _channels(sheet.headers))
+        if not chosen.header_row:
             raise RecordingError(
-                f"{path.name}, row {self.header_row}: is no header; put a row above the numbers that names "
+                f"{path.name}, row {chosen.first_row}: is no header; put a row above the numbers that names "
                 "the columns and their units, such as force [N]"
             )
-        self.dated = {number for number, cell in enumerate(first) if isinstance(cell, _DATES)}
-        self.headers = [_header(cell, n + 1, n in self.dated) for n, cell in enumerate(header)]
-
-    @contextmanager
-    def _open(self) -> Iterator[Any]:
-        with self.path.open("rb") as stream:
-            book = self.library.load_workbook(stream, read_only=True, data_only=True)
-            try:
-                yield book
-            finally:
-                book.close()
+        names = [header.text for header in chosen.headers]
+        self.sheets = [sheet for sheet in found if [header.text for header in sheet.headers] == names]
+        self.sheet, self.header_row = chosen.title, chosen.header_row
+        self.headers: Sequence[Header] = [header for sheet in self.sheets for header in sheet.headers]
+        said = "; the workbook has others" if len(found) > len(self.sheets) else ""
+        if said:
+            self.notes = (*chosen.notes, f"read from sheet {quoted(chosen.title)}{said}")
+        else:
+            self.notes = chosen.notes
 
     def bytes_needed(self, columns: int) -> int:
         """The rows of a full sheet."""
         return MOST_ROWS * columns * 8 * 2
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
-        """The columns wanted; an empty cell is NaN, text or an error value such as #DIV/0! is refused.
+        """The columns wanted, of one sheet; an empty cell is NaN, text or an error value such as #DIV/0! is refused.
 
         A time column of dates, durations or times of day becomes seconds from its first row.
         """
+        width = len(self.sheets[0].headers)
+        numbers = {want.index // width for want in wanted}
+        if len(numbers) > 1:
+            raise RecordingError(
+                f"{self.path.name}: the columns named are on several sheets; name those of one of them"
+            )
+        sheet = self.sheets[min(numbers, default=0)]
         columns = [array("d") for _ in wanted]
         lines = array("q")
         empty: list[int] = []
-        with reading_with(self.path, "an Excel workbook"), self._open() as book:
-            for line, row in enumerate(book[self.sheet].iter_rows(values_only=True), 1):
+        with reading_with(self.path, "a workbook"), _opened(self.path, self.library) as book:
+            for line, row in enumerate(book.rows(sheet.title), 1):
                 if line > MOST_ROWS:
                     raise RecordingError(
                         f"{self.path.name}: has more than {MOST_ROWS} rows; export it as CSV"
                     )
-                if line <= self.header_row:
+                if line < sheet.first_row:
                     continue
                 if not _holds_any(row):
                     empty.append(line)
@@ -91,38 +125,128 @@ class ExcelTable:
                 empty.clear()
                 for column, want in zip(columns, wanted, strict=True):
                     column.extend([np.nan] * (len(lines) - len(column) - 1))
-                    cell = row[want.index] if want.index < len(row) else None
+                    place = want.index % width
+                    cell = row[place] if place < len(row) else None
                     column.append(self._number(cell, line, want))
         values = [np.array(column, dtype=np.float64) for column in columns]
         for want, seconds in zip(wanted, values, strict=True):
-            if want.index in self.dated and seconds.size:
+            if self.headers[want.index].dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
-        return Columns(tuple(values), lambda i: f"row {lines[i]}", self.notes)
+        read = () if len(self.sheets) == 1 else (f"read from sheet {quoted(sheet.title)}",)
+        return Columns(tuple(values), lambda i: f"row {lines[i]}", (*self.notes, *read))
 
     def _number(self, cell: object, line: int, want: Wanted) -> float:
+        header = self.headers[want.index]
         if cell is None:
             return float("nan")
-        dated = isinstance(cell, _DATES)
-        if dated and want.channel == "time" and want.index in self.dated:
+        if isinstance(cell, _DATES) and want.channel == "time" and header.dated:
             return _seconds(cell)
-        if isinstance(cell, (int, float)) and not isinstance(cell, bool) and want.index not in self.dated:
+        if isinstance(cell, (int, float)) and not isinstance(cell, bool) and not header.dated:
             return float(cell)
         word = str(cell).strip().lower()
         if word in BLANK_WORDS:
             return float("nan")
         if want.channel == "radius" and word in FLAT_WORDS:
             return float("inf")
-        raise not_a_number(self.path.name, f"row {line}", self.headers[want.index].text, cell)
+        raise not_a_number(self.path.name, f"row {line}", header.text, cell)
+
+
+class _OfOpenpyxl:
+    """A workbook that openpyxl opened."""
+
+    def __init__(self, book: Any) -> None:
+        self.book = book
+        self.titles = [sheet.title for sheet in book.worksheets]
+
+    def rows(self, title: str) -> Iterator[Sequence[Any]]:
+        """The rows of a sheet from the first on."""
+        yield from self.book[title].iter_rows(values_only=True)
+
+
+class _OfCalamine:
+    """A workbook that calamine opened."""
+
+    def __init__(self, book: Any) -> None:
+        self.book = book
+        self.titles = list(book.sheet_names)
+
+    def rows(self, title: str) -> Iterator[Sequence[Any]]:
+        """The rows of a sheet from the first on."""
+        yield from self.book.get_sheet_by_name(title).to_python(skip_empty_area=False)
+
+
+@contextmanager
+def _opened(path: Path, library: ModuleType) -> Iterator[_OfOpenpyxl | _OfCalamine]:
+    with path.open("rb") as stream:
+        if path.suffix.lower() in OTHERS:
+            yield _OfCalamine(library.CalamineWorkbook.from_filelike(stream))
+            return
+        book = library.load_workbook(stream, read_only=True, data_only=True)
+        try:
+            yield _OfOpenpyxl(book)
+        finally:
+            book.close()
+
+
+def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
+    """Return the table of a sheet that holds anything, from its first rows."""
+    width = max(len(_trimmed(row)) for row in head)
+    lines = ["\t".join(map(_text, [*row, *[None] * width][:width])) + "\n" for row in head]
+    first = next(i for i, row in enumerate(head) if _holds_any(row))
+    place = find_table(lines, first, "\t")
+    start = first if place is None else place.line
+    names = [*head[start], *[None] * width][:width]
+    if not any(isinstance(cell, str) and cell.strip() for cell in names):
+        return _Sheet(title, 0, start + 1, (), ())
+    headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
+    headers, below, notes = below_names(lines, start + 1, headers, "\t")
+    values = next((row for row in head[start + 1 + below :] if _holds_any(row)), ())
+    dated = {n for n, cell in enumerate(values) if isinstance(cell, _DATES)}
+    headers = tuple(
+        Header(h.name, "s", h.text, dated=True) if n in dated else h for n, h in enumerate(headers)
+    )
+    if start > first:
+        notes = (*notes, f"table found at row {start + 1}: the rows above it are left out")
+    return _Sheet(title, start + 1, start + below + 2, headers, notes)
+
+
+def _channels(headers: Sequence[Header]) -> int:
+    """Return how many of the two columns that a recording needs are named, or have their unit: deflection and force."""
+    found = 0
+    for channel, si, words in _NEEDED:
+        found += any(
+            measures(h.unit or "", si)
+            or foreign_channel(h.name) == channel
+            or words & set(h.name.lower().split())
+            for h in headers
+        )
+    return found
+
+
+def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
+    filled = [n for n, cell in enumerate(row, 1) if _holds_any((cell,))]
+    return row[: filled[-1]] if filled else ()
+
+
+def _text(cell: object) -> str:
+    """Return a cell as it would stand in a text with tabs between columns."""
+    if cell is None:
+        return ""
+    if isinstance(cell, datetime.datetime):
+        return cell.isoformat()
+    if isinstance(cell, datetime.timedelta):
+        return repr(cell.total_seconds())
+    return " ".join(str(cell).split()).replace('"', "'")
 
 
 def _holds_any(row: Sequence[Any]) -> bool:
     return any(cell is not None and str(cell).strip() for cell in row)
 
 
-def _header(cell: object, number: int, dated: bool) -> Header:
+def _header(cell: object, number: int) -> Header:
     text = "" if cell is None else " ".join(str(cell).split())
     name, unit = split_header(text)
-    return Header(name or f"#{number}", "s" if dated else unit, text or f"#{number}", dated)
+    return Header(name or f"#{number}", unit, text or f"#{number}")
 
 
 def _seconds(cell: object) -> float:

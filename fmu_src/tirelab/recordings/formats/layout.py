@@ -88,7 +88,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     before = 0
     if in_table:
         before = header_lines
-        headers, below, more = _below_names(lines, start + header_lines, headers, separator)
+        headers, below, more = below_names(lines, start + header_lines, headers, separator)
         before += below
         said = (*said, *more)
     if start > first:
@@ -130,7 +130,7 @@ def _names(
     return [""] * len(header), False, ("the file has no header row: its columns are known by number only",)
 
 
-def _below_names(
+def below_names(
     lines: Sequence[str], line: int, headers: tuple[Header, ...], separator: str
 ) -> tuple[tuple[Header, ...], int, tuple[str, ...]]:
     """Return the headers with the units of a row below them, how many lines stand above the numbers, and notes.

@@ -2,12 +2,14 @@
 
 import datetime
 import math
+import zipfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from one_recording import COLUMNS, HEADERS, SAMPLES, TIME, assert_the_recording, refusal
+from tirelab.recordings.files import recording_files
 from tirelab.recordings.recording import read_recording
 
 
@@ -80,3 +82,85 @@ class TestExcel:
     def test_a_sheet_without_a_header_is_told(self, tmp_path: Path) -> None:
         assert "is no header" in refusal(self.save(tmp_path / "a.xlsx", self.rows()[1:]))
         assert "no header and no numbers" in refusal(self.save(tmp_path / "b.xlsx", []))
+
+    def test_the_table_below_a_title_with_units_below_its_names(self, tmp_path: Path) -> None:
+        """As test machines write a sheet: the specimen above each column, the units below the names."""
+        names = [
+            ["Probe 4"] * 4,
+            ["Prüfzeit", "Verformung", "Standardkraft", "Spannung"],
+            ["s", "mm", "N", "MPa"],
+        ]
+        numbers = [[0.1 * i, 0.2 * i, 30.0 * i, 0.5] for i in range(40)]
+        path = self.save(tmp_path / "a.xlsx", [*names, *numbers])
+        recording = read_recording(path, radius="flat")
+        np.testing.assert_allclose(recording.deflection, 2e-4 * np.arange(40))
+        np.testing.assert_allclose(recording.force, 30.0 * np.arange(40))
+        assert "units taken from row 3, below the names" in recording.notes
+        numbers[9][2] = "oops"
+        path = self.save(tmp_path / "b.xlsx", [*names, *numbers])
+        assert "row 13, column 'Standardkraft': 'oops' is not a number" in refusal(path)
+
+    def test_a_sheet_of_results_before_that_of_the_readings(self, tmp_path: Path) -> None:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        for row in (["Specimen", "E modulus"], ["1", 2.1], ["2", 2.2]):
+            book.active.append(row)
+        sheet = book.create_sheet("readings")
+        for row in self.rows():
+            sheet.append(row)
+        book.save(tmp_path / "a.xlsx")
+        recording = read_recording(tmp_path / "a.xlsx", radius="flat")
+        assert_the_recording(recording, "read from sheet 'readings'; the workbook has others", digits=1e-15)
+
+    def test_sheets_of_the_same_columns_are_tests_side_by_side(self, tmp_path: Path) -> None:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        book.active.title = "notes"
+        for number, samples in ((1, 30), (2, 50)):
+            sheet = book.create_sheet(f"Specimen {number}")
+            sheet.append(["time [s]", "stroke [mm]", "load [N]"])
+            for i in range(samples):
+                sheet.append([0.1 * i, 0.2 * i, 10.0 * number * i])
+        book.save(tmp_path / "a.xlsx")
+        assert "holds 2 trials side by side" in refusal(tmp_path / "a.xlsx")
+        files, _ = recording_files([tmp_path / "a.xlsx"])
+        first, second = (read_recording(file, radius="flat") for file in files)
+        assert (len(first), len(second)) == (30, 50)
+        assert second.force.max() == pytest.approx(980.0)
+        assert "read from sheet 'Specimen 2'" in second.notes
+
+
+OFFICE = """<?xml version="1.0" encoding="UTF-8"?>
+<office:document-content xmlns:office="urn:oasis:names:tc:opendocument:xmlns:office:1.0"
+ xmlns:table="urn:oasis:names:tc:opendocument:xmlns:table:1.0"
+ xmlns:text="urn:oasis:names:tc:opendocument:xmlns:text:1.0" office:version="1.3"><office:body>
+<office:spreadsheet><table:table table:name="one">{}</table:table></office:spreadsheet></office:body>
+</office:document-content>"""
+
+
+def test_an_open_document_is_read_as_the_others_are(tmp_path: Path) -> None:
+    pytest.importorskip("python_calamine")
+    names = "".join(
+        f'<table:table-cell office:value-type="string"><text:p>{name}</text:p></table:table-cell>'
+        for name in ("time [s]", "stroke [mm]", "load [N]")
+    )
+    rows = [names] + [
+        "".join(
+            f'<table:table-cell office:value-type="float" office:value="{v}"/>'
+            for v in (0.1 * i, 0.2 * i, 9 * i)
+        )
+        for i in range(30)
+    ]
+    content = OFFICE.format("".join(f"<table:table-row>{row}</table:table-row>" for row in rows))
+    mime = "application/vnd.oasis.opendocument.spreadsheet"
+    manifest = (
+        '<manifest:manifest xmlns:manifest="urn:oasis:names:tc:opendocument:xmlns:manifest:1.0">'
+        f'<manifest:file-entry manifest:full-path="/" manifest:media-type="{mime}"/></manifest:manifest>'
+    )
+    with zipfile.ZipFile(tmp_path / "a.ods", "w") as book:
+        book.writestr("mimetype", mime)
+        book.writestr("META-INF/manifest.xml", manifest)
+        book.writestr("content.xml", content)
+    recording = read_recording(tmp_path / "a.ods", radius="flat")
+    np.testing.assert_allclose(recording.force, 9.0 * np.arange(30))
+    np.testing.assert_allclose(recording.deflection, 2e-4 * np.arange(30))

@@ -40,14 +40,21 @@ class TestEveryFormat:
         (tmp_path / "a.csv").write_bytes(start + b"\x00\x01" * 20)
         assert said in refusal(tmp_path / "a.csv")
 
-    @pytest.mark.parametrize(("name", "said"), [("a.xls", ".xlsx"), ("a.hdf5", "'.hdf5'"), ("a", "''")])
+    @pytest.mark.parametrize(
+        ("name", "said"), [("a.xls", "damaged or cut short"), ("a.hdf5", "'.hdf5'"), ("a", "''")]
+    )
     def test_a_suffix_that_cannot_be_read_is_told(self, tmp_path: Path, name: str, said: str) -> None:
         (tmp_path / name).write_bytes(b"anything")
         assert said in refusal(tmp_path / name)
 
     @pytest.mark.parametrize(
         ("suffix", "module", "package"),
-        [(".mf4", "asammdf", "asammdf"), (".tdms", "nptdms", "npTDMS"), (".xlsx", "openpyxl", "openpyxl")],
+        [
+            (".mf4", "asammdf", "asammdf"),
+            (".tdms", "nptdms", "npTDMS"),
+            (".xlsx", "openpyxl", "openpyxl"),
+            (".ods", "python_calamine", "python-calamine"),
+        ],
     )
     def test_a_library_that_is_not_installed_is_named_with_what_can_be_typed(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str, module: str, package: str
