@@ -34,6 +34,9 @@ SUFFIXES = (
     ".tdms",
     ".xlsx",
     ".xlsm",
+    ".xls",
+    ".xlsb",
+    ".ods",
 )
 """Suffixes that can be read, as `recordings.formats.LOADERS`, whose libraries take long to import."""
 
