@@ -98,7 +98,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             0.0,
             0.0,
             1e4,
-            "half the loop's height; with u, on the way in",
+            "half the loop's height, on the way in",
             neutral=0.0,
             nominal=30.0,
             role="strength",
