@@ -9,8 +9,9 @@ With n = 1 this is the factor 1 + pFz1 dp, dp = (p - p0) / p0, of MF-Tyre 6.1, s
 inextensible walls F is in proportion to p: g = 1. Measured on mountain bike tires of four sizes at several pressures
 the radial stiffness rises with the pressure. A and B of the article hold at 344.7 kPa (50 psi).
 
-The blind trials do not hide this effect, so its form error is reckoned: an air's share that grows with another power of
-the deflection than the casing's, B + 0.05, leaves sqrt(1 - (2B + 1)(2B + 1.1) / (2B + 1.05)^2) = 1.3 % of the effect.
+Blind trials hide it in `--kind pressure` alone, so its form error is reckoned: an air's share that grows with another
+power of the deflection than the casing's, B + 0.05, leaves sqrt(1 - (2B + 1)(2B + 1.1) / (2B + 1.05)^2) = 1.3 % of the
+effect.
 """
 
 from __future__ import annotations
