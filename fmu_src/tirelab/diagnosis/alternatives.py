@@ -12,6 +12,7 @@ from ..estimation.explanation import Explanation
 from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.dataset import Dataset
 from ..preprocessing.kinematics import BoolArray, FloatArray
+from .confidence import unshared
 
 CREDIBLE = 0.97
 """The verdict and its alternatives together hold this probability: the rate at which the truth should be among them."""
@@ -59,7 +60,7 @@ def alternatives_of(
     others = [e for e in explanation.evidence if set(e.names) != set(best)]
     whole = max(sum(e.probability for e in others), 1e-300)
     count = len(explanation.confounded)
-    alone = confidence * (1.0 + count) / (1.0 + confidence * count)
+    alone = unshared(confidence, count)
     covered, found = confidence, []
     for e in others:
         confounded = e.names in explanation.confounded

@@ -109,6 +109,11 @@ def shared(probability: float, alike: int) -> float:
     return probability / (probability + (1.0 - probability) * (1.0 + alike))
 
 
+def unshared(probability: float, alike: int) -> float:
+    """Return the probability of which `shared` made this one: that of the verdict and the sets alike together."""
+    return probability * (1.0 + alike) / (1.0 + probability * alike)
+
+
 def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
     left = max(rmse(explanation.residuals), 1e-300)
     return {

@@ -14,8 +14,8 @@ from ..estimation.findings import NamedEffect
 from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
-from ..preprocessing.end_of_travel import said_of
 from ..preprocessing.kinematics import FloatArray
+from ..regressors.end_of_travel import said_of
 from ..simulation.simulate import simulate
 from .acceptance import accept
 from .alternatives import Alternative, alternatives_of

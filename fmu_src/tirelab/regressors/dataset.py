@@ -17,9 +17,9 @@ from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
 
 from ..preprocessing.dataset import Recorded
-from ..preprocessing.end_of_travel import beyond_travel
 from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
+from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
 from .noise_floor import NoiseFloor, noise_floor, white_level
 from .scales import Scales

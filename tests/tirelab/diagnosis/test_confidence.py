@@ -18,6 +18,7 @@ from tirelab.diagnosis.confidence import (
     grounds_of_verdict,
     probability,
     shared,
+    unshared,
 )
 from tirelab.estimation.findings import Evidence, NamedEffect
 
@@ -89,6 +90,7 @@ def test_sets_that_are_alike_share_the_odds_of_a_verdict() -> None:
     assert shared(0.8, 0) == pytest.approx(0.8)
     # Odds of four to one against one rival that is alike: four to two.
     assert shared(0.8, 1) == pytest.approx(4.0 / 6.0)
+    assert unshared(4.0 / 6.0, 1) == pytest.approx(0.8)
 
 
 @pytest.mark.parametrize("of", ["verdict", "effect"])

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .dataset import Recorded
-from .deflection_noise import deflection_noise
-from .robust_scale import robust_sigma
+from ..preprocessing.dataset import Recorded
+from ..preprocessing.deflection_noise import deflection_noise
+from .noise_floor import white_level
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -66,10 +66,7 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
     near = x > np.partition(x, -FEWEST)[-FEWEST] - band
     if near.mean() > MOST:
         return np.zeros(x.size, dtype=bool)
-    stiffness, noise = (
-        float(np.ptp(force)) / float(np.ptp(x)),
-        robust_sigma(np.diff(force, 3)) / np.sqrt(20.0),
-    )
+    stiffness, noise = float(np.ptp(force)) / float(np.ptp(x)), white_level(force)
     places = np.flatnonzero(near)
     stopped = []
     # A single reading far off does not end a stay.
@@ -82,6 +79,6 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
         rise = float(own.max()) - ends
         allowed = BEYOND * stiffness * max(band, float(np.ptp(x[begin:end]))) + BAND * noise
         onwards = own[fifth] - own[0] > ONWARDS * (own[0] - force[begin - fifth]) > 0.0
-        stopped.append(rise > allowed and onwards and np.mean(own > ends + 0.5 * rise) > BROAD)
+        stopped.append(bool(rise > allowed and onwards and np.mean(own > ends + 0.5 * rise) > BROAD))
     # A gauge stops each time; what else moves the force may do so now and then.
     return near if stopped and np.mean(stopped) >= MOST else np.zeros(x.size, dtype=bool)

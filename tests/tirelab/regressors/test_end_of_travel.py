@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tirelab.preprocessing.end_of_travel import beyond_travel, said_of
+from tirelab.regressors.end_of_travel import beyond_travel, said_of
 
 FloatArray = NDArray[np.float64]
 TIME = np.linspace(0.0, 6.0, 2401)
