@@ -11,15 +11,12 @@ from radialtire import CATALOGUE, Recalibrated, TireModel
 
 from ..regressors.dataset import Dataset, arranged
 from ..regressors.draws import at_reading
-from ..regressors.law import LAW, SHAPE
+from ..regressors.law import LAW, MOST_SURFACES, REFERENCE, SHAPE
 from .free_parameter import COMMON, FreeParameter, parameters_of_effect, parameters_of_law
 
 FloatArray = NDArray[np.float64]
 Values = Mapping[str, tuple[float, ...]]
 """Of each effect the values of all its parameters; of LAW the values of its free ones."""
-
-MOST_SURFACES = 8
-"""Beyond them (terrain) the law is refitted for all alike."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +122,6 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         if any(shape):
             bend, twist, *heights = shape
             twist = min(max(twist, -1.0), 1.0)
-            reference = at_reading(CATALOGUE[SHAPE].parameters[2], dataset.scales)
+            reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
             effects.append((SHAPE, (bend, twist, reference, *heights)))
     return arranged(tire, effects)

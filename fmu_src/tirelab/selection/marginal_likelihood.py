@@ -22,11 +22,11 @@ from .discrepancy import Discrepancy
 
 FloatArray = NDArray[np.float64]
 
-SIZES = (0.03, 0.1, 0.3, 1.0)
+SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)
 """Sizes tried first, as parts of the misfit."""
 
 ROUNDS = 12
-NARROWEST, WIDEST = 1e-3, 20.0
+NARROWEST, WIDEST = 1e-3, 100.0
 """Bounds of a size, as parts of the misfit."""
 
 

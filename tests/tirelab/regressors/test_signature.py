@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, Recalibrated, TireModel
+from tirelab.estimation.problem import law_start, problem_of
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of
-from tirelab.regressors.draws import quantile
-from tirelab.regressors.law import candidates, law_signature
+from tirelab.regressors.draws import at_reading, quantile
+from tirelab.regressors.law import EXPONENT, FACTOR, LAW, REFERENCE, SHAPE, candidates, law_signature
 from tirelab.regressors.signature import in_other_noise, signature_of, signatures_of, size_of
 from tirelab.simulation.simulate import simulate
 
@@ -70,6 +71,31 @@ def test_a_value_that_was_not_drawn_lies_in_the_span_of_a_signature(name: str, d
 def test_a_change_of_a_and_b_lies_in_the_span_of_the_laws_signature(dataset: Dataset) -> None:
     tire = TireModel(Recalibrated(TireModel().law, ((np.inf, 0.03, 0.02),)))
     assert left_by(law_signature(dataset).columns, dataset.response(tire)) < 0.01
+
+
+def test_the_laws_signature_is_what_a_refitted_law_can_do(dataset: Dataset) -> None:
+    """Its columns are the derivatives of the delivered law by its parameters, on the axes of their priors.
+
+    The change of B acts on ln(x / 1 cm) there and on ln(x / x_ref) here: the rest is a change of A.
+    """
+    problem = problem_of(dataset, {LAW: law_start(dataset)}, plain=False)
+    origin, step = np.zeros(len(problem.parameters)), 1e-4
+    slopes = [
+        (problem.residual(origin) - problem.residual(origin + step * row)) / step
+        for row in np.eye(origin.size)
+    ]
+    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
+    slopes[1] = slopes[1] - EXPONENT * np.log(reference / 0.01) / FACTOR * slopes[0]
+    signature = law_signature(dataset)
+    unit = size_of(FACTOR * dataset.stacked([e.baseline for e in dataset.experiments]))
+    np.testing.assert_allclose(signature.basis * unit, np.column_stack(slopes), atol=2e-3 * unit)
+
+
+def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) -> None:
+    """What no change of A and B follows: heights of opposite signs."""
+    shape = (0.0, 0.0, at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales))
+    waves = arranged(dataset.tire, [(SHAPE, (*shape, 0.02, -0.02, 0.02, -0.02, 0.02))])
+    assert left_by(law_signature(dataset).columns, dataset.response(waves)) < 0.01
 
 
 def test_in_other_noise_a_signature_explains_the_same_newtons(dataset: Dataset) -> None:
