@@ -18,6 +18,12 @@ CORNER = 9.0
 """Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by a twentieth
 of a sample's travel, the motion has a corner within a sample."""
 
+CORNER_SAMPLES, SHORTEST = 6, 13
+"""A corner shows in at most so many samples, and a piece between two corners has at least so many."""
+
+MOST_PIECES = 1000
+"""Budget: pieces that are smoothed each by itself."""
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -66,19 +72,41 @@ def _smoothed(
         level, *rest, resolved = _smoothed(grid, read, noise)
         rate, acceleration, smoothed_noise = (np.interp(time, grid, r) for r in rest)
         return deflection - np.interp(time, grid, read - level), rate, acceleration, smoothed_noise, resolved
-    smooth, rate, acceleration, leverage = smoothed(deflection, step, noise)
-    travel = step * float(np.sqrt(np.mean(rate**2)))
-    return smooth, rate, acceleration, noise * np.sqrt(leverage), _resolved(deflection, noise, travel)
+    resolved = _resolved(deflection, noise)
+    parts = np.zeros((4, deflection.size))
+    for begin, end in _pieces(resolved):
+        parts[:, begin:end] = smoothed(deflection[begin:end], step, noise)
+    smooth, rate, acceleration, leverage = parts
+    return smooth, rate, acceleration, noise * np.sqrt(leverage), resolved
 
 
-def _resolved(deflection: FloatArray, noise: float, travel: float) -> BoolArray:
-    """Return where five samples follow a cubic; travel [m]: what a sample usually moves."""
+def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
+    """Return where five samples follow a cubic."""
     resolved = np.ones(deflection.size, dtype=bool)
+    travel = float(np.sqrt(max(np.mean(np.diff(deflection) ** 2) - 2.0 * noise**2, 0.0)))
     basis = np.linalg.qr(np.vander(np.arange(-2.0, 3.0), 4, increasing=True))[0]
     outside = np.linalg.qr(np.eye(5) - basis @ basis.T)[0][:, 0]
     misfit = np.convolve(deflection - deflection.mean(), outside[::-1], mode="valid") ** 2
     resolved[2:-2] = misfit < max(CORNER * noise**2, (0.05 * travel) ** 2)
     return resolved
+
+
+def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
+    """Return the pieces of the motion between its corners: a spline across a corner rings on both sides of it.
+
+    Shorter ones than SHORTEST, and what no corner of a sample explains, stay with their neighbours.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], ~resolved, [False]])))
+    cuts = [0]
+    for begin, end in edges.reshape(-1, 2).tolist():
+        middle = (begin + end) // 2
+        if end - begin <= CORNER_SAMPLES and middle - cuts[-1] >= SHORTEST:
+            cuts.append(middle)
+    if resolved.size - cuts[-1] < SHORTEST and len(cuts) > 1:
+        cuts.pop()
+    if len(cuts) > MOST_PIECES:
+        cuts = [0]
+    return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))
 
 
 def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -51,14 +51,8 @@ STEPS_LEFT = 0.3
 LONE = 8.0
 """A sample this many noises off both its neighbours is a spike."""
 
-RINGING = 6
-"""Samples on either side of a corner at which the smoothed rate rings."""
-
 SECANTS = 40
 """Parts of the deflection's span over which the stiffness is taken."""
-
-GATHERED = 2.0
-"""Power of the misfit beside corners over that away from them, above which it gathers there."""
 
 COUNTED = 0.6
 """Part of the blocks that must remain: where the motion is resolved in fewer, all count."""
@@ -168,7 +162,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
     floor = noise_floor(misfit, stiffness, gauge, step)
-    resolved = _away_from_corners(motion.resolved, misfit) & ~_spikes(misfit)
+    resolved = motion.resolved & ~_spikes(misfit)
     followed = ~beyond_travel(recording.deflection, recording.force)
     interval = float(np.median(np.diff(recording.time)))
     loudness = float(np.std(misfit)) / max(white_level(misfit), 1e-300)
@@ -234,19 +228,6 @@ def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
     x, f = (np.bincount(which, v, SECANTS)[held] / count[held] for v in (deflection, force))
     grid = low + span * (np.arange(SECANTS) + 0.5) / SECANTS
     return np.asarray(np.interp(deflection, grid, np.gradient(np.interp(grid, x, f), grid)))
-
-
-def _away_from_corners(resolved: BoolArray, misfit: FloatArray) -> BoolArray:
-    """Return where the motion is resolved and no corner is near: the smoothed rate rings around it.
-
-    Where the misfit gathers there (short hits), a corner is what is to be explained.
-    """
-    near = np.convolve(~resolved, np.ones(2 * RINGING + 1), "same") > 0.5
-    away, beside = resolved & ~near, resolved & near
-    if away.mean() <= COUNTED or not beside.any():
-        return resolved
-    gathers = float(np.mean(misfit[beside] ** 2)) > GATHERED * float(np.mean(misfit[away] ** 2))
-    return resolved if gathers else away
 
 
 def _spikes(misfit: FloatArray) -> BoolArray:
