@@ -8,7 +8,9 @@ the set leaves beyond the noise lies in these e samples, so with a residual of t
     2 ln p(V) = -(q - (n - e)) / V - e ln V,
 
 highest at V = (q - (n - e)) / e: a set is priced by e ln(what it leaves). V is a number of every set, found by the
-marginal likelihood. Below the floor no remainder is taken for a discrepancy of the form: a declared part of the misfit.
+marginal likelihood. Below the floor, which follows from the measured errors of the forms, one remainder is like another
+and says nothing for a set; but forms may also be exact, and a set that leaves a remainder like the noise where the
+floor is far above it has them: wrong forms do not meet there by chance.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
@@ -27,18 +29,24 @@ FloatArray = NDArray[np.float64]
 EFFECTIVE = 30.0
 """Effective samples of a discrepancy."""
 
+LIKE_NOISE = 1.0
+"""Root mean square of a remainder like the noise, in units of it: forms that leave no more are taken for exact."""
+
 GRID = 40
 """Variances that are tried."""
 
 
 @dataclass(frozen=True)
 class Discrepancy:
-    """samples: n; effective: e; lowest: V at the floor, highest: V of the whole misfit."""
+    """samples: n; effective: e; lowest: V at the floor, highest: V of the whole misfit
+    exact: V of a remainder like the noise; below a higher floor it is allowed all the same.
+    """
 
     samples: int
     effective: float
     lowest: float
     highest: float
+    exact: float
 
     def beside(self, variance: FloatArray) -> FloatArray:
         """Return what the log likelihood holds beside -q / 2V, for several V."""
@@ -54,22 +62,31 @@ class Discrepancy:
         """Return the discrepancy of a set whose forms may always miss this much, a root mean square in units of the
         noise.
         """
-        lowest = self.lowest + form_error**2 * self.samples / self.effective
+        lowest = self.lowest + self._of(form_error)
         return replace(self, lowest=lowest, highest=max(self.highest, 2.0 * lowest))
 
+    def blurred(self, error: float) -> Discrepancy:
+        """Return the discrepancy where the reading adds this much whatever the forms are, in units of the noise."""
+        return replace(self.above(error), exact=self.exact + self._of(error))
+
     def grid(self) -> FloatArray:
-        """Variances V to try, from the lowest to the highest."""
-        return np.geomspace(self.lowest, self.highest, GRID)
+        """Variances V to try: from the lowest to the highest, and what is below them."""
+        grid = np.geomspace(self.lowest, self.highest, GRID)
+        return np.append(grid, self.exact) if self.exact < self.lowest else grid
 
     def profile(self, power: float) -> tuple[float, float]:
         """Return the log likelihood of a sum of squares left at its best V, and that V."""
         best = (power - (self.samples - self.effective)) / self.effective
-        variance = min(max(best, self.lowest), self.highest)
-        return self.likelihood(power, variance), variance
+        tried = {min(max(best, self.lowest), self.highest), min(self.exact, self.lowest)}
+        return max((self.likelihood(power, variance), variance) for variance in tried)
 
     def size(self, variance: float) -> float:
         """Return tau in units of the noise."""
         return math.sqrt(max(variance - 1.0, 0.0) * self.effective / self.samples)
+
+    def _of(self, error: float) -> float:
+        """Return what a root mean square in units of the noise adds to V."""
+        return error**2 * self.samples / self.effective
 
 
 def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
@@ -78,7 +95,8 @@ def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
     power = float(misfit @ misfit)
     effective = min(EFFECTIVE, n / 3.0)
     lowest = 1.0 + floor**2 * max(power - n, 0.0) / effective
-    return Discrepancy(n, effective, lowest, max(2.0 * power / effective, 2.0 * lowest))
+    highest = max(2.0 * power / effective, 2.0 * lowest)
+    return Discrepancy(n, effective, lowest, highest, 1.0 + LIKE_NOISE**2 * n / effective)
 
 
 def usual_form_error() -> float:
