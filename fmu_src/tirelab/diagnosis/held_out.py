@@ -1,9 +1,9 @@
 """The errors of a correction on held-out data.
 
 Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
-part: the last recording whose surfaces the others drive too, or the end of each recording, a block of time
-simulated from its true history. The effects were chosen on all of the data; the parameters were fitted without the
-held-out part.
+part: the last recording whose surfaces the others drive too, or the end of each recording that holds the last part of
+the misfit, a block of time simulated from its true history. The effects were chosen on all of the data; the parameters
+were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from ..preprocessing.kinematics import BoolArray, FloatArray, Motion
 from ..simulation.simulate import simulate, smoothed_motion
 from .untimed import is_timed
 
-FITTED = 0.7
-"""Part of each recording's time that is fitted where its end is held out."""
+FITTED, LEAST = 0.7, 0.1
+"""Part of the baseline's squared misfit that is fitted where the end of a recording is held out: by time, one side
+could lack what is to be explained. And the part of its samples that is fitted at least."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ def split(
     explanation: Explanation,
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
-    kept, by = _parts(recordings)
+    kept, by = _parts(recordings, before)
     refitted = explanation.refitted(kept)
     noise_free = [
         noise_free_residual(refitted.tire, r, e.motion)
@@ -127,7 +128,7 @@ def split(
     )
 
 
-def _parts(recordings: Sequence[Recorded]) -> tuple[list[BoolArray], str]:
+def _parts(recordings: Sequence[Recorded], before: Sequence[FloatArray]) -> tuple[list[BoolArray], str]:
     """Return which samples stay fitted, and the name of the held-out part."""
     surfaces = [set(np.unique(r.surface_radius).tolist()) for r in recordings]
     for number in reversed(range(len(recordings))):
@@ -135,10 +136,16 @@ def _parts(recordings: Sequence[Recorded]) -> tuple[list[BoolArray], str]:
         if surfaces[number] <= others:
             kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
             return kept, f"recording {recordings[number].name}"
-    kept = [r.time < r.time[0] + FITTED * (r.time[-1] - r.time[0]) for r in recordings]
+    kept = [_beginning(b) for b in before]
     r = recordings[0]
     first = kept[0].size - int(np.sum(~kept[0]))
     more = " and the ends of the others" if len(recordings) > 1 else ""
     if not is_timed([r]):
         return kept, f"samples {first + 1}-{r.time.size}{more}"
     return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"
+
+
+def _beginning(before: FloatArray) -> BoolArray:
+    """Return the samples that stay fitted of a recording; before [N] (n,): what the baseline leaves of it."""
+    missed = np.cumsum(before**2) / max(float(before @ before), 1e-300)
+    return np.asarray((missed < FITTED) | (np.arange(before.size) < LEAST * before.size))
