@@ -36,16 +36,29 @@ OF_VERDICT = (
     "odds",
     "remainder_share",
     "remainder_size",
+    "structure",
+    "transfer",
+    "alike",
+    "imitated",
+    "effects",
+    "loudness",
+    "least_share",
+)
+OF_EFFECT = (
+    "odds",
+    "share",
+    "remainder_share",
+    "remainder_size",
+    "structure",
     "transfer",
     "alike",
     "imitated",
     "effects",
     "loudness",
 )
-OF_EFFECT = ("odds", "share", "remainder_share", "remainder_size", "transfer", "alike", "imitated", "effects")
 """Grounds of the verdict and of one effect; each is explained in `grounds_of_verdict`."""
 
-LOWERING = ("remainder_share", "remainder_size", "transfer", "alike", "imitated")
+LOWERING = ("remainder_share", "remainder_size", "structure", "transfer", "alike", "imitated")
 """Grounds that may only lower a probability."""
 
 
@@ -53,21 +66,22 @@ def grounds_of_verdict(explanation: Explanation, validation: HeldOut) -> dict[st
     """Return what the verdict's probability rests on.
 
     odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
-    the noise); transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion
-    cannot tell from it); imitated: effects beside a refitted law that could be a part of it
-    effects: their number; loudness: ln of the misfit over the noise
+    the noise); structure: the same of what in the remainder depends on a recorded coordinate
+    transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
+    it); imitated: effects beside a refitted law that could be a part of it
+    effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
     chances = -float(np.logaddexp.reduce(rest)) if rest else FURTHEST
     names = [e.name for e in explanation.effects]
-    loudness = float(np.sqrt(np.mean(explanation.model.fit.problem.dataset.misfit**2)))
     return {
         "odds": _limited(chances),
         **_of_fit(explanation, validation),
         "alike": math.log1p(len(explanation.confounded)),
         "imitated": float(sum(_imitated(n, names, explanation) for n in names)),
         "effects": float(len(names)),
-        "loudness": math.log(max(loudness, 1.0)),
+        "loudness": _loudness(explanation),
+        "least_share": min((_share(e) for e in explanation.effects), default=0.0),
     }
 
 
@@ -87,11 +101,12 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     alike = 0 if law else len(explanation.excitation.alike(effect.name))
     return {
         "odds": _limited(odds),
-        "share": math.log(max(effect.share, SMALLEST)),
+        "share": _share(effect),
         **_of_fit(explanation, validation),
         "alike": math.log1p(alike),
         "imitated": float(_imitated(effect.name, names, explanation)),
         "effects": float(len(names)),
+        "loudness": _loudness(explanation),
     }
 
 
@@ -114,11 +129,21 @@ def unshared(probability: float, alike: int) -> float:
     return probability * (1.0 + alike) / (1.0 + probability * alike)
 
 
+def _loudness(explanation: Explanation) -> float:
+    return math.log(max(float(np.sqrt(np.mean(explanation.model.fit.problem.dataset.misfit**2))), 1.0))
+
+
+def _share(effect: NamedEffect) -> float:
+    return math.log(max(effect.share, SMALLEST))
+
+
 def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
-    left = max(rmse(explanation.residuals), 1e-300)
+    left, remainder = max(rmse(explanation.residuals), 1e-300), explanation.remainder
+    depending = max((d.share for d in remainder.depends), default=0.0)
     return {
-        "remainder_share": explanation.remainder.share,
-        "remainder_size": math.log1p(explanation.remainder.size),
+        "remainder_share": remainder.share,
+        "remainder_size": math.log1p(remainder.size),
+        "structure": math.log1p(remainder.size * math.sqrt(depending)),
         "transfer": min(max(math.log(max(validation.after, 1e-300) / left), 0.0), 3.0),
     }
 

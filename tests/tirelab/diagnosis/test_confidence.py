@@ -34,7 +34,7 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         effects=tuple(NamedEffect(n, {}, 0.5, 0.9) for n in names.split()),
         evidence=tuple(Evidence(tuple(n.split()), log, 1.0, (), 0.1) for n, log in sets),
         confounded=more.get("confounded", ()),
-        remainder=SimpleNamespace(share=0.1, size=3.0),
+        remainder=SimpleNamespace(share=0.1, size=3.0, depends=(SimpleNamespace(share=0.25),)),
         residuals=(np.full(10, 2.0),),
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
@@ -57,6 +57,9 @@ def test_grounds_of_a_verdict_are_those_of_its_definition() -> None:
     assert found["loudness"] == pytest.approx(np.log(20.0))
     assert found["alike"] == pytest.approx(np.log(2.0))
     assert found["remainder_size"] == pytest.approx(np.log(4.0))
+    # A quarter of the remainder's power is half of its three noises; each effect has half of the misfit.
+    assert found["structure"] == pytest.approx(np.log(2.5))
+    assert found["least_share"] == pytest.approx(np.log(0.5))
 
 
 def test_odds_of_an_effect_are_all_sets_with_it_against_all_without() -> None:
