@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
+from scipy.ndimage import median_filter
 
 from ..recordings.description import surface_text
 from ..regressors.dataset import Experiment
@@ -25,8 +26,13 @@ LENGTHS = (1 / 16, 1 / 8, 1 / 4)
 FINENESS = 15
 """Rows in which a whole stroke at the fastest rate of a motion is simulated."""
 
-CORNER = 0.3
-"""Change of the rate from row to row, over the fastest rate, from which on the motion turns too fast to be compared."""
+CORNER, AROUND = 3.0, 11
+"""The motion turns too fast to be compared where its acceleration exceeds this many times the median of so many samples
+around: a corner takes three samples, of a slow motion as of a fast one, and no smoothed rate resolves it.
+"""
+
+ROUNDING = 1e-6
+"""A jump of this part of the fastest rate is one of rounding."""
 
 ALLOWED = 1.02
 """A difference of samples exceeds a sine's own rate by rounding only."""
@@ -103,7 +109,7 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
     fastest = max(float(np.abs(rate).max()), 1e-12)
     stroke = max(float(np.ptp(drive.deflection)), 1e-12)
     stride = int(max(1.0, stroke / (FINENESS * fastest * step)))
-    away = _away(np.abs(acceleration) * step > CORNER * fastest, stride)
+    away = _away(_corners(acceleration, fastest / step), stride)
     rows = slice(stride // 2, None, stride)
     moved = Drive(
         drive.name, drive.time[rows], drive.deflection[rows], drive.surface_radius[rows], drive.pressure
@@ -130,6 +136,13 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
 class _Kinematics:
     rate: FloatArray
     acceleration: FloatArray
+
+
+def _corners(acceleration: FloatArray, largest: float) -> BoolArray:
+    """Return where the rate jumps; largest [m/s^2]: a jump of the fastest rate in one sample."""
+    size = np.abs(acceleration)
+    usual = median_filter(size, AROUND, mode="nearest")
+    return np.asarray(size > CORNER * usual + ROUNDING * largest)
 
 
 def _away(corner: BoolArray, reach: int) -> BoolArray:

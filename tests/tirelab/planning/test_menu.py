@@ -53,6 +53,17 @@ def test_corners_are_not_compared_and_the_rest_is() -> None:
     assert np.abs(np.abs(fast.rate[fast.counts]) - 0.1).max() < 1e-6
 
 
+def test_a_slow_corner_shows_no_inertia_and_a_sine_does() -> None:
+    """A triangle has no acceleration but in its corners, however slow: no smoothed rate resolves them."""
+    rates = experiment_of(drive_of("triangles at three rates", 0.25, math.inf, RIG), TireModel(), 6.0)
+    assert rates.counts.mean() > 0.8
+    assert np.abs(rates.acceleration[rates.counts]).max() < 1e-6
+    sine = experiment_of(drive_of("fast sine", 0.25, math.inf, RIG), TireModel(), 6.0)
+    assert sine.counts.mean() > 0.95
+    swing = 0.3 * RIG.stroke
+    assert np.abs(sine.acceleration[sine.counts]).max() == pytest.approx(RIG.speed**2 / swing, rel=0.03)
+
+
 def test_the_largest_force_is_the_articles() -> None:
     """550.9 x^1.422 at 2 cm on flat ground; a convex surface yields more."""
     drives = [d for d in menu(RIG) if math.isinf(d.surface_radius[0])]
