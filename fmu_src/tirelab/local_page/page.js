@@ -116,7 +116,7 @@
     return box;
   }
 
-  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Data of the plots" };
+  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
   function diagnosis(d) {
     const box = make("article", undefined, { class: "result" });
     box.append(make("h3", d.headline), make("p", d.sure, { class: "caption" }));
