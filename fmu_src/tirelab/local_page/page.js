@@ -43,7 +43,7 @@
     title.append(make("bdi", r.name));
     box.append(title);
     if (r.problem) box.append(make("p", r.problem, { class: "alarm" }));
-    if (r.facts.length) box.append(make("p", r.facts.map(([what, text]) => `${what} ${text}`).join(", "), { class: "facts" }));
+    if (r.facts.length) box.append(make("p", r.facts.map(([what, text]) => `${what}: ${text}`).join(" · "), { class: "facts" }));
     for (const doubt of r.doubts) box.append(make("p", `doubtful: ${doubt}`, { class: "alarm" }));
     for (const note of r.notes) box.append(make("p", note, { class: "caption" }));
 
@@ -72,7 +72,8 @@
     const channels = r.channels.length ? r.channels : [];
     channels.forEach((c) => {
       const line = make("tr");
-      line.append(make("th", c.required ? c.channel : `${c.channel} (optional)`, { scope: "row" }));
+      const name = c.channel === "believed_force" ? "force of a simulation" : c.channel;
+      line.append(make("th", c.required ? name : `${name} (optional)`, { scope: "row" }));
       const column = make("select", undefined, { "aria-label": `column of ${c.channel}` });
       column.append(make("option", c.column ? `as read: ${c.column}` : "none", { value: "" }));
       const set = given("columns", c.channel), number = set.replace(/^[+-]/, "");
@@ -116,7 +117,7 @@
     return box;
   }
 
-  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Data of the plots" };
+  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
   function diagnosis(d) {
     const box = make("article", undefined, { class: "result" });
     box.append(make("h3", d.headline), make("p", d.sure, { class: "caption" }));

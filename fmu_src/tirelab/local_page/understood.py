@@ -79,7 +79,8 @@ def understood(file: Path, name: str) -> Understood:
         asked = error.settings
         guess = {"columns": dict(asked.columns), "units": dict(asked.units), "radius": asked.radius or ""}
         problem = f"{_by_name(error.what, file, name)}; what may be meant is filled in below, check it"
-        return Understood(headers, _planned(first, table), problem=problem, guess=guess)
+        planned = _planned(first, table, asked.radius)
+        return Understood(headers, planned, problem=problem, guess=guess)
     except TirelabError as error:
         return Understood(headers, _planned(first, table), problem=_by_name(str(error), file, name))
     more = (("tests", f"{1 + len(others)} side by side, each a recording; of the first:"),) if others else ()
@@ -104,11 +105,11 @@ def _channels(found: Inspection, headers: tuple[str, ...]) -> tuple[Channel, ...
     return tuple(listed)
 
 
-def _planned(file: Path, table: Table) -> tuple[Channel, ...]:
-    """Return the channels of a table that cannot be read yet, as far as its columns tell."""
+def _planned(file: Path, table: Table, radius: str | float | None = None) -> tuple[Channel, ...]:
+    """Return the channels of a table that cannot be read yet, as far as its columns tell with a guessed radius."""
     path, piece = split_piece(file)
     try:
-        settings = read_sidecar(path, trial=piece.trial).overruled(None, None, None)
+        settings = read_sidecar(path, trial=piece.trial).overruled(None, None, radius)
         plan = plan_reading(Origin(path.name), table, settings, piece.trial)
     except TirelabError:
         return tuple(Channel(c.name, c.required) for c in CHANNELS)

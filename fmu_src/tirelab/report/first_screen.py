@@ -25,6 +25,9 @@ AT_THE_FLOOR = 1.5
 """An error of more than this many noises is more than the noise."""
 
 
+LONGEST_LEAD = 100
+"""Characters of the sentences on two effects; more is told of the larger one alone."""
+
 WORSE = 1.05
 """A held-out error that grows by more than this factor is told as worse."""
 
@@ -58,7 +61,7 @@ def headline(diagnosis: Mapping[str, Any]) -> str:
 
 def undecided(verdict: Mapping[str, Any]) -> bool:
     """Return whether the recordings do not decide between the verdict and its alternatives."""
-    return bool(verdict["alternatives"]) and verdict["confidence"] < DECIDED
+    return bool(verdict["alternatives"]) and words.told(verdict["confidence"]) < DECIDED
 
 
 def sureness(verdict: Mapping[str, Any]) -> str:
@@ -70,12 +73,13 @@ def sureness(verdict: Mapping[str, Any]) -> str:
 def lead(diagnosis: Mapping[str, Any]) -> str:
     """Return one sentence on what is missing, after the headline."""
     verdict = diagnosis["verdict"]
-    names = [effect["name"] for effect in verdict["effects"]]
-    physics = [CATALOGUE[name].statement for name in names if name in CATALOGUE]
+    names = [effect["name"] for effect in _by_size(verdict["effects"])]
+    physics = [words.sentence(CATALOGUE[name].statement) for name in names if name in CATALOGUE]
     if undecided(verdict):
         return "These recordings cannot tell the explanations apart; the likeliest one is shown."
     if physics:
-        return f"{'; '.join(_capital(text) for text in physics[:2])}."
+        both = " ".join(physics[:2])
+        return both if len(both) <= LONGEST_LEAD else physics[0]
     if verdict["unexplained"]:
         return "No known effect explains the difference."
     if names:
@@ -114,10 +118,10 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     test = verdict["separating_test"]
     errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
     clean = not verdict["unexplained"] and max(errors) <= AT_THE_FLOOR * max(fit["noise"], 1e-12)
-    if verdict["confidence"] >= SURE and clean:
+    if words.told(verdict["confidence"]) >= SURE and clean:
         return NextStep(given.use if verdict["effects"] else given.leave)
     if test is not None:
-        return NextStep(_drive(test), _decides(test), drive=True)
+        return NextStep(_drive(test), _decides(test, verdict), drive=True)
     if verdict["unexplained"]:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
@@ -150,10 +154,9 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
         return
     physics = [e for e in verdict["effects"] if e["name"] != REFITTED_LAW]
     refitted = len(physics) < len(verdict["effects"])
-    sized = sorted(physics, key=lambda e: -(e.get("size") or 0.0))
     parts = [
         (titles.short_title(e["name"]), words.of_load(e.get("size"), diagnosis["fit"].get("load")))
-        for e in sized
+        for e in _by_size(physics)
     ]
     if verdict["unexplained"]:
         rms = verdict.get("remainder", {}).get("rms")
@@ -174,6 +177,10 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
         others = len(parts) - shown
         more = f"{others} more effect{'s' if others > 1 else ''}"
         yield _capital(f"{titles.listed([*(name for name, _ in parts[:shown]), more])}{law}")
+
+
+def _by_size(effects: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    return sorted(effects, key=lambda e: -(e.get("size") or 0.0))
 
 
 def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
@@ -207,18 +214,31 @@ def _drive(test: Mapping[str, Any]) -> str:
     keys = ("waveform", "amplitude", "rate_max", "duration", "surfaces")
     if any(test.get(key) is None for key in keys):
         return str(test.get("sentence", ""))
-    place = titles.listed([words.surface(radius) for radius in test["surfaces"]])
+    place = titles.listed([words.on_surface(radius) for radius in test["surfaces"]])
     return (
         f"Record {test['waveform']} to {words.number(1e3 * test['amplitude'])} mm on {place}, at up to "
         f"{words.number(1e3 * test['rate_max'])} mm/s, for {words.number(test['duration'], 2)} s."
     )
 
 
-def _decides(test: Mapping[str, Any]) -> str:
-    between = test.get("between")
-    if not between:
+def _decides(test: Mapping[str, Any], verdict: Mapping[str, Any]) -> str:
+    """Return what the recommended recording decides, by what differs between the two sets."""
+    if not test.get("between"):
         return ""
-    return f"It decides between {titles.listed([titles.short_set(names) for names in between])}."
+    own = {effect["name"] for effect in verdict["effects"]}
+    extra = [UNKNOWN] if verdict["unexplained"] else []
+    first, second = ([*names, *(extra if set(names) == own else [])] for names in test["between"])
+    gone = [name for name in first if name not in second]
+    new = [name for name in second if name not in first]
+    if gone and new:
+        return f"It decides between {titles.short_set(gone)} and {titles.short_set(new)}."
+    acting = titles.listed([_with_article(name) for name in gone or new])
+    verb = "acts" if len(gone or new) == 1 else "act"
+    return f"It decides whether {acting} {verb}{' too' if new and first else ''}." if acting else ""
+
+
+def _with_article(name: str) -> str:
+    return titles.short_title(name) if name == UNKNOWN else f"the {titles.short_title(name)}"
 
 
 def _capital(text: str) -> str:

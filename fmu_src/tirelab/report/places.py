@@ -22,7 +22,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 WHOLE = 0.9
-"""A place with more than this part of a recording's samples is not shaded: it would shade the picture."""
+"""Places with more than this part of a recording's samples are not shaded: they would shade the picture."""
 
 MEANS = 48
 """Bins of the mean difference over the deflection."""
@@ -95,13 +95,18 @@ def inside(place: Mapping[str, Any], at: Located) -> BoolArray | None:
 
 
 def shaded(where: Sequence[Mapping[str, Any]], at: Located) -> list[Mapping[str, Any]]:
-    """Return the places to shade: the first one that can be drawn, and the others along its coordinate."""
+    """Return the places to shade: the first one that can be drawn, and others along its coordinate.
+
+    Together they leave more than 1 - WHOLE of the samples unshaded.
+    """
     drawn: list[Mapping[str, Any]] = []
+    chosen = np.zeros(len(at.recording), dtype=bool)
     for place in where:
         if drawn and place["by"] != drawn[0]["by"]:
             continue
         samples = inside(place, at)
-        if samples is not None and 0.0 < float(samples.mean()) <= WHOLE:
+        if samples is not None and samples.any() and float((chosen | samples).mean()) <= WHOLE:
+            chosen |= samples
             drawn.append(place)
     return drawn
 

@@ -27,6 +27,9 @@ WIDTH = 4.6
 MARGINS = (0.145, 0.975)
 """Left and right edge of the axes: margins found by matplotlib for each picture would double the time."""
 
+BESIDE_TICKS, CHARACTER = 26.0, 6.5
+"""Room [pt] beside an axis for its label and ticks, and for each character of a number there."""
+
 _SETTINGS: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "tirelab",
@@ -81,6 +84,7 @@ def inline_svg(figure: Figure, alt: str, mark: str) -> Markup:
 
     mark: a word that no other figure of the page has, to keep their inner references apart
     """
+    _make_room(figure)
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", dpi=160, metadata={"Date": None})
     text = _dropped.sub("", buffer.getvalue())
@@ -95,6 +99,30 @@ def inline_svg(figure: Figure, alt: str, mark: str) -> Markup:
         text = text.replace(f"url(#{name})", f"url(#{short})").replace(f'href="#{name}"', f'href="#{short}"')
     text = re.sub(r"<svg [^>]*?viewBox=\"([^\"]+)\"[^>]*>", _opening(alt), text.strip(), count=1)
     return Markup(re.sub(r">\s+<", "><", text))
+
+
+def _make_room(figure: Figure) -> None:
+    """Move the edges of the axes so far in that their numbers and labels stay inside the figure."""
+    axes, *bars = figure.axes
+    left = max(_room(axes), MARGINS[0])
+    figure.subplots_adjust(left=left)
+    for bar in bars:
+        bar.apply_aspect()
+        edge, right = bar.get_position().x1, figure.subplotpars.right
+        if edge > 1.0 - _room(bar):
+            figure.subplots_adjust(right=left + (right - left) * (1.0 - _room(bar) - left) / (edge - left))
+
+
+def _room(axes: Axes) -> float:
+    """Return the part of the figure's width that numbers, ticks and label of the vertical axis take."""
+    return (BESIDE_TICKS + CHARACTER * _longest_number(axes)) / (72.0 * WIDTH)
+
+
+def _longest_number(axes: Axes) -> int:
+    """Return the characters of the longest number that stands beside the vertical axis."""
+    low, high = sorted(axes.get_ylim())
+    ticks = [tick for tick in axes.yaxis.get_majorticklocs() if low <= tick <= high]
+    return max(map(len, axes.yaxis.get_major_formatter().format_ticks(ticks)), default=0)
 
 
 def _opening(alt: str) -> str:

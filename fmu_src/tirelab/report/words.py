@@ -47,7 +47,8 @@ def meaning(effect: str, parameter: str) -> str:
     if effect == REFITTED_LAW and (kind := parameter.partition(",")[0]) in _OF_THE_LAW:
         return _OF_THE_LAW[kind]
     owner = CATALOGUE.get("elastic_shape" if effect == REFITTED_LAW else effect)
-    found = [p.meaning for p in owner.parameters if p.name == parameter] if owner else []
+    name = parameter.replace(" ", "_")
+    found = [p.meaning for p in owner.parameters if p.name == name] if owner else []
     return found[0] if found else ""
 
 
@@ -86,8 +87,13 @@ def estimate(value: float, std: float | None, unit: str) -> str:
     decimals = 1 - math.floor(math.log10(factor * std))
     if not 0 <= decimals <= 6 or abs(factor * value) >= 1e6:
         return with_unit(f"{number(factor * value, 4)} ± {number(factor * std, 2)}", name)
-    text = f"{factor * value:.{decimals}f} ± {factor * std:.{decimals}f}"
-    return with_unit(text.replace("-", "−"), name)
+    return with_unit(f"{fixed(factor * value, decimals)} ± {fixed(factor * std, decimals)}", name)
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a value with so many decimals; plain 0 where they are all zeros."""
+    text = f"{value:.{decimals}f}"
+    return text.replace("-", "−") if text.strip("-0.") else "0"
 
 
 def bounds(effect: str, parameter: str) -> tuple[float, float]:
@@ -107,8 +113,7 @@ def interval(
     wide = NORMAL_95 * std
     decimals = min(max(1 - math.floor(math.log10(factor * std)), 0), 6)
     least, most = max(value - wide, allowed[0]), min(value + wide, allowed[1])
-    ends = [f"{factor * end + 0.0:.{decimals}f}".replace("-", "−") for end in (least, most)]
-    return with_unit(" to ".join(ends), name)
+    return with_unit(" to ".join(fixed(factor * end, decimals) for end in (least, most)), name)
 
 
 def is_of_a_surface(parameter: str) -> bool:
@@ -153,10 +158,15 @@ def likeliest(details: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     return sorted(details, key=lambda d: math.inf if d["probability"] is None else -float(d["probability"]))
 
 
+def told(confidence: float) -> float:
+    """Return a confidence as it is told, to whole percents, so that words and decisions agree with the number."""
+    return round(100.0 * confidence) / 100.0
+
+
 def confidence_word(confidence: float) -> str:
     """Return how sure that is, in words."""
     for limit, word in ((0.9, "sure"), (0.7, "fairly sure"), (0.5, "more likely than not")):
-        if confidence >= limit:
+        if told(confidence) >= limit:
             return word
     return "one of several possibilities"
 
@@ -202,16 +212,35 @@ def span(place: Mapping[str, Any]) -> str:
     factor, name = scaled(str(unit))
     if start == stop:
         return with_unit(_edge(start, factor), name)
-    digits = 3 if _edge(start, factor) != _edge(stop, factor) else 5
-    if _edge(start, factor, digits) == _edge(stop, factor, digits):
-        return with_unit(_edge(start, factor, digits), name)
-    return with_unit(f"{_edge(start, factor, digits)} to {_edge(stop, factor, digits)}", name)
+    first, last = _edges(start, stop, factor)
+    return with_unit(first if first == last else f"{first} to {last}", name)
 
 
-def _edge(value: float | str, factor: float, digits: int = 3) -> str:
+def where_phrase(place: Mapping[str, Any], *, coordinate_too: bool = True) -> str:
+    """Return an entry of `where` for a sentence: "deflection 14.1 to 31.0 mm", "while loading", "on flat ground"."""
+    lead = {"direction": "while", "radius": "on"}.get(place["by"], coordinate(place["by"]))
+    return f"{lead} {span(place)}" if coordinate_too else span(place)
+
+
+def _edges(start: float | str, stop: float | str, factor: float) -> tuple[str, str]:
+    """Return both ends of a span with the decimals of the larger one's third digit; two more where they are alike."""
+    if isinstance(start, str) or isinstance(stop, str):
+        return _edge(start, factor), _edge(stop, factor)
+    ends = (factor * start, factor * stop)
+    largest = max(map(abs, ends))
+    if not 1e-2 <= largest < 1e6:
+        digits = 3 if number(ends[0]) != number(ends[1]) else 5
+        return number(ends[0], digits), number(ends[1], digits)
+    decimals = max(2 - math.floor(math.log10(largest)), 0)
+    if fixed(ends[0], decimals) == fixed(ends[1], decimals):
+        decimals += 2
+    return fixed(ends[0], decimals), fixed(ends[1], decimals)
+
+
+def _edge(value: float | str, factor: float) -> str:
     if isinstance(value, str):
         return {"inf": "∞", "-inf": "−∞"}.get(value, value)
-    return number(factor * value, digits)
+    return number(factor * value)
 
 
 def surface(radius: float | str) -> str:
@@ -220,6 +249,14 @@ def surface(radius: float | str) -> str:
     if abs(size) >= FLAT_RADIUS:
         return "flat ground"
     return f"{'convex' if size > 0.0 else 'concave'}, radius {number(100.0 * abs(size))} cm"
+
+
+def on_surface(radius: float | str) -> str:
+    """Return a surface by its radius [m] as what follows "on"."""
+    size = float(radius)
+    if abs(size) >= FLAT_RADIUS:
+        return "flat ground"
+    return f"a {'convex' if size > 0.0 else 'concave'} surface of radius {100.0 * abs(size):.4g} cm"
 
 
 def held_out_part(by: str) -> str:

@@ -217,7 +217,10 @@ def too_few(measured: Rate | Mean) -> bool:
 
 def judged(criterion: Criterion) -> str:
     """What came out of a criterion, in words; "too few trials" wherever the interval is too wide to judge by."""
-    return "too few trials" if too_few(criterion.measured) else criterion.result
+    low, high = criterion.measured.interval
+    measured = not math.isnan(criterion.measured.value)
+    around = measured and low < criterion.limit < high and high - low > WIDEST_INTERVAL
+    return "too few trials" if around or too_few(criterion.measured) else criterion.result
 
 
 def interval(measured: Rate | Mean) -> str:

@@ -87,7 +87,7 @@ def test_from_drop_to_download(chromium: Any, opened: tuple[str, Path], tmp_path
     box.locator("input[aria-label='unit of force']").fill("N")
     box.locator("button[type=submit]").click()
     page.wait_for_selector(".recording .facts")
-    assert "samples 2000" in box.locator(".facts").inner_text()
+    assert "samples: 2000" in box.locator(".facts").inner_text()
     assert page.evaluate(CONTRAST) == []
 
     page.locator("#files").set_input_files(tmp_path / "ride.csv")

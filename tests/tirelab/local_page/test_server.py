@@ -184,6 +184,18 @@ def test_doubts_and_what_the_file_says_are_told(served: Server, ride: bytes) -> 
     assert dict(told["facts"])["table"].startswith("names in row 3")
 
 
+def test_columns_that_are_known_are_shown_where_only_the_surface_is_not(served: Server, ride: bytes) -> None:
+    text = "\n".join(",".join(row.split(",")[i] for i in (0, 1, 3)) for row in ride.decode().splitlines())
+    told = ask(served, "POST", "recordings?name=plain.csv", text.encode())[1]
+    assert "the radius of the surface is not known" in told["problem"]
+    assert told["guess"]["radius"] == "flat"
+    assert {c["channel"]: c["unit"] for c in told["channels"] if c["column"]} == {
+        "time": "s",
+        "deflection": "cm",
+        "force": "N",
+    }
+
+
 def test_tests_side_by_side_are_recordings_each(served: Server, ride: bytes) -> None:
     head, *rows = ride.decode().splitlines()
     text = "\n".join([f"{head},{head}", *(f"{row},{row}" for row in rows)]).encode()

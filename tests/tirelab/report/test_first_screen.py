@@ -153,6 +153,47 @@ def test_one_thing_to_do_next(given: dict[str, Any], reasons: list[str], action:
     assert step.drive == action.startswith("Record ")
 
 
+@pytest.mark.parametrize(
+    ("between", "why"),
+    [
+        (
+            [["inertia"], ["rate_independent_hysteresis"]],
+            "It decides between inertia and friction loop.",
+        ),
+        ([["inertia"], ["inertia", "force_lag"]], "It decides whether the force lag acts too."),
+        (
+            [["inertia", "force_lag", "force_drift"], ["inertia"]],
+            "It decides whether the force lag and the force drift act.",
+        ),
+        (
+            [["inertia", "force_lag"], ["inertia", "saturation"]],
+            "It decides between force lag and saturation.",
+        ),
+        ([[], ["saturation"]], "It decides whether the saturation acts."),
+    ],
+)
+def test_what_a_recording_decides_is_told_by_what_differs(between: list[list[str]], why: str) -> None:
+    test = {**TEST, "between": between}
+    given = diagnosis({"inertia": 9.0}, 0.6, alternatives=[[]], separating_test=test)
+    assert first_screen.next_step(given).why == why
+
+
+def test_what_is_unknown_is_not_called_nothing() -> None:
+    test = {**TEST, "between": [[], ["saturation"]], "surfaces": [-0.6]}
+    step = first_screen.next_step(
+        diagnosis({}, 0.6, unexplained=True, alternatives=[[]], separating_test=test)
+    )
+    assert step.why == "It decides between something unknown and saturation."
+    assert "on a concave surface of radius 60 cm, at" in step.action
+
+
+def test_two_effects_are_told_in_two_sentences() -> None:
+    said = first_screen.lead(diagnosis({"deflection_offset": 9.0, "viscous_damping": 8.0}))
+    assert said == "The deflection's zero is shifted. The force grows with the speed of compression."
+    long = first_screen.lead(diagnosis({"force_lag": 8.0, "rate_independent_hysteresis": 9.0}))
+    assert long == f"{CATALOGUE['rate_independent_hysteresis'].statement.capitalize()}."
+
+
 def test_actions_are_told_once() -> None:
     told = ["no hold: hold 10 s at 15 mm; one speed only: repeat at 30 mm/s", "no hold: hold 10 s at 15 mm"]
     assert first_screen.actions(told) == ["hold 10 s at 15 mm", "repeat at 30 mm/s"]

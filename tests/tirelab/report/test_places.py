@@ -59,6 +59,8 @@ def test_the_first_coordinate_that_says_something_is_shaded() -> None:
     where = [place("acceleration", 0.0, 1.0), everywhere, nowhere, first, other, second]
     assert shaded(where, AT) == [first, second]
     assert shaded([everywhere], AT) == []
+    loads, unloads = place("direction", 1.0, 1.0), place("direction", -1.0, -1.0)
+    assert shaded([unloads, loads], AT) == [unloads]  # both would shade the whole picture
 
 
 def test_a_band_of_deflection_is_shaded_and_other_places_by_their_samples() -> None:

@@ -8,8 +8,12 @@ import struct
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from tirelab.recordings.recording import Recording
 from tirelab.report.loops import Case, draw_difference, draw_loops
+from tirelab.report.svg import drawing, inline_svg
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +48,22 @@ def test_colours_are_the_pages(picture: str) -> None:
     assert "var(--after)" in picture
     assert not re.findall(r"#0[1-6]0[1-6]0[1-6]", picture)
     assert "told to those who cannot see" in picture
+
+
+@pytest.mark.parametrize("size", [1.0, 1e3, 1e5])
+def test_numbers_and_labels_stay_inside_the_picture(size: float) -> None:
+    """By matplotlib's own measure of the texts, whose font is about as wide as the pages'."""
+    with drawing() as (figure, axes):
+        axes.plot([0.0, 1.0], [-1.02 * size, 1.02 * size])
+        axes.set(ylabel="mean residual [N]")
+        bar = figure.colorbar(
+            ScalarMappable(Normalize(-1.02 * size, 1.02 * size)), ax=axes, label="force [N]"
+        )
+        figure.subplots_adjust(right=0.94)
+        inline_svg(figure, "a line", "a")
+        renderer = RendererAgg(int(figure.bbox.width), int(figure.bbox.height), figure.dpi)
+        assert axes.get_tightbbox(renderer).x0 >= 0.0
+        assert bar.ax.get_tightbbox(renderer).x1 <= figure.bbox.width
 
 
 def test_two_pictures_share_no_id() -> None:

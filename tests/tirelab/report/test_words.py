@@ -19,7 +19,8 @@ from tirelab.report import titles, words
         (1234567.0, 45678.0, "N/m", "1234567 ± 45678 N/m"),
         (2e-6, None, "m/N", "2.000 mm/kN"),
         (5.0, float("nan"), "s", "5.000 s"),
-        (0.0, 0.0018, "1", "0.0000 ± 0.0018"),
+        (0.0, 0.0018, "1", "0 ± 0.0018"),
+        (-4e-6, 0.0019, "1", "0 ± 0.0019"),
     ],
 )
 def test_estimates_have_two_digits_of_their_deviation(
@@ -52,6 +53,10 @@ def place(by: str, start: Any, stop: Any, unit: str, **more: Any) -> dict[str, A
     ("entry", "told"),
     [
         (place("deflection", 0.012, 0.015, "m"), "12.0 to 15.0 mm"),
+        (place("deflection", 0.00084, 0.00799, "m"), "0.84 to 7.99 mm"),
+        (place("rate", -0.0937, -0.00139, "m/s"), "−93.7 to −1.4 mm/s"),
+        (place("rate", -1e-6, 0.5, "m/s"), "0 to 500 mm/s"),
+        (place("deflection", 1.2e-9, 3.45e-9, "m"), "1.20·10^−6 to 3.45·10^−6 mm"),
         (place("rate", 0.0240, 0.024003, "m/s"), "24.000 to 24.003 mm/s"),
         (place("rate", 0.0599999999, 0.06, "m/s"), "60.000 mm/s"),
         (place("direction", -1.5, 0.0, "1"), "unloading"),
@@ -65,6 +70,38 @@ def place(by: str, start: Any, stop: Any, unit: str, **more: Any) -> dict[str, A
 )
 def test_spans_are_told_in_the_readers_units(entry: dict[str, Any], told: str) -> None:
     assert words.span(entry) == told
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        (place("deflection", 0.012, 0.015, "m"), "deflection 12.0 to 15.0 mm"),
+        (place("direction", 0.0, 1.5, "1"), "while loading"),
+        (place("radius", "inf", "inf", "m"), "on flat ground"),
+    ],
+)
+def test_a_place_is_told_in_a_sentence(entry: dict[str, Any], told: str) -> None:
+    assert words.where_phrase(entry) == told
+    assert words.where_phrase(entry, coordinate_too=False) == words.span(entry)
+
+
+def test_a_surface_follows_on() -> None:
+    assert words.on_surface("inf") == "flat ground"
+    assert words.on_surface(-0.6) == "a concave surface of radius 60 cm"
+    assert words.on_surface(0.127) == "a convex surface of radius 12.7 cm"
+
+
+@pytest.mark.parametrize(
+    ("confidence", "word"),
+    [
+        (0.896, "sure"),
+        (0.894, "fairly sure"),
+        (0.697, "fairly sure"),
+        (0.494, "one of several possibilities"),
+    ],
+)
+def test_the_word_for_a_confidence_agrees_with_the_number_that_is_told(confidence: float, word: str) -> None:
+    assert words.confidence_word(confidence) == word
 
 
 def test_the_foremost_places_do_not_crowd_each_other_out() -> None:
@@ -92,6 +129,7 @@ def test_every_parameter_of_a_refitted_law_has_a_meaning() -> None:
     assert "coefficient A" in words.meaning("recalibration", "log factor on A, flat")
     assert words.meaning("force_offset", "offset") == "added to the force"
     assert words.meaning("phlogiston", "mass") == ""
+    assert "first of five deflections" in words.meaning("recalibration", "height 1")
 
 
 def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
@@ -110,7 +148,7 @@ def test_percent(share: float, told: str) -> None:
     [
         (10.0, 1.0, "N", (-100.0, 100.0), "8.0 to 12.0 N"),
         (1e-3, 1e-4, "m", (0.0, 1.0), "0.80 to 1.20 mm"),
-        (0.6, 0.4, "N", (0.0, 100.0), "0.00 to 1.38 N"),
+        (0.6, 0.4, "N", (0.0, 100.0), "0 to 1.38 N"),
         (-0.5, 0.1, "1", (-1.0, 1.0), "−0.70 to −0.30"),
         (3.0, None, "N", (0.0, 9.0), "–"),
     ],

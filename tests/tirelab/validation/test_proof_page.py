@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 from browser import CONTRAST, Watched, browser
-from tirelab.validation.metrics import Rate
+from tirelab.validation.acceptance_criteria import Criterion
+from tirelab.validation.metrics import Mean, Rate
 from tirelab.validation.page import Proof, judged, page, too_few
 
 
@@ -80,6 +81,10 @@ def test_an_interval_that_is_too_wide_is_no_judgement(score: Callable[..., Any])
     assert said["false alarms where nothing is hidden"] == "too few trials"
     assert said["unknown recognised outside the catalogue"] == "not measured"
     assert "too few trials" in page(few)
+    wide, narrow = (
+        Criterion("a score", Mean(0.3, (low, 0.5), 9), 0.2, at_least=False) for low in (0.1, 0.25)
+    )
+    assert (judged(wide), judged(narrow)) == ("too few trials", "fail")
     many = Proof(1, tuple(score("none", "none", "none", trial=f"{i}") for i in range(40)))
     assert {judged(c) for c in many.criteria if c.figure == "false alarms where nothing is hidden"} == {
         "pass"
