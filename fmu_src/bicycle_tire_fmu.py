@@ -46,7 +46,7 @@ STOP_TIME, STEP_SIZE = 1.0, 2e-4
 """[s] of the default experiment: the step that holds for a wheel on the tire (see the documentation's last section)."""
 
 ON_TIME = 1e-3
-"""Part of a step by which its start may differ from the end of the last one: hosts add times up in their own ways."""
+"""Part of a step by which a time may be off: hosts add times up in their own ways."""
 
 TRAITS: dict[int, dict[str, str]] = {
     DEFLECTION: {
@@ -61,6 +61,11 @@ TRAITS: dict[int, dict[str, str]] = {
     RADIAL_STIFFNESS: {"unit": "N/m", "displayUnit": "N/mm", "nominal": "100000"},
 }
 """Attributes that pythonfmu does not write; the unit stands on every variable, since some importers look only there."""
+
+
+def _off(time: float, step: float) -> float:
+    """Return by how much a time [s] may be off."""
+    return ON_TIME * step + 1e-9 * max(1.0, abs(time))
 
 
 class BicycleTire(Fmi2Slave):
@@ -83,6 +88,7 @@ class BicycleTire(Fmi2Slave):
         self._elastic = power_law.on_surface(0.0, 1.0)
         self._state = self._tire.initial_state
         self._reached = 0.0  # [s], the end of the last step
+        self._stop = math.inf  # [s], the end of the experiment
         self._force = 0.0
         self._current = False
 
@@ -231,11 +237,18 @@ class BicycleTire(Fmi2Slave):
     def setup_experiment(
         self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
     ) -> bool:
-        """Store the start time of the experiment."""
+        """Store the start and stop times of the experiment."""
         if not math.isfinite(start_time):
             self._tell(f"startTime = {start_time:.17g} s is not allowed; it must be a finite number")
             return False
+        if stop_time is not None and not stop_time >= start_time:
+            self._tell(
+                f"stopTime = {stop_time:.17g} s is not allowed; it must not lie before "
+                f"startTime = {start_time:.17g} s"
+            )
+            return False
         self._reached = start_time
+        self._stop = math.inf if stop_time is None else stop_time
         return True
 
     def exit_initialization_mode(self) -> bool:
@@ -255,6 +268,7 @@ class BicycleTire(Fmi2Slave):
             and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST
             and current_time == self._reached
             and 0.0 <= step_size < math.inf
+            and current_time + step_size <= self._stop
         ):
             self._force = self._elastic(x)
             self._current = True
@@ -279,8 +293,13 @@ class BicycleTire(Fmi2Slave):
             return (
                 f"communicationStepSize = {step_size:.17g} s is not allowed; it must be positive and finite"
             )
-        tolerance = ON_TIME * step_size + 1e-9 * max(1.0, abs(self._reached))
-        if not abs(current_time - self._reached) <= tolerance:
+        end, stop = current_time + step_size, self._stop
+        if end > stop + _off(stop, step_size):
+            return (
+                f"communicationStepSize = {step_size:.17g} s is not allowed; the step would end at {end:.17g} s, "
+                f"after stopTime = {stop:.17g} s"
+            )
+        if not abs(current_time - self._reached) <= _off(self._reached, step_size):
             return (
                 f"currentCommunicationPoint = {current_time:.17g} s is not allowed; it must be "
                 f"{self._reached:.17g} s, the end of the last step"

@@ -4,6 +4,7 @@
  *
  * Its states stepInProgress, stepFailed and stepCanceled do not occur here: a step is made or refused at once. After an
  * error the standard leaves only a reset or a saved state; a host that sets a good value instead may go on all the same.
+ * In Continuous-Time Mode the standard lets a host set inputs alone; CasADi sets parameters there too, and they are taken.
  */
 #ifndef FMI2_STATES_H
 #define FMI2_STATES_H

@@ -19,6 +19,9 @@ ORDER = sorted(CATALOGUE.values(), key=lambda effect: PLACES.index(effect.place)
 LAW = CurvatureLaw.through([(-2.6, 640.0, 1.2), (0.0, 550.9, 1.422), (3.0, 500.0, 1.3)])
 TABLE = ((math.inf, 0.1, 0.01), (0.3, -0.05, 0.02), (-0.4, 0.2, -0.1))
 
+HELD = ("rate_independent_hysteresis", "viscous_damping", "force_offset")
+"""Effects of a bushing or a damper."""
+
 Moment = tuple[float, float, float]
 
 
@@ -42,6 +45,8 @@ def tires(random_sets: int) -> Iterator[tuple[str, TireModel]]:
     yield "power law", TireModel(law=PowerLaw())
     yield "curvature law", TireModel(law=LAW)
     yield "recalibrated twice", TireModel(law=Recalibrated(Recalibrated(LAW, ((0.2, 0.1, 0.1),)), TABLE))
+    held = tuple((CATALOGUE[name], CATALOGUE[name].nominal) for name in HELD)
+    yield "part held at both ends, without air", TireModel(PowerLaw(), held, two_sided=True, inflated=False)
     for effect in ORDER:
         for optional in (False, True):
             tire = TireModel(effects=((effect, values(effect, r, optional=optional)),))

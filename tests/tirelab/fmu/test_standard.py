@@ -14,6 +14,7 @@ import pytest
 from loader_bench import Bench, guid_of, unpacked_archive
 from radialtire import CATALOGUE, TireModel
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.native.pack import build_native_fmu
 
 Run = Callable[..., Any]
 
@@ -160,6 +161,39 @@ def test_the_last_successful_time_is_a_number_from_the_start(tire: Path) -> None
     begun, first, stepped, second, refused, third, reset, again, fourth = json.loads(printed)
     assert (begun, stepped, refused, reset, again) == (0, 0, 3, 0, 0)
     assert (first, second, third, fourth) == (2.0, 2.5, 2.5, 0.0)
+
+
+@pytest.fixture(scope="module")
+def native_tire(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("native")
+    return unpacked_archive(build_native_fmu(TireModel(), folder).path, folder / "fmu")
+
+
+@pytest.mark.parametrize("kind", ["tire", "native_tire"])
+def test_a_step_past_the_stop_time_is_refused(request: pytest.FixtureRequest, kind: str) -> None:
+    """FMI 2.0.5, 2.1.5: fmi2Error; a step that ends there as a host adds its times up is made."""
+    printed = with_instance(
+        request.getfixturevalue(kind),
+        """[
+            library.fmi2SetupExperiment(tire, 0, c_double(0), c_double(1.0), 1, c_double(0.5)),
+            library.fmi2SetupExperiment(tire, 0, c_double(0), c_double(0.0), 1, c_double(float("nan"))),
+            library.fmi2SetupExperiment(tire, 0, c_double(0), c_double(0.0), 1, c_double(0.3)),
+            library.fmi2EnterInitializationMode(tire), library.fmi2ExitInitializationMode(tire),
+            [library.fmi2DoStep(tire, c_double(t), c_double(0.1), 1) for t in (0.0, 0.1, 0.1 + 0.1 + 1e-12)],
+            library.fmi2DoStep(tire, c_double(0.3), c_double(0.1), 1), real_status(),
+            library.fmi2Reset(tire), begin(0.0), library.fmi2DoStep(tire, c_double(0.0), c_double(9.0), 1), messages,
+        ]""",
+    )
+    early, missing, *begun, steps, past, reached, reset, again, free, messages = json.loads(printed)
+    assert (early, missing, begun, steps, past) == (3, 3, [0, 0, 0], [0, 0, 0], 3)
+    assert reached == pytest.approx(0.3, rel=1e-9)
+    assert (reset, again, free) == (0, 0, 0)
+    assert [message.partition("is not allowed")[0] for message in messages] == [
+        "stopTime = 0.5 s ",
+        "stopTime = nan s ",
+        "communicationStepSize = 0.10000000000000001 s ",
+    ]
+    assert "after stopTime = 0.29999999999999999 s" in messages[2]
 
 
 def test_unknown_references_are_refused(tire: Path) -> None:

@@ -50,9 +50,9 @@ EXPORT Status fmi2SetDebugLogging(void *c, int on, size_t n, const String catego
 
 EXPORT Status fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, double start, int has_stop, double stop)
 {
-    (void)has_tolerance, (void)tolerance, (void)has_stop, (void)stop;
+    (void)has_tolerance, (void)tolerance;
     ENTER(MAY_SetupExperiment, "fmi2SetupExperiment")
-    return instance_start_at(self, start);
+    return instance_start_at(self, start, has_stop != 0, stop);
 }
 
 #define CHANGE(Name, next) \

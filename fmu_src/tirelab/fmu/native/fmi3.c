@@ -88,9 +88,9 @@ EXPORT Status fmi3SetDebugLogging(void *c, bool on, size_t n, const String categ
 EXPORT Status fmi3EnterInitializationMode(void *c, bool has_tolerance, double tolerance, double start, bool has_stop,
                                           double stop)
 {
-    (void)has_tolerance, (void)tolerance, (void)has_stop, (void)stop;
+    (void)has_tolerance, (void)tolerance;
     ENTER(INSTANTIATED, "fmi3EnterInitializationMode")
-    const Status status = instance_start_at(self, start);
+    const Status status = instance_start_at(self, start, has_stop, stop);
     if (status == OK)
         self->tire.m.stage = INITIALIZATION;
     return status;

@@ -76,11 +76,14 @@ void instance_free(Instance *self)
     free(self);
 }
 
-Status instance_start_at(Instance *self, double start)
+Status instance_start_at(Instance *self, double start, bool has_stop, double stop)
 {
     if (!isfinite(start))
         return fail(self, "startTime = %.17g s is not allowed; it must be a finite number", start);
+    if (has_stop && !(stop >= start))
+        return fail(self, "stopTime = %.17g s is not allowed; it must not lie before startTime = %.17g s", stop, start);
     self->tire.m.time = self->tire.m.reached = start;
+    self->tire.m.stop = has_stop ? stop : INFINITY;
     return OK;
 }
 
@@ -246,9 +249,7 @@ Status instance_derivatives(Instance *self, const Reference unknown[], size_t un
 Status instance_step(Instance *self, double time, double step)
 {
     char trouble[TROUBLE];
-    if (tire_step_fits(&self->tire, time, step, trouble) && tire_accept(&self->tire, time + step, trouble))
-        return OK;
-    return tell(self, ERROR, trouble);
+    return tire_advance(&self->tire, time, step, trouble) ? OK : tell(self, ERROR, trouble);
 }
 
 /* Model Exchange. */

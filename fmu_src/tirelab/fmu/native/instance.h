@@ -46,7 +46,7 @@ __attribute__((format(printf, 2, 3))) Status fail(const Instance *, String forma
 Instance *instance_new(Instance how, String name, String guid, String resources);
 void instance_free(Instance *);
 
-Status instance_start_at(Instance *, double start);
+Status instance_start_at(Instance *, double start, bool has_stop, double stop);
 Status instance_begin(Instance *);
 
 Status instance_get_reals(Instance *, const Reference v[], size_t n, double x[]);

@@ -24,7 +24,10 @@ from radialtire.flat_step import (
     laid_out,
 )
 
-from .translate import DOUBLE, OUT, ROW, Expression, Program, Tuple, number
+from .translation.c_types import DOUBLE, OUT, ROW, Tuple
+from .translation.expression import Expression, number
+from .translation.function import translate
+from .translation.program import Program
 
 PAIR = Tuple((DOUBLE, DOUBLE))
 MOTION = Tuple((DOUBLE,) * (5 + len(CHANNELS)))
@@ -84,12 +87,16 @@ def sources() -> dict[str, str]:
     rows = [Expression(name, kind) for name, kind in (("p", ROW), ("s", ROW), ("n", OUT))]
     pair, motion = Expression("law", PAIR), Expression("motion", MOTION)
     numbers = [Expression(name, DOUBLE) for name in ("deflection", "coefficient", "exponent")]
-    program.function(power_law.force, numbers, name="tire_elastic", public=True)
-    program.function(power_law.stiffness, numbers, name="tire_elastic_tangent", public=True)
-    program.function(flat_step.step, [fixed, pair, motion, *rows], name="tire_step", public=True)
-    program.function(flat_step.stiffness, [fixed, pair, motion, *rows], name="tire_stiffness", public=True)
-    program.function(
-        flat_law.coefficients, [Expression("q", ROW), Expression("R", DOUBLE)], name="tire_law", public=True
+    translate(program, power_law.force, numbers, name="tire_elastic", public=True)
+    translate(program, power_law.stiffness, numbers, name="tire_elastic_tangent", public=True)
+    translate(program, flat_step.step, [fixed, pair, motion, *rows], name="tire_step", public=True)
+    translate(program, flat_step.stiffness, [fixed, pair, motion, *rows], name="tire_stiffness", public=True)
+    translate(
+        program,
+        flat_law.coefficients,
+        [Expression("q", ROW), Expression("R", DOUBLE)],
+        name="tire_law",
+        public=True,
     )
     moved = program.structs[MOTION]
     public = [head for head, _ in program.texts if not head.startswith("static ")]

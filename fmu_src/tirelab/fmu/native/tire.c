@@ -15,7 +15,7 @@
 
 static const double LOWEST = -1e3, HIGHEST = 0.33; /* deflections accepted [m], as radialtire.model */
 static const double FLAT = 1e5;                    /* start value of the surface radius [m] */
-static const double ON_TIME = 1e-3; /* part of a step by which its start may be off: hosts add times up in their own ways */
+static const double ON_TIME = 1e-3; /* part of a step by which a time may be off: hosts add times up in their own ways */
 
 /* Reading the data. */
 
@@ -466,6 +466,7 @@ void tire_reset(Tire *tire)
     tire->m.inputs.radius = FLAT;
     for (int i = 0; i < tire->channel_count; i++)
         tire->m.inputs.channels[i] = tire->channels[i].start;
+    tire->m.stop = INFINITY;
     tire->m.stage = INSTANTIATED;
     tire->current = false;
     tire->unchecked = true;
@@ -563,21 +564,49 @@ bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const
     return true;
 }
 
-bool tire_step_fits(const Tire *tire, double time, double step, char trouble[TROUBLE])
+/* By how much a time may be off that hosts add up in their own ways. */
+static double off(double time, double step) { return ON_TIME * step + 1e-9 * (fabs(time) > 1 ? fabs(time) : 1); }
+
+static bool step_fits(const Tire *tire, double time, double step, char trouble[TROUBLE])
 {
     if (!(step >= 0 && step < INFINITY)) {
         snprintf(trouble, TROUBLE, "communicationStepSize = %.17g s is not allowed; it must be positive and finite", step);
         return false;
     }
-    if (time == tire->m.reached)
-        return true;
-    const double tolerance = ON_TIME * step + 1e-9 * (fabs(tire->m.reached) > 1 ? fabs(tire->m.reached) : 1);
-    if (!(fabs(time - tire->m.reached) <= tolerance)) {
+    if (time + step > tire->m.stop + off(tire->m.stop, step)) {
+        snprintf(trouble, TROUBLE, "communicationStepSize = %.17g s is not allowed; the step would end at %.17g s, after "
+                 "stopTime = %.17g s", step, time + step, tire->m.stop);
+        return false;
+    }
+    if (!(fabs(time - tire->m.reached) <= off(tire->m.reached, step))) {
         snprintf(trouble, TROUBLE, "currentCommunicationPoint = %.17g s is not allowed; it must be %.17g s, the end of the "
                  "last step", time, tire->m.reached);
         return false;
     }
     return true;
+}
+
+/* The usual step of a tire without effects, on the surface of the last one: the force alone is new. */
+static bool glides(Tire *tire, double time, double step)
+{
+    const Inputs *const u = &tire->m.inputs;
+    if (!tire->bare || tire->unchecked || u->radius != tire->surface || tire->channel_count || time != tire->m.reached
+        || !(step >= 0 && time + step <= tire->m.stop && LOWEST <= u->deflection && u->deflection <= HIGHEST))
+        return false;
+    const double force = tire_elastic(u->deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
+    if (!isfinite(force) || !(step < INFINITY))
+        return false;
+    tire->force = force;
+    tire->compression = u->deflection;
+    tire->current = true;
+    tire->m.time = tire->m.reached = time + step;
+    return true;
+}
+
+bool tire_advance(Tire *tire, double time, double step, char trouble[TROUBLE])
+{
+    return glides(tire, time, step)
+           || (step_fits(tire, time, step, trouble) && tire_accept(tire, time + step, trouble));
 }
 
 bool tire_in_range(const Tire *tire)

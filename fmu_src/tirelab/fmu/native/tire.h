@@ -42,6 +42,7 @@ typedef struct {
     Inputs inputs;
     double time;      /* of the values that are asked for */
     double reached;   /* the end of the last step */
+    double stop;      /* the end of the experiment, infinite where none was said */
     int given;        /* whether rate and acceleration are inputs */
     int stage;        /* the state of the standard */
     double s[STATES];
@@ -103,8 +104,8 @@ bool tire_can_set(Tire *tire, unsigned reference);
 bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const double seed[], size_t count,
                      double *value);
 
-/* Where a step may begin and how long it may be; a sentence where that is not so. */
-bool tire_step_fits(const Tire *tire, double time, double step, char trouble[TROUBLE]);
+/* Make a step; a sentence where it may not begin, is too long, or ends with inputs that no tire has. */
+bool tire_advance(Tire *tire, double time, double step, char trouble[TROUBLE]);
 
 /* Whether a reference is that of the Boolean parameter motion_given. */
 bool tire_is_motion_given(const Tire *tire, unsigned reference);

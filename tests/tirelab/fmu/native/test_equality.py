@@ -63,6 +63,18 @@ def test_the_same_bits_in_a_host_in_c(compiler: Compiler, tmp_path: Path) -> Non
     assert differing(run, tmp_path, MOMENTS, RANDOM_SETS) == {}
 
 
+def test_the_tires_have_a_rebound_that_is_not_one() -> None:
+    """Friction's and damping's optional parameter: another force when the tire lets go."""
+    moved = {
+        effect.name
+        for _, tire in tires(0)
+        for effect, values in tire.effects
+        for parameter, value in zip(effect.parameters, values, strict=True)
+        if parameter.name == "rebound" and value != parameter.nominal_value
+    }
+    assert moved == {"rate_independent_hysteresis", "viscous_damping"}
+
+
 def zig(target: str, destination: Path, *flags: str) -> None:
     """Compile the host for another platform."""
     pytest.importorskip("ziglang")

@@ -1,18 +1,20 @@
-"""The translator: what the C computes is what the Python computes, and what it cannot translate it refuses."""
+"""A function as a whole: what the C computes is what the Python computes, and what it cannot translate it refuses."""
 
 from __future__ import annotations
 
 import ctypes
 import math
 import subprocess
-from collections.abc import Callable
-from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tirelab.fmu.loader import Compiler
-from tirelab.fmu.native.translate import DOUBLE, ROW, Expression, Program, Unsupported
+from tirelab.fmu.native.translation.body import Unsupported
+from tirelab.fmu.native.translation.c_types import DOUBLE
+from tirelab.fmu.native.translation.expression import Expression
+from tirelab.fmu.native.translation.function import translate
+from tirelab.fmu.native.translation.program import Program
 
 LIMIT = 3.0
 STEPS = 5
@@ -47,8 +49,8 @@ def swapped(pair: tuple[float, float]) -> tuple[float, float]:
 @pytest.fixture(scope="module")
 def in_c(compiler: Compiler, tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     program = Program()
-    program.function(
-        branching, [Expression("x", DOUBLE), Expression("y", DOUBLE)], name="branching", public=True
+    translate(
+        program, branching, [Expression("x", DOUBLE), Expression("y", DOUBLE)], name="branching", public=True
     )
     lines = ["#include <math.h>", "#include <stdbool.h>"]
     lines += [f"static const double {name} = {value!r};" for name, value in program.constants.items()]
@@ -71,14 +73,35 @@ def test_every_statement_gives_the_same_bits(in_c: ctypes.CDLL, x: float, y: flo
     assert in_c.branching(x, y) == branching(x, y)
 
 
-def of_names(x: float) -> float:
-    """Use a name that nobody knows."""
-    return x + unknown  # noqa: F821
+def unrolled(x: float) -> float:
+    """Call one function on two whole numbers and twice on a variable."""
+    return power(x, 2) + power(x, 3) + halved(x) + halved(2.0 * x)
 
 
-def of_lists(x: float) -> float:
-    """Use a list."""
-    return [x, x][0]
+def power(x: float, n: int) -> float:
+    """Return x^n, n at least 1."""
+    total = x
+    for _ in range(n - 1):
+        total *= x
+    return total
+
+
+def halved(x: float) -> float:
+    """Return the half."""
+    return 0.5 * x
+
+
+def test_a_function_is_translated_once_for_its_types_and_anew_for_each_constant() -> None:
+    program = Program()
+    translate(program, unrolled, [Expression("x", DOUBLE)], name="unrolled", public=True)
+    heads = [head for head, _ in program.texts]
+    assert [head.split("(")[0].replace("_", " ").split()[-1] for head in heads] == [
+        "power",
+        "power",
+        "halved",
+        "unrolled",
+    ]
+    assert [head.startswith("static ") for head in heads] == [True, True, True, False]
 
 
 def of_two_types(x: float) -> float:
@@ -88,30 +111,8 @@ def of_two_types(x: float) -> float:
     return y if y else x  # type: ignore[return-value]
 
 
-def of_a_place_not_known(q: tuple[float, ...], x: float) -> float:
-    """Cut a row where nobody knows."""
-    at = int(x)
-    return sum(q[at : at + 2])
-
-
-def of_a_chain(x: float) -> bool:
-    """Compare three."""
-    return 0.0 < x < 1.0
-
-
-@pytest.mark.parametrize(
-    ("function", "arguments", "words"),
-    [
-        (of_names, [DOUBLE], "of_names.*unknown name: unknown"),
-        (of_lists, [DOUBLE], r"of_lists.*outside the subset: \[x, x\]"),
-        (of_two_types, [DOUBLE], "of_two_types.*in place of"),
-        (of_a_place_not_known, [ROW, DOUBLE], "of_a_place_not_known.*a slice that is not constant"),
-        (of_a_chain, [DOUBLE], "of_a_chain.*comparison outside the subset"),
-    ],
-)
-def test_what_is_outside_the_subset_is_refused_with_its_place(
-    function: Callable[..., Any], arguments: list[str], words: str
-) -> None:
-    with pytest.raises(Unsupported, match=words) as raised:
-        Program().function(function, [Expression(f"a{i}", kind) for i, kind in enumerate(arguments)])
-    assert f"{function.__name__}, line " in str(raised.value)
+def test_what_is_outside_the_subset_is_refused_with_its_place() -> None:
+    """The place is that in the file: the line of `y = x` above."""
+    line = of_two_types.__code__.co_firstlineno + 3
+    with pytest.raises(Unsupported, match=rf"of_two_types, line {line}: .*in place of"):
+        translate(Program(), of_two_types, [Expression("x", DOUBLE)])
