@@ -1,0 +1,43 @@
+"""Recordings in blocks: which of them are compared with a model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from radialtire import TireModel
+from tirelab.recordings.recording import Recording
+from tirelab.regressors.dataset import dataset_of
+from tirelab.simulation.simulate import simulate
+
+FORCE_NOISE = 5.0
+
+
+def triangle(samples: int, turns: int) -> Recording:
+    """Return so many turns within 20 mm on the flat: the force of the article's tire with its noise."""
+    phase = np.arange(samples) * turns / samples
+    x = 0.02 * (1.0 - np.abs(phase % 2.0 - 1.0))
+    noise = FORCE_NOISE * np.random.default_rng(3).normal(size=samples)
+    silent = Recording("triangle", 0.01 * np.arange(samples), x, np.full(samples, np.inf), noise)
+    return replace(silent, force=simulate(TireModel(), silent) + noise)
+
+
+def test_no_block_that_touches_a_turn_or_follows_one_is_compared() -> None:
+    """In blocks a path turns in the middle of one of them, short of the depth that it reached."""
+    samples, turns = 16_000, 8
+    (experiment,) = dataset_of([triangle(samples, turns)], TireModel()).experiments
+    assert experiment.size > 1
+    at = (np.arange(1, turns) * samples / turns / experiment.size).astype(int)
+    for turn in at:
+        assert not experiment.counts[turn - 1 : turn + 2].any()
+    assert experiment.counts.mean() > 0.95
+
+
+def test_samples_beside_a_turn_are_compared_where_nothing_is_averaged() -> None:
+    """What limits the force at its peak is seen there and nowhere else."""
+    samples, turns = 2000, 8
+    (experiment,) = dataset_of([triangle(samples, turns)], TireModel()).experiments
+    assert experiment.size == 1
+    side = samples // turns
+    near = [*range(side - 10, side - 4), *range(side + 5, side + 11)]
+    assert experiment.counts[near].all()
