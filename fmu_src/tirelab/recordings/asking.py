@@ -15,6 +15,7 @@ from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units
 from .units import measures
+from .vocabulary import begins_like
 
 FloatArray = NDArray[np.float64]
 
@@ -191,7 +192,8 @@ def _guessed_columns(
     values: Mapping[int, FloatArray],
     headers: Sequence[Header],
 ) -> dict[str, int]:
-    """Return a likely column for each channel that has none: time rises, others go by their unit, else by their size.
+    """Return a likely column for each channel that has none: time rises, others go by their unit, else by the beginning
+    of their name ("forc"), else by their size.
 
     A unit tells where one column alone states a fitting one; of two columns without, the larger is the force.
     """
@@ -209,10 +211,14 @@ def _guessed_columns(
             guessed[name] = fits[0]
             free.remove(fits[0])
     free = [i for i in free if headers[i].unit is None]
+    for name in ("deflection", "force"):
+        alike = [i for i in free if begins_like(headers[i].text, name)]
+        if name in missing and name not in guessed and len(alike) == 1:
+            guessed[name] = alike[0]
+            free.remove(alike[0])
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
-    if len(both) == 2 and len(free) == 2:
-        small, large = sorted(free, key=lambda i: float(np.nanmax(np.abs(values[i]))))
-        guessed |= {"deflection": small, "force": large}
-    elif len(both) == 1 and len(free) == 1:
-        guessed[both[0]] = free[0]
+    if len(free) >= len(both):
+        # Of many columns the first ones: of trials side by side those of one trial.
+        sized = sorted(free[: len(both)], key=lambda i: float(np.nanmax(np.abs(values[i]))))
+        guessed |= dict(zip(both, sized, strict=True))
     return guessed

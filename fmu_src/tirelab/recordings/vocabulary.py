@@ -58,6 +58,12 @@ FOREIGN: dict[str, tuple[str, ...]] = {
 }
 """Names of each channel that are taken where no column has one of the usual English names; without accents."""
 
+BESIDE = {"deflection": ("displacement", "distance", "stroke", "travel"), "force": ("load",)}
+"""English words for a channel of which a column may have the beginning."""
+
+SHORTEST = 4
+"""Letters of a name that is taken for the beginning of a word."""
+
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
 _COUNTED = re.compile(r"(?P<name>.*?[^\W\d_])(?:[ ._#-]*\d+|_duplicated_\d+)")
 
@@ -73,6 +79,13 @@ def plain(name: str) -> str:
 def foreign_channel(name: str) -> str | None:
     """Return the channel that a name is a word for in one of the languages, None where it is none."""
     return _CHANNEL_OF.get(plain(name))
+
+
+def begins_like(name: str, channel: str) -> bool:
+    """Whether a name of four letters or more is the beginning of a word for a channel: `forc`, `displ`, `dist`."""
+    short = plain(name)
+    words = (channel, *FOREIGN.get(channel, ()), *BESIDE.get(channel, ()))
+    return len(short) >= SHORTEST and any(word.startswith(short) for word in words)
 
 
 def without_count(name: str) -> str | None:

@@ -99,6 +99,15 @@ class TestColumns:
         # a column without a number, as a comma at the end of each row leaves it, is none to propose
         assert "NAME" not in said
 
+    def test_what_is_proposed_can_be_copied(self, tmp_path: Path) -> None:
+        """By the beginnings of names, and of trials side by side the columns of the first one."""
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "Tout,forc,dist,x_F:1", time, force, deflection, force)
+        assert "--columns time=#1,deflection=#3,force=#2" in refusal(path, radius="flat")
+        names = "Trial 1_x,Trial 1_y,Trial 2_x,Trial 2_y"
+        path = write_rows(tmp_path / "b.csv", names, deflection, force, deflection, force)
+        assert "--columns deflection=#1,force=#2" in refusal(path, radius="flat")
+
     def test_a_doubtful_optional_channel_can_be_left_out(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         header = "time [s],deflection [cm],force [N],temp [degC],temperature [degC]"
