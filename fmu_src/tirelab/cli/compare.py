@@ -32,19 +32,19 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
 
     if fmu is not None and tire is not None:
         raise TirelabError("--fmu and --tire both name a tire; give one of them")
-    recorded = reading(recording)
+    believed = fmu or (TireModel() if tire is None else read_tire(tire))
+    part = isinstance(believed, TireModel) and believed.two_sided
+    recorded = (reading.of_part() if part else reading)(recording)
     for note in recorded.notes:
         output.note(note)
     with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
-        if fmu is None:
-            model = TireModel() if tire is None else read_tire(tire)
-            fmu = _packed(model, Path(folder))
-            against = model.name
+        if isinstance(believed, TireModel):
+            file, against = _packed(believed, Path(folder)), believed.name
         else:
-            against = str(fmu)
-            output.stage(f"{fmu} is native code: it now runs with your rights")
+            file, against = believed, str(believed)
+            output.stage(f"{file} is native code: it now runs with your rights")
         output.stage(f"replaying {against} on {recorded.name}")
-        result = compare(recorded, replay(fmu, recorded))
+        result = compare(recorded, replay(file, recorded))
     picture = f"{recorded.name}.compare.png"
     with staged(output.out) as folder:
         plot(result, folder / picture)

@@ -62,6 +62,7 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     from ..recordings.files import recording_files
 
     out, part = output.out, options["part"]
+    reading = reading.of_part() if part else reading
     if out.is_dir():
         raise TirelabError(f"{out} cannot be written (it is a folder); name a file with --out")
     console = Console(highlight=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +23,10 @@ class Reading(Choices):
         from .recording import understand
 
         return understand(file, self).recording
+
+    def of_part(self) -> Reading:
+        """Return how recordings of a part are read: a damper or a bushing has no ground, so none is asked for."""
+        return self if self.radius is not None else replace(self, radius="flat")
 
     def words(self) -> list[str]:
         """Return the words of a command line that read recordings in the same way."""

@@ -155,7 +155,10 @@ def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: 
     x = 0.01 * np.sin(2.0 * np.pi * time)
     force = 120.0 + 3000.0 * 0.02 * np.pi * np.cos(2.0 * np.pi * time) + 2e4 * x
     force += np.random.default_rng(8).standard_normal(2000)
-    write_recording(Recording("damper", time, x, np.full(2000, np.inf), force), tmp_path / "damper.csv")
+    # No radius: a part has no ground, and neither command asks for one.
+    rows = np.column_stack([time, 100.0 * x, force])
+    header = "time [s],deflection [cm],force [N]"
+    np.savetxt(tmp_path / "damper.csv", rows, delimiter=",", header=header, comments="", fmt="%.6f")
     out = tmp_path / "part.json"
     signed = ["--columns", "deflection=+deflection [cm],force=+force [N]"]
     words = ["identify", str(tmp_path / "damper.csv"), *signed, "--part", "linear", "--out", str(out)]
@@ -168,6 +171,9 @@ def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: 
     assert diagnosed.exit_code == 0, diagnosed.output
     assert "damping" in diagnosed.output
     assert "hysteresis" in diagnosed.output  # one speed at each deflection: either may be
+    words = ["compare", str(tmp_path / "damper.csv"), *signed, "--tire", str(out), "--out", str(tmp_path)]
+    compared = CliRunner().invoke(main, words)
+    assert compared.exit_code == 0, compared.output
 
 
 def test_one_surface_at_a_time() -> None:
