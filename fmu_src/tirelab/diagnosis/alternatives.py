@@ -96,7 +96,7 @@ def reason_of(
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):
         loops = [text for text in lacks if "surface" not in text]
-        another = f"repeat at {1e3 * _another_speed(dataset, limits):.2g} mm/s"
+        another = f"repeat at {_another_speed(dataset, limits)}"
         return "; ".join(loops) or f"their loops are alike at the recorded rates: {another}"
     return "; ".join(lacks) or "the difference is smaller than these recordings can show"
 
@@ -110,7 +110,7 @@ def insufficient_excitation(
     if not timed:
         lacks.append("no time: record the time of each sample")
     elif explanation.excitation.one_speed:
-        lacks.append(f"one speed only: repeat at {1e3 * _another_speed(dataset, limits):.2g} mm/s")
+        lacks.append(f"one speed only: repeat at {_another_speed(dataset, limits)}")
     mountable = set() if limits is None else set(limits.surfaces)
     if len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):
         lacks.append("one surface only: press on a second surface")
@@ -125,12 +125,13 @@ def insufficient_excitation(
     return lacks
 
 
-def _another_speed(dataset: Dataset, limits: Limits | None) -> float:
-    """Return a speed [m/s] far from those recorded: ten times the typical one where the rig reaches that."""
+def _another_speed(dataset: Dataset, limits: Limits | None) -> str:
+    """Return a speed far from those recorded, with its unit: ten times the typical one where the rig reaches that."""
     speeds = np.concatenate([np.abs(e.motion.rate) for e in dataset.experiments])
     typical, fastest = float(np.sqrt(np.mean(speeds**2))), float(speeds.max())
     reached = max(2.0 * fastest, REACHED) if limits is None else limits.fastest
-    return FASTER * typical if FASTER * typical <= reached else typical / FASTER
+    speed = FASTER * typical if FASTER * typical <= reached else typical / FASTER
+    return f"{float(f'{1e3 * speed:.2g}'):g} mm/s"
 
 
 def _traits(name: str) -> tuple[str, ...]:
