@@ -155,8 +155,15 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
         lines.append(f"no response within these limits: {', '.join(map(_title, plan.silent))}")
     if len(rig.pressures) > 1:
         lines.append(
-            "slow triangles at another pressure than the first count for what they tell apart beside a gain with the "
-            "pressure that is not known; each pressure is driven at least once, for that gain: record the pressure"
+            "every other effect is told apart beside a gain with the pressure that is not known; each pressure is "
+            "driven at least once: record the pressure"
+        )
+    else:
+        from ..planning.responses import HELD
+
+        lines.append(
+            f"{_title(HELD.name)}: recordings at two pressures show it, give those that can be held: --pressures "
+            "2bar,3bar"
         )
     return [*lines, f"written: {out / PLAN}, {out / 'plan.png'} and the drive files"]
 

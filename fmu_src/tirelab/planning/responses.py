@@ -6,7 +6,8 @@ a motion are the products of these curves with each other over its rows, in unit
 motions add up, since the tire begins each recording at rest.
 
 Where the rig holds several pressures the tire's force follows them with a usual gain (the effect that reads the
-pressure, nominal), which is not known: what it changes within its prior is a column that every model has.
+pressure, nominal), which is not known: what it changes within its prior is a column that every model has. That effect
+itself is drawn as the others are, on the tire without it, and judged beside models that have no such column.
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ DRAWS = 8
 
 SIZED_AT = 0.02
 """Size at which responses are computed, largest response over peak force: in the middle of 1 to 5 %."""
+
+HELD = next(e for e in CATALOGUE.values() if e.reads is not None and e.reads.reference is not None)
+"""The effect that only another value of a held channel shows: the force's gain with the pressure."""
 
 PRIOR_OF_LAW = "prior of the law"
 """The columns of the law's signature at its declared standard deviations."""
@@ -69,13 +73,17 @@ def responses_of(
     drives: Sequence[Drive], tire: TireModel, rig: Rig, progress: Callable[[str], None]
 ) -> Responses:
     """Return the products of the responses of all effects and of a refitted law on the drives."""
+    bare = replace(tire, effects=tuple((e, v) for e, v in tire.effects if e.name != HELD.name))
     tire, more = _at_pressures(tire, rig)
     experiments = [experiment_of(d, tire, rig.noise) for d in drives]
     peak = peak_force(drives, tire)
     dataset = Dataset(tuple(experiments), tire, _scales(experiments, rig, peak))
     progress("sizing the effects")
     first = [e for e in experiments if e.surface_radius[0] == rig.surfaces[0]]
-    sets = _sized_sets(replace(dataset, experiments=tuple(first)), peak)
+    sets = _sized_sets(_of_motion(), replace(dataset, experiments=tuple(first)), peak)
+    held = _of_held(drives, bare, rig, dataset) if more else None
+    if held is not None:
+        sets |= _sized_sets((HELD.name,), held, peak)
     progress("simulating the effects on every motion")
     law = law_signature(dataset)
     prior = law.basis * size_of(FACTOR * dataset.stacked([e.baseline for e in experiments]))
@@ -84,14 +92,15 @@ def responses_of(
     widths |= {LAW: changes.shape[1], PRIOR_OF_LAW: prior.shape[1]} | ({PRIOR_OF_GAIN: 1} if more else {})
     places = _places(widths)
     grams, begin = [], 0
-    for experiment in experiments:
+    for number, experiment in enumerate(experiments):
         part = replace(dataset, experiments=(experiment,))
         end = begin + int(experiment.counts.sum())
-        columns = [
-            part.response(arranged(tire, [(name, values)])) / size
-            for name, found in sets.items()
-            for values, size in found
-        ]
+        columns = []
+        for name, found in sets.items():
+            of = part
+            if held is not None and name == HELD.name:
+                of = replace(held, experiments=(held.experiments[number],))
+            columns += [of.response(arranged(of.tire, [(name, values)])) / size for values, size in found]
         gain = [part.response(other) for other in more]
         whole = np.column_stack([*columns, changes[begin:end], prior[begin:end], *gain])
         grams.append(whole.T @ whole)
@@ -106,21 +115,26 @@ def _at_pressures(tire: TireModel, rig: Rig) -> tuple[TireModel, tuple[TireModel
     """Return the tire whose force follows the pressures that the rig holds, and it with another gain; with fewer than
     two pressures the tire as it is, and none.
     """
-    reader = next(e for e in CATALOGUE.values() if e.reads is not None and e.reads.reference is not None)
     if len(rig.pressures) < 2:
         return tire, ()
     own = {effect.name: values for effect, values in tire.effects}
-    assert reader.reads is not None
-    first = [
-        rig.pressures[0] if p.name == reader.reads.reference else p.nominal_value for p in reader.parameters
-    ]
-    values = own.get(reader.name, tuple(first))
+    assert HELD.reads is not None
+    first = [rig.pressures[0] if p.name == HELD.reads.reference else p.nominal_value for p in HELD.parameters]
+    values = own.get(HELD.name, tuple(first))
     other = [
         v - p.prior.spread if p.role == "strength" and p.prior is not None else v
-        for p, v in zip(reader.parameters, values, strict=True)
+        for p, v in zip(HELD.parameters, values, strict=True)
     ]
-    both = (arranged(tire, [(reader.name, tuple(given))]) for given in (values, other))
+    both = (arranged(tire, [(HELD.name, tuple(given))]) for given in (values, other))
     return next(both), (next(both),)
+
+
+def _of_held(drives: Sequence[Drive], bare: TireModel, rig: Rig, dataset: Dataset) -> Dataset:
+    """Return the drives on the tire whose force does not follow the pressure, about the rig's first pressure."""
+    assert HELD.reads is not None
+    experiments = tuple(experiment_of(d, bare, rig.noise) for d in drives)
+    channels = {**dataset.scales.channels, HELD.reads.channel: rig.pressures[0]}
+    return Dataset(experiments, bare, replace(dataset.scales, channels=channels))
 
 
 def _places(widths: Mapping[str, int]) -> dict[str, slice]:
@@ -139,10 +153,10 @@ def _of_motion() -> tuple[str, ...]:
 Sized = list[tuple[tuple[float, ...], float]]
 
 
-def _sized_sets(dataset: Dataset, peak: float) -> dict[str, Sized]:
+def _sized_sets(names: Sequence[str], dataset: Dataset, peak: float) -> dict[str, Sized]:
     """Return of each effect its draws and their sizes: largest response on any motion over the peak force."""
     found = {}
-    for name in _of_motion():
+    for name in names:
         sets, _ = drawn(CATALOGUE[name], dataset.scales, DRAWS)
         sized = [_sized(CATALOGUE[name], values, dataset, peak) for values in sets]
         heard = [(tuple(values), size) for values, size in sized if size > SILENT]

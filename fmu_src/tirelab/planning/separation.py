@@ -33,7 +33,7 @@ from scipy.stats import ncx2
 from ..regressors.law import LAW, form_error
 from ..selection.discrepancy import EFFECTIVE
 from ..selection.search import PRIOR_ODDS
-from .responses import PRIOR_OF_GAIN, PRIOR_OF_LAW
+from .responses import HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW
 
 FloatArray = NDArray[np.float64]
 
@@ -56,20 +56,20 @@ class Question:
 
 def questions_of(names: Sequence[str], size: float) -> tuple[Question, ...]:
     """Return every effect against a refitted law alone, and against every other effect beside a refitted law; and a
-    refitted law against nothing and against every effect.
+    refitted law against nothing and against every effect. The gain with a held pressure is part of every rival, so it
+    is asked for and is no rival of its own.
     """
     effects = [name for name in names if name != LAW]
+    rivals = [name for name in effects if name != HELD.name]
     found = []
     for truth in effects:
         found.append(Question(truth, frozenset({LAW}), size, nested=True))
         found += [
-            Question(truth, frozenset({LAW, other}), size, nested=False)
-            for other in effects
-            if other != truth
+            Question(truth, frozenset({LAW, other}), size, nested=False) for other in rivals if other != truth
         ]
     if LAW in names:
         found.append(Question(LAW, frozenset(), size, nested=True))
-        found += [Question(LAW, frozenset({other}), size, nested=False) for other in effects]
+        found += [Question(LAW, frozenset({other}), size, nested=False) for other in rivals]
     return tuple(found)
 
 
@@ -81,11 +81,15 @@ def probabilities(
     gram (n, n): products of all columns over the motions, in units of the noise; places: of their columns
     """
     found: list[FloatArray] = [np.zeros(0)] * len(questions)
-    groups: dict[tuple[frozenset[str], float], list[int]] = {}
+    groups: dict[tuple[frozenset[str], float, bool], list[int]] = {}
     for number, question in enumerate(questions):
-        groups.setdefault((question.rival, question.size), []).append(number)
-    for (rival, size), numbers in groups.items():
-        model = _Model(gram, _weights(rival, size, places, gram.shape[0]))
+        key = question.rival, question.size, question.truth != HELD.name
+        groups.setdefault(key, []).append(number)
+    for (rival, size, gain), numbers in groups.items():
+        weights = _weights(rival, size, places, gram.shape[0])
+        if gain and PRIOR_OF_GAIN in places:
+            weights[places[PRIOR_OF_GAIN]] = 1.0
+        model = _Model(gram, weights)
         for number in numbers:
             found[number] = _of(questions[number], model, places)
     return found
@@ -116,8 +120,6 @@ class _Model:
 
 def _weights(rival: frozenset[str], size: float, places: Mapping[str, slice], count: int) -> FloatArray:
     weights = np.zeros(count)
-    if PRIOR_OF_GAIN in places:
-        weights[places[PRIOR_OF_GAIN]] = 1.0
     for name in rival:
         if name == LAW:
             weights[places[PRIOR_OF_LAW]] = 1.0

@@ -9,7 +9,7 @@ from small_rig import EFFECTS, RIG, few_effects, silent
 from tirelab.errors import TirelabError
 from tirelab.planning.menu import drive_of
 from tirelab.planning.plan import SIZES, RecordingPlan, file_name, offered, plan_recordings
-from tirelab.planning.responses import responses_of
+from tirelab.planning.responses import HELD, responses_of
 from tirelab.regressors.law import LAW
 
 
@@ -52,6 +52,11 @@ def test_slow_triangles_at_each_other_pressure(plan: RecordingPlan) -> None:
     assert {d.name for d in others} == {"slow triangles"}
     assert at_two.seconds <= RIG.time
     assert file_name(7, others[0]) == "07_slow_triangles_flat_3bar.csv"
+    assert HELD.name not in {row.effect for row in plan.rows}
+    row = next(row for row in at_two.rows if row.effect == HELD.name)
+    assert row.named[-1] > 0.9
+    assert row.named[0] <= row.named[-1] + 1e-9
+    assert not any(HELD.name in a.question.rival for a in at_two.answers)
 
 
 def test_its_content_is_json(plan: RecordingPlan) -> None:

@@ -7,7 +7,7 @@ import pytest
 from radialtire import CATALOGUE, TireModel
 from small_rig import RIG, few_effects, silent
 from tirelab.planning.menu import drive_of, experiment_of
-from tirelab.planning.responses import DRAWS, PRIOR_OF_GAIN, PRIOR_OF_LAW, Responses, responses_of
+from tirelab.planning.responses import DRAWS, HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW, Responses, responses_of
 from tirelab.planning.separation import Question, probabilities
 from tirelab.regressors.law import LAW
 
@@ -105,3 +105,21 @@ def test_a_second_pressure_tells_a_rim_from_a_law_better_than_the_first_one_agai
         float(np.mean(probabilities(first + more, at_two.places, [question])[0])) for more in (first, second)
     )
     assert other > again
+
+
+def test_the_gain_with_the_pressure_shows_at_another_pressure_as_a_factor_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At the first pressure a gain about it changes nothing; at both together nothing but it follows the difference."""
+    few_effects(monkeypatch, ("force_offset", "viscous_damping"))
+    rig = replace(RIG, pressures=(2e5, 3e5))
+    drives = [drive_of("slow triangles", 0.25, rig.surfaces[0], rig, p) for p in rig.pressures]
+    found = responses_of(drives, TireModel(), rig, silent)
+    assert HELD.name in found.names
+    question = Question(HELD.name, frozenset({LAW}), 0.05, nested=True)
+    one, both = (
+        probabilities(gram, found.places, [question])[0].mean()
+        for gram in (found.grams[0], found.grams[0] + found.grams[1])
+    )
+    assert one < 0.5
+    assert both > 0.95
