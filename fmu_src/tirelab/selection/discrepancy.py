@@ -46,7 +46,7 @@ class Discrepancy:
     effective: float
     lowest: float
     highest: float
-    exact: float
+    exact: float = math.inf
 
     def beside(self, variance: FloatArray) -> FloatArray:
         """Return what the log likelihood holds beside -q / 2V, for several V."""
