@@ -95,7 +95,7 @@ def test_the_page_of_a_verdict_is_that_of_the_command(damped_run, tmp_path: Path
     damped_run.verdict.report(tmp_path / "page.html")
     own, other = (
         [
-            re.sub(r' Drive <a href="separating_test.csv".*?</a>[.]', "", line)
+            re.sub(r' <span class="drive">Drive <a href="separating_test.csv".*?</a>[.]</span>', "", line)
             for line in path.read_text(encoding="utf-8").splitlines()
             if line.startswith(("<h", "<tr", "<p")) and "explore-keys" not in line
         ]
