@@ -125,6 +125,7 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
         np.zeros(moved.time.size),
         away[rows],
         noise / float(np.sqrt(stride)),
+        0.0,
         NoiseFloor(noise, 0.0, 0.0, 0.0),
         0.0,
         stride,

@@ -1,9 +1,10 @@
-"""The standard deviation of noise from medians, which few outliers do not move."""
+"""The standard deviation of noise from its bulk, which few outliers do not move."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm
 
 MEDIAN_TO_SIGMA = 1.4826
 """Standard deviation of a normal law over its median absolute deviation, 1 / 0.67449."""
@@ -18,3 +19,28 @@ def robust_sigma(values: NDArray[np.float64]) -> float:
     P. J. Rousseeuw, C. Croux, "Alternatives to the Median Absolute Deviation", J. Am. Stat. Assoc. 88, 1993.
     """
     return MEDIAN_TO_SIGMA * float(np.median(np.abs(values)))
+
+
+TRIMMED = 3.0
+"""Standard deviations beyond which values are left out: a normal law has 0.3 % there, which is made up for."""
+
+BEGUN = 0.8
+"""Quantile of the sizes with which the trimming begins: of readings in coarse steps the median is often 0."""
+
+
+def trimmed_sigma(values: NDArray[np.float64]) -> float:
+    """Return the standard deviation of `values` about zero, from those within three of it; in their unit.
+
+    Twice as precise as that of the median, and right for rounded values too, of which the median is a step or none.
+    """
+    sizes = np.abs(values)
+    sigma = float(np.quantile(sizes, BEGUN) / norm.ppf(0.5 + 0.5 * BEGUN))
+    within = norm.cdf(TRIMMED) - norm.cdf(-TRIMMED)
+    kept = 1.0 - 2.0 * TRIMMED * norm.pdf(TRIMMED) / within
+    for _ in range(100):
+        near = sizes[sizes <= TRIMMED * sigma]
+        again = float(np.sqrt(np.mean(near**2) / kept))
+        if abs(again - sigma) <= 1e-6 * sigma:
+            break
+        sigma = again
+    return sigma

@@ -21,7 +21,7 @@ from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
-from .noise_floor import NoiseFloor, noise_floor, white_level
+from .noise_floor import SHARE_OF_STEP, NoiseFloor, noise_floor, white_level
 from .scales import Scales
 
 FloatArray = NDArray[np.float64]
@@ -65,6 +65,7 @@ class Experiment:
     time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
     baseline [N]: force of the baseline tire there; misfit [N]: force read less the baseline's, averaged over the block
     counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
+    least_noise [N]: what the steps of the force's reading leave of it, however smooth they are
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
     measured: the channels that were recorded, by their names, averaged over the blocks
     """
@@ -79,6 +80,7 @@ class Experiment:
     misfit: FloatArray
     counts: BoolArray
     noise: float
+    least_noise: float
     floor: NoiseFloor
     gauge: float
     size: int
@@ -131,7 +133,9 @@ class Dataset:
     def with_noise(self, levels: Sequence[float]) -> Dataset:
         """Return the dataset with other noise levels [N] of the averaged misfits."""
         pairs = zip(self.experiments, levels, strict=True)
-        return replace(self, experiments=tuple(replace(e, noise=float(level)) for e, level in pairs))
+        return replace(
+            self, experiments=tuple(replace(e, noise=max(float(level), e.least_noise)) for e, level in pairs)
+        )
 
 
 def dataset_of(recordings: Sequence[Recorded], tire: TireModel) -> Dataset:
@@ -161,7 +165,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     baseline = simulate(replace(tire, reading_noise=min(gauge, 0.01)), moved, moved)
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
-    floor = noise_floor(misfit, stiffness, gauge, step)
+    force_step = staircase_step(recording.force)
+    floor = noise_floor(misfit, stiffness, gauge, step, force_step)
     resolved = motion.resolved & ~_spikes(misfit)
     followed = ~beyond_travel(recording.deflection, recording.force)
     interval = float(np.median(np.diff(recording.time)))
@@ -204,6 +209,9 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     noise = (
         min(white_level(misfit) / np.sqrt(size), white_level(averaged)) if size > 1 else white_level(misfit)
     )
+    # A slow force rests on a step for many samples, and their average errs as each of them.
+    moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
+    least_noise = force_step * SHARE_OF_STEP / float(np.sqrt(max(size * moving, 1.0)))
     return Experiment(
         recording.name,
         blocks.time,
@@ -214,7 +222,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         simulate(tire, blocks, blocks),
         averaged,
         counts,
-        max(noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
+        max(noise, least_noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
+        least_noise,
         floor,
         gauge,
         size,

@@ -1,6 +1,6 @@
 """The noise floor of a recording, source by source.
 
-    amplifier: noise of the force's reading
+    amplifier: noise of the force's reading; one that steps by q errs by q / sqrt(12) at least, as a gauge does
     gauge:     noise of the deflection's reading times the stiffness
     steps:     a gauge that steps by q leaves stiffness x q / sqrt(12) (B. Widrow, Stat. theory of quantization, 1996)
 
@@ -14,9 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..preprocessing.robust_scale import MEDIAN_TO_SIGMA
+from ..preprocessing.robust_scale import trimmed_sigma
 
 FloatArray = NDArray[np.float64]
+
+SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
+"""Root mean square error of a reading that is rounded to steps, in steps."""
 
 
 @dataclass(frozen=True)
@@ -38,17 +41,20 @@ def white_level(residual: FloatArray) -> float:
     """Return the standard deviation of a residual's white noise, from its third differences, robust to corners."""
     if residual.size < 8:
         return float(np.std(residual))
-    return MEDIAN_TO_SIGMA * float(np.median(np.abs(np.diff(residual, 3)))) / float(np.sqrt(20.0))
+    return trimmed_sigma(np.diff(residual, 3)) / float(np.sqrt(20.0))
 
 
-def noise_floor(residual: FloatArray, stiffness: FloatArray, gauge_noise: float, step: float) -> NoiseFloor:
+def noise_floor(
+    residual: FloatArray, stiffness: FloatArray, gauge_noise: float, step: float, force_step: float
+) -> NoiseFloor:
     """Return the floor of a recording.
 
     residual [N]: force less what a smooth model makes of it; stiffness [N/m] sample by sample; gauge_noise [m]
+    step [m], force_step [N]: in which the two are read, 0 where none is seen
     """
     mean_square = float(np.sqrt(np.mean(stiffness**2)))
     through_gauge = 0.0 if step > 0.0 else gauge_noise * mean_square
-    through_steps = step / float(np.sqrt(12.0)) * mean_square
-    whole = white_level(residual)
+    through_steps = step * SHARE_OF_STEP * mean_square
+    whole = max(white_level(residual), force_step * SHARE_OF_STEP)
     amplifier = float(np.sqrt(max(whole**2 - through_gauge**2, 0.05 * whole**2)))
     return NoiseFloor(amplifier, through_gauge, through_steps, step)

@@ -1,9 +1,9 @@
-"""The standard deviation of noise from medians."""
+"""The standard deviation of noise from its bulk."""
 
 import numpy as np
 import pytest
 from scipy.stats import norm
-from tirelab.preprocessing.robust_scale import MEDIAN_TO_SIGMA, SPIKE_LIMIT, robust_sigma
+from tirelab.preprocessing.robust_scale import MEDIAN_TO_SIGMA, SPIKE_LIMIT, robust_sigma, trimmed_sigma
 
 
 def test_the_factor_is_that_of_the_normal_law() -> None:
@@ -19,3 +19,29 @@ def test_outliers_do_not_move_it() -> None:
 
 def test_a_spike_is_one_in_150_000() -> None:
     assert 1.0 / (2.0 * norm.sf(SPIKE_LIMIT)) == pytest.approx(150_000, rel=0.03)
+
+
+def test_what_is_trimmed_of_a_normal_law_is_made_up_for() -> None:
+    # Its standard error is 0.76 sigma / sqrt(n) = 0.2 %.
+    assert trimmed_sigma(3.0 * np.random.default_rng(1).standard_normal(100_000)) == pytest.approx(
+        3.0, rel=0.01
+    )
+
+
+def test_far_values_are_trimmed() -> None:
+    values = 3.0 * np.random.default_rng(1).standard_normal(20_000)
+    values[::50] = 1e6
+    assert trimmed_sigma(values) == pytest.approx(3.0, rel=0.03)
+
+
+def test_values_of_which_most_are_zero_have_no_median_but_a_scale() -> None:
+    values = np.zeros(10_000)
+    values[::4] = 1.0
+    assert robust_sigma(values) == 0.0
+    assert trimmed_sigma(values) == pytest.approx(0.5, rel=0.02)
+
+
+def test_nothing_but_outliers_is_no_noise() -> None:
+    values = np.zeros(100)
+    values[::10] = 1.0
+    assert trimmed_sigma(values) == 0.0
