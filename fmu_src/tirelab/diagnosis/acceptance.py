@@ -3,12 +3,13 @@
 Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so it may leave more. What is
 ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of no
 more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted. An effect
-of the deflection alone is not named beside a refitted law on one surface, where that law alone leaves as little.
+of the deflection alone is not named beside a refitted law on one surface, where that law alone leaves as little; nor is
+an effect that is less likely than not, where the others leave as little without it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
@@ -26,18 +27,16 @@ held-out data do not show."""
 NO_WORSE = 0.9
 """A set is refused where one of no more effects leaves less than this part of what it leaves."""
 
+LIKELY = 0.5
+"""An effect of at least this probability is likelier there than not."""
 
-def accept(
-    explanation: Explanation,
-    recordings: Sequence[Recorded],
-    held_out: Sequence[Recorded],
-    dataset: Dataset,
-    before: Sequence[FloatArray],
-) -> tuple[Explanation, HeldOut]:
+Validate = Callable[[Explanation], HeldOut]
+
+
+def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, HeldOut]:
     """Return the first of the sets in their order that is not refused, and what it does on held-out data.
 
-    held_out: recordings kept from the fit; without any, a part of `recordings` is (see `held_out.split`)
-    before [N]: what the baseline leaves of each recording
+    validate: what a set does there (see `validation_on`)
     """
     order = explanation.in_order(CONSIDERED)
     likely = [_plainer(explanation, names) for names in (order if () in order else (*order, ()))]
@@ -46,11 +45,33 @@ def accept(
         smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))
         if min(smaller) < NO_WORSE * own:
             continue
-        validation = _validated(chosen, recordings, held_out, dataset, before)
+        validation = validate(chosen)
         if not chosen.effects or not is_worse(validation):
             return chosen, validation
     nothing = explanation.of(())
-    return nothing, _validated(nothing, recordings, held_out, dataset, before)
+    return nothing, validate(nothing)
+
+
+def without_unlikely(
+    accepted: Explanation, validation: HeldOut, probabilities: Mapping[str, float], validate: Validate
+) -> tuple[Explanation, HeldOut]:
+    """Return the set without the effects that are less likely than not, the least likely first, as long as what is
+    left of the set leaves as little and is no worse than the baseline on held-out data.
+
+    probabilities: that each of its effects is there
+    """
+    chosen, most = accepted, rmse(accepted.residuals) / NO_WORSE
+    for name in sorted(probabilities, key=lambda n: probabilities[n]):
+        less = [n for n in chosen.model.names if n != name]
+        if probabilities[name] >= LIKELY or not accepted.compared(less):
+            continue
+        smaller = accepted.of(less)
+        if rmse(smaller.residuals) > most:
+            continue
+        found = validate(smaller)
+        if not is_worse(found):
+            chosen, validation = smaller, found
+    return chosen, validation
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
@@ -68,13 +89,16 @@ def is_worse(validation: HeldOut) -> bool:
     return validation.after > WORSE * validation.before
 
 
-def _validated(
-    chosen: Explanation,
+def validation_on(
     recordings: Sequence[Recorded],
     held_out: Sequence[Recorded],
     dataset: Dataset,
     before: Sequence[FloatArray],
-) -> HeldOut:
+) -> Validate:
+    """Return how a set is validated: on recordings kept from the fit, else on a part of `recordings`.
+
+    before [N]: what the baseline leaves of each recording
+    """
     if held_out:
-        return given(held_out, recordings, dataset, before, chosen)
-    return split(recordings, dataset, before, chosen)
+        return lambda chosen: given(held_out, recordings, dataset, before, chosen)
+    return lambda chosen: split(recordings, dataset, before, chosen)

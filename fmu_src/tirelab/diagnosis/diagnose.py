@@ -17,7 +17,7 @@ from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
 from ..regressors.end_of_travel import said_of
 from ..simulation.simulate import simulate
-from .acceptance import accept
+from .acceptance import accept, validation_on, without_unlikely
 from .alternatives import Alternative, alternatives_of
 from .confidence import grounds_of_effect, grounds_of_verdict, probability, shared
 from .contradiction import Contradiction, contradiction_of
@@ -67,11 +67,15 @@ def diagnose(
     check_signal(dataset, levels, beside=any(getattr(r, "believed_force", None) is not None for r in fitted))
     report("validating the correction on held-out data")
     before = [r.force - simulate(baseline, r) for r in fitted]
-    explanation, validation = accept(explanation, fitted, kept, dataset, before)
+    validate = validation_on(fitted, kept, dataset, before)
+    explanation, validation = accept(explanation, validate)
+    considered = [_calibrated(e, explanation, validation) for e in explanation.effects]
+    likely = {e.name: e.probability for e in considered}
+    explanation, validation = without_unlikely(explanation, validation, likely, validate)
     grounds = grounds_of_verdict(explanation, validation)
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
-    effects = tuple(_calibrated(e, explanation, validation) for e in explanation.effects)
+    effects, doubted = _named_and_doubted(explanation, considered)
     left = remainder_told(explanation.remainder, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
@@ -88,6 +92,7 @@ def diagnose(
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset, timed))
     return Verdict(
         effects=effects,
+        doubted=doubted,
         confidence=confidence,
         grounds=grounds,
         alternatives=alternatives,
@@ -118,6 +123,18 @@ def _said(summary: str, contradiction: Contradiction | None, fitted: Sequence[Re
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
     grounds = grounds_of_effect(effect, explanation, validation)
     return replace(effect, probability=probability("effect", grounds), grounds=grounds)
+
+
+def _named_and_doubted(
+    explanation: Explanation, considered: Sequence[NamedEffect]
+) -> tuple[tuple[NamedEffect, ...], tuple[NamedEffect, ...]]:
+    """Return the effects of the set with their calibrated probabilities, and those considered that it is without."""
+    judged = {e.name: e for e in considered}
+    effects = tuple(
+        replace(e, probability=judged[e.name].probability, grounds=judged[e.name].grounds)
+        for e in explanation.effects
+    )
+    return effects, tuple(e for e in considered if e.name not in explanation.model.names)
 
 
 def _named(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:

@@ -60,7 +60,8 @@ class Fit:
 class Verdict:
     """The answer of a diagnosis.
 
-    effects: what is missing, empty where nothing is; confidence: 0 to 1; grounds: what it rests on
+    effects: what is missing, empty where nothing is; doubted: what the likeliest fit takes beside them, but is less
+    likely there than not, and is not named; confidence: 0 to 1; grounds: what it rests on
     alternatives: other sets, likeliest first
     unexplained_by: coordinates on which something depends that no effect explains; residual_models: regressions of it
     summary: sentences for a reader; where: places of the misfit before the correction, or of what the refitted law
@@ -72,6 +73,7 @@ class Verdict:
     """
 
     effects: tuple[NamedEffect, ...]
+    doubted: tuple[NamedEffect, ...]
     confidence: float
     grounds: Mapping[str, float]
     alternatives: tuple[Alternative, ...]
@@ -142,6 +144,7 @@ class Verdict:
                         }
                         for e in self.effects
                     ],
+                    "doubted": [{"name": e.name, "probability": e.probability} for e in self.doubted],
                     "confidence": self.confidence,
                     "grounds": dict(self.grounds),
                     "alternatives": [list(r.names) for r in self.alternatives],

@@ -169,7 +169,8 @@ def diagnosed(folder: Path, seed: int, number: int, kind: str | None) -> dict[st
     answer = read_json(folders.sealed(key))
     recordings = [read_recording(path) for path in folders.recordings(key, "train")]
     verdict = diagnose(recordings, read_tire(folders.tire(key)))
-    effects = {e.name: dict(e.grounds) for e in verdict.effects}
+    # Those that were not named for their small probability, too: without them it would be that of the others.
+    effects = {e.name: dict(e.grounds) for e in (*verdict.effects, *verdict.doubted)}
     return Trial(_score(f"{seed}/{number}", answer, verdict), dict(verdict.grounds), effects).to_json()
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from drives import Drive, damped, flat_force
 from radialtire import CATALOGUE, TireModel
-from tirelab.diagnosis.acceptance import CONSIDERED, accept
+from tirelab.diagnosis.acceptance import CONSIDERED, accept, validation_on, without_unlikely
 from tirelab.names import REFITTED_LAW
 from tirelab.preprocessing.dataset import dataset_of
 from tirelab.regressors.excitation import Excitation
@@ -74,7 +74,7 @@ def made(names: str, left: float, damping: float = 0.0) -> Made:
 def delivered(*sets: Made, held_out: Drive = KEPT, surfaces: int = 1) -> Any:
     before = [FITTED.force - flat_force(FITTED.deflection)]
     ranked: Any = Ranked(sets, surfaces)
-    return accept(ranked, [FITTED], [held_out], dataset_of([FITTED], TireModel()), before)
+    return accept(ranked, validation_on([FITTED], [held_out], dataset_of([FITTED], TireModel()), before))
 
 
 def test_the_likeliest_set_is_delivered() -> None:
@@ -153,3 +153,55 @@ def test_nothing_is_always_accepted() -> None:
 def test_what_is_worse_than_nothing_where_it_was_fitted_is_refused_however_unlikely_nothing_is() -> None:
     worse = [made(name, 30.0, 500.0) for name in list(CATALOGUE)[: CONSIDERED + 2]]
     assert delivered(*worse, made("", 15.0))[0].names == ()
+
+
+@dataclass(frozen=True)
+class Accepted(Made):
+    """The set that was accepted, among all that were fitted."""
+
+    ranked: Ranked
+
+    def compared(self, names: Sequence[str]) -> bool:
+        return self.ranked.compared(names)
+
+    def of(self, names: Sequence[str]) -> Made:
+        found = self.ranked.of(names)
+        return Accepted(found.names, found.left, found.tire, self.ranked)
+
+
+def likely_part(held_out: Drive, *sets: Made, **probabilities: float) -> set[str]:
+    """Return what is named of the first of the sets."""
+
+    first: Any = Accepted(sets[0].names, sets[0].left, sets[0].tire, Ranked(sets))
+    before = [FITTED.force - flat_force(FITTED.deflection)]
+    validate = validation_on([FITTED], [held_out], dataset_of([FITTED], TireModel()), before)
+    return set(without_unlikely(first, validate(first), probabilities, validate)[0].names)
+
+
+PAIR = made("viscous_damping bottoming", 5.0, 500.0)
+ALONE = made("viscous_damping", 5.2, 500.0)
+
+
+def test_an_effect_that_is_less_likely_than_not_is_not_named() -> None:
+    assert likely_part(KEPT, PAIR, ALONE, viscous_damping=0.99, bottoming=0.4) == {"viscous_damping"}
+    assert likely_part(KEPT, PAIR, ALONE, viscous_damping=0.99, bottoming=0.6) == set(PAIR.names)
+
+
+def test_an_unlikely_effect_is_named_where_the_others_leave_clearly_more() -> None:
+    poor = made("viscous_damping", 9.0, 500.0)
+    assert likely_part(KEPT, PAIR, poor, viscous_damping=0.99, bottoming=0.4) == set(PAIR.names)
+
+
+def test_an_unlikely_effect_is_named_where_the_set_without_it_was_not_fitted() -> None:
+    assert likely_part(KEPT, PAIR, viscous_damping=0.99, bottoming=0.4) == set(PAIR.names)
+
+
+def test_an_unlikely_effect_is_named_where_the_others_are_worse_than_nothing_on_held_out_data() -> None:
+    wrong = made("viscous_damping", 5.2, 5000.0)
+    assert likely_part(KEPT, PAIR, wrong, viscous_damping=0.99, bottoming=0.4) == set(PAIR.names)
+
+
+def test_of_several_unlikely_effects_the_least_likely_go_first() -> None:
+    only_bottoming = made("bottoming", 5.2, 500.0)
+    found = likely_part(KEPT, PAIR, only_bottoming, ALONE, made("", 15.0), viscous_damping=0.2, bottoming=0.4)
+    assert found == {"bottoming"}
