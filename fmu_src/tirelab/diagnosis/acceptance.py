@@ -10,6 +10,7 @@ an effect that is less likely than not, where the others leave as little without
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations
 
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
@@ -55,23 +56,23 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
 def without_unlikely(
     accepted: Explanation, validation: HeldOut, probabilities: Mapping[str, float], validate: Validate
 ) -> tuple[Explanation, HeldOut]:
-    """Return the set without the effects that are less likely than not, the least likely first, as long as what is
-    left of the set leaves as little and is no worse than the baseline on held-out data.
+    """Return the smallest fitted part of a set that holds all its effects which are likelier there than not, leaves as
+    little as the set, and is no worse than the baseline on held-out data.
 
     probabilities: that each of its effects is there
     """
-    chosen, most = accepted, rmse(accepted.residuals) / NO_WORSE
-    for name in sorted(probabilities, key=lambda n: probabilities[n]):
-        less = [n for n in chosen.model.names if n != name]
-        if probabilities[name] >= LIKELY or not accepted.compared(less):
-            continue
-        smaller = accepted.of(less)
-        if rmse(smaller.residuals) > most:
-            continue
-        found = validate(smaller)
-        if not is_worse(found):
-            chosen, validation = smaller, found
-    return chosen, validation
+    likely = [n for n, p in probabilities.items() if p >= LIKELY]
+    unlikely = sorted((n for n in probabilities if n not in likely), key=lambda n: -probabilities[n])
+    most = rmse(accepted.residuals) / NO_WORSE
+    for count in range(len(unlikely)):
+        for kept in combinations(unlikely, count):
+            names = (*likely, *kept)
+            if not accepted.compared(names) or rmse(accepted.of(names).residuals) > most:
+                continue
+            found = validate(accepted.of(names))
+            if not is_worse(found):
+                return accepted.of(names), found
+    return accepted, validation
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
