@@ -1,9 +1,9 @@
 """The errors of a correction on held-out data.
 
 Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
-part: the last recording whose surfaces the others drive too, or the end of each recording that holds the last part of
-the misfit, a block of time simulated from its true history. The effects were chosen on all of the data; the parameters
-were fitted without the held-out part.
+part: the last recording whose surfaces the others drive too, or of each recording and surface the end that holds the
+last part of the misfit there, simulated from its true history. The effects were chosen on all of the data; the
+parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from radialtire import TireModel
 from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset, Experiment, Recorded, dataset_of
 from ..preprocessing.kinematics import BoolArray, FloatArray, Motion
+from ..regressors.law import MOST_SURFACES
 from ..simulation.simulate import simulate, smoothed_motion
 from .untimed import is_timed
 
@@ -43,7 +44,8 @@ class Part:
 class HeldOut:
     """What was fitted and what was held out.
 
-    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"
+    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"; of several surfaces
+    in one recording "the end on each surface"
     """
 
     by: str
@@ -136,16 +138,28 @@ def _parts(recordings: Sequence[Recorded], before: Sequence[FloatArray]) -> tupl
         if surfaces[number] <= others:
             kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
             return kept, f"recording {recordings[number].name}"
-    kept = [_beginning(b) for b in before]
-    r = recordings[0]
-    first = kept[0].size - int(np.sum(~kept[0]))
+    told_apart = len(set().union(*surfaces)) <= MOST_SURFACES
+    kept = [
+        _beginning(b, r.surface_radius if told_apart else np.zeros(b.size))
+        for b, r in zip(before, recordings, strict=True)
+    ]
+    r, count = recordings[0], int(np.sum(~kept[0]))
     more = " and the ends of the others" if len(recordings) > 1 else ""
+    first = kept[0].size - count
+    if kept[0][first:].any():
+        return kept, f"the end on each surface{more}"
     if not is_timed([r]):
         return kept, f"samples {first + 1}-{r.time.size}{more}"
     return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"
 
 
-def _beginning(before: FloatArray) -> BoolArray:
-    """Return the samples that stay fitted of a recording; before [N] (n,): what the baseline leaves of it."""
-    missed = np.cumsum(before**2) / max(float(before @ before), 1e-300)
-    return np.asarray((missed < FITTED) | (np.arange(before.size) < LEAST * before.size))
+def _beginning(before: FloatArray, surface: FloatArray) -> BoolArray:
+    """Return the samples that stay fitted of a recording; before [N] (n,): what the baseline leaves of it; surface
+    (n,): a number of the surface, on each of which the beginning is fitted: a law is fitted to each.
+    """
+    kept = np.ones(before.size, dtype=bool)
+    for one in np.unique(surface):
+        own = surface == one
+        missed = np.cumsum(before[own] ** 2) / max(float(before[own] @ before[own]), 1e-300)
+        kept[own] = (missed < FITTED) | (np.arange(missed.size) < LEAST * missed.size)
+    return kept

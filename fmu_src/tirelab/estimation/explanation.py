@@ -6,7 +6,7 @@ catalogue's own forms (`estimation`), and the sets are ranked by those fits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -24,7 +24,6 @@ from ..regressors.signature import in_other_noise, signatures_of
 from ..selection.discrepancy import discrepancy_of, usual_form_error
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import search
-from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .findings import Estimate, Evidence, FittedModel, NamedEffect, Refitted
 from .fit import Fit, fitted
@@ -98,10 +97,11 @@ class Explanation:
         return tuple(likely)
 
     def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
-        """Return the set fitted to the samples `kept` of each recording alone: a beginning, all or none."""
+        """Return the set fitted to the samples `kept` of each recording alone; their whole motion is known."""
         fit = self.model.fit
-        parts = [_part(r, k) for r, k in zip(self._recordings, kept, strict=True) if k.any()]
-        dataset = _quiet(dataset_of(parts, self.model.baseline))
+        fitted_on = [(r, k) for r, k in zip(self._recordings, kept, strict=True) if k.any()]
+        dataset = dataset_of([r for r, _ in fitted_on], self.model.baseline).only([k for _, k in fitted_on])
+        dataset = _quiet(dataset)
         again = fitted(dataset, [fit.values], discrepancy_of(dataset.misfit, 0.0), fit.variance, -np.inf)
         return Refitted(again.tire, _residuals(again.tire, self._recordings))
 
@@ -233,21 +233,3 @@ def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
 
 def _residuals(tire: TireModel, recordings: Sequence[Recorded]) -> tuple[FloatArray, ...]:
     return tuple(r.force - simulate(tire, r) for r in recordings)
-
-
-@dataclass(frozen=True)
-class _Part:
-    """Some samples of a recording."""
-
-    name: str
-    time: FloatArray
-    deflection: FloatArray
-    surface_radius: FloatArray
-    force: FloatArray
-    measured: Mapping[str, FloatArray]
-
-
-def _part(recording: Recorded, kept: BoolArray) -> _Part:
-    r = recording
-    measured = {name: values[kept] for name, values in measured_of(r).items()}
-    return _Part(r.name, r.time[kept], r.deflection[kept], r.surface_radius[kept], r.force[kept], measured)

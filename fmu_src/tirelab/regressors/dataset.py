@@ -137,6 +137,16 @@ class Dataset:
             self, experiments=tuple(replace(e, noise=max(float(level), e.least_noise)) for e, level in pairs)
         )
 
+    def only(self, kept: Sequence[BoolArray]) -> Dataset:
+        """Return the dataset where only blocks count of which all samples are `kept` (n,) of the recordings; the
+        motion is that of the whole recordings.
+        """
+        found = []
+        for e, k in zip(self.experiments, kept, strict=True):
+            counts = e.counts & k[: e.counts.size * e.size].reshape(-1, e.size).all(axis=1)
+            found.append(replace(e, counts=counts))
+        return replace(self, experiments=tuple(e for e in found if e.counts.any()))
+
 
 def dataset_of(recordings: Sequence[Recorded], tire: TireModel) -> Dataset:
     """Return the recordings in blocks and what `tire`, the baseline, misses of them."""

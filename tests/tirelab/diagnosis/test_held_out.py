@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import damped, flat_force, ride
-from radialtire import TireModel
+from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.held_out import split
 from tirelab.estimation.explanation import explain_misfit
@@ -92,3 +92,26 @@ def test_where_nothing_is_missing_both_errors_are_the_noise(complete_verdict):
     assert complete_verdict.names == ()
     assert complete_verdict.fit.held_out_after == complete_verdict.fit.held_out_before
     assert complete_verdict.fit.held_out_after == pytest.approx(5.0, rel=0.05)
+
+
+def test_of_surfaces_in_turn_the_end_on_each_is_held_out():
+    """By time alone the second surface would be held out, to which no law is fitted then."""
+    drive = damped(3, damping=0.0)
+    half = drive.time < drive.time[drive.time.size // 2]
+    two = replace(
+        drive,
+        surface_radius=np.where(half, np.inf, 0.3),
+        force=drive.force + np.where(half, 0.1, -0.1) * flat_force(drive.deflection),
+    )
+    tire = TireModel(PowerLaw(550.9, 1.40), tested_range=None)
+    found = explain_misfit([two], tire, ["recalibration"], lambda stage: None).of(("recalibration",))
+    before = [two.force - flat_force(two.deflection)]
+    held_out = split([two], dataset_of([two], tire), before, found)
+    assert held_out.by == "the end on each surface"
+    (part,) = held_out.held_out
+    for surface in (half, ~half):
+        missed = np.sum(before[0][surface & part.chosen] ** 2) / np.sum(before[0][surface] ** 2)
+        assert missed == pytest.approx(0.3, abs=0.01)
+    # The law of each surface is that of its first part: what is left is the reading's noise of 5 N.
+    assert held_out.after == pytest.approx(5.0, rel=0.05)
+    assert held_out.before > 10.0 * held_out.after
