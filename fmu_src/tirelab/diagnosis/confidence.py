@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 
@@ -43,7 +43,6 @@ OF_VERDICT = (
     "effects",
     "loudness",
     "least_share",
-    "certainty",
     "unknown",
     "nothing",
 )
@@ -65,32 +64,17 @@ LOWERING = ("remainder_share", "remainder_size", "structure", "transfer", "alike
 """Grounds that may only lower a probability."""
 
 
-LEAST_CERTAIN = 1e-3
-"""Probability of an effect below which probabilities are alike."""
-
-
-def grounds_of_names(probabilities: Sequence[float], *, unexplained: bool) -> dict[str, float]:
-    """Return what a verdict's probability rests on that its names have: see `grounds_of_verdict`."""
-    return {
-        "certainty": sum(math.log(max(p, LEAST_CERTAIN)) for p in probabilities),
-        "unknown": float(unexplained),
-        "nothing": float(not probabilities),
-    }
-
-
 def grounds_of_verdict(
-    explanation: Explanation, validation: HeldOut, probabilities: Sequence[float], *, unexplained: bool
+    explanation: Explanation, validation: HeldOut, *, unexplained: bool
 ) -> dict[str, float]:
-    """Return what the verdict's probability rests on; probabilities: of its effects; unexplained: whether something
-    unknown is told.
+    """Return what the verdict's probability rests on; unexplained: whether something unknown is told.
 
     odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
     the noise); structure: the same of what in the remainder depends on a recorded coordinate
     transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
     it); imitated: effects beside a refitted law that could be a part of it
     effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
-    certainty: ln of the product of its effects' probabilities; unknown, nothing: 1 where it tells of something unknown,
-    and where it names no effect
+    unknown, nothing: 1 where it tells of something unknown, and where it names no effect
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
     chances = -float(np.logaddexp.reduce(rest)) if rest else FURTHEST
@@ -103,7 +87,8 @@ def grounds_of_verdict(
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
         "least_share": min((_share(e) for e in explanation.effects), default=0.0),
-        **grounds_of_names(probabilities, unexplained=unexplained),
+        "unknown": float(unexplained),
+        "nothing": float(not names),
     }
 
 

@@ -75,8 +75,7 @@ def diagnose(
     effects, doubted = _named_and_doubted(explanation, considered)
     left = remainder_told(explanation.remainder, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
-    certain = [e.probability for e in effects]
-    grounds = grounds_of_verdict(explanation, validation, certain, unexplained=bool(unexplained))
+    grounds = grounds_of_verdict(explanation, validation, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)

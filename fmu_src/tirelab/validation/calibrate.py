@@ -25,11 +25,10 @@ from scipy.optimize import minimize
 from scipy.special import expit
 
 from ..computing.workers import Cores, work
-from ..diagnosis.confidence import LOWERING, OF_EFFECT, OF_VERDICT, grounds_of_names
+from ..diagnosis.confidence import LOWERING, OF_EFFECT, OF_VERDICT
 from ..diagnosis.diagnose import diagnose
 from ..diagnosis.diagnosis_file import NOTHING
 from ..diagnosis.verdict import Verdict
-from ..names import UNKNOWN
 from ..recordings.recording import read_recording
 from .blind_trials import ALL_KINDS, BlindTrials
 from .calibration import skill as brier_skill
@@ -150,10 +149,7 @@ class Trial:
         """Return the trial with probabilities of its effects by other weights: what is claimed depends on them."""
         rows = [Row("", g, False) for g in self.effects.values()]
         stated = dict(zip(self.effects, probabilities(rows, weights).tolist(), strict=True)) if rows else {}
-        named = [p for name, p in stated.items() if name in (self.score.verdict or ())]
-        told = UNKNOWN in (self.score.verdict or ())
-        grounds = {**self.grounds, **grounds_of_names(named, unexplained=told)}
-        return replace(self, score=replace(self.score, probabilities=stated), grounds=grounds)
+        return replace(self, score=replace(self.score, probabilities=stated))
 
 
 def calibrated(trials: Sequence[Trial], provenance: Mapping[str, Any]) -> dict[str, Any]:
@@ -162,8 +158,7 @@ def calibrated(trials: Sequence[Trial], provenance: Mapping[str, Any]) -> dict[s
     """
     effects = [row for t in trials for row in effect_rows(t.score, t.effects)]
     weights = fitted_weights(effects, OF_EFFECT)
-    stating = [t.stating(weights) for t in trials]
-    verdicts = [verdict_row(t.score, t.grounds) for t in stating]
+    verdicts = [verdict_row(t.stating(weights).score, t.grounds) for t in trials]
     return calibration_of(verdicts, effects, provenance)
 
 

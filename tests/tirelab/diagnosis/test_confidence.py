@@ -15,7 +15,6 @@ from tirelab.diagnosis.confidence import (
     OF_EFFECT,
     OF_VERDICT,
     grounds_of_effect,
-    grounds_of_names,
     grounds_of_verdict,
     probability,
     shared,
@@ -50,7 +49,7 @@ HELD_OUT: Any = SimpleNamespace(after=6.0)
 
 def test_grounds_of_a_verdict_are_those_of_its_definition() -> None:
     one = explained("viscous_damping", ("inertia", -2.0), ("force_lag", -2.0), confounded=(("inertia",),))
-    found = grounds_of_verdict(one, HELD_OUT, [0.5], unexplained=True)
+    found = grounds_of_verdict(one, HELD_OUT, unexplained=True)
     assert set(found) == set(OF_VERDICT)
     # Two others of e^-2 each; 6 N held out against 2 N fitted; a misfit of twenty noises.
     assert found["odds"] == pytest.approx(2.0 - np.log(2.0))
@@ -61,13 +60,12 @@ def test_grounds_of_a_verdict_are_those_of_its_definition() -> None:
     # A quarter of the remainder's power is half of its three noises; each effect has half of the misfit.
     assert found["structure"] == pytest.approx(np.log(2.5))
     assert found["least_share"] == pytest.approx(np.log(0.5))
-    assert (found["certainty"], found["unknown"], found["nothing"]) == (pytest.approx(np.log(0.5)), 1.0, 0.0)
+    assert (found["unknown"], found["nothing"]) == (1.0, 0.0)
 
 
-def test_all_named_effects_are_there_with_the_product_of_their_probabilities() -> None:
-    found = grounds_of_names([0.5, 0.8], unexplained=False)
-    assert found == {"certainty": pytest.approx(np.log(0.4)), "unknown": 0.0, "nothing": 0.0}
-    assert grounds_of_names([], unexplained=False) == {"certainty": 0.0, "unknown": 0.0, "nothing": 1.0}
+def test_that_nothing_is_named_is_a_ground() -> None:
+    found = grounds_of_verdict(explained(""), HELD_OUT, unexplained=False)
+    assert (found["unknown"], found["nothing"]) == (0.0, 1.0)
 
 
 def test_odds_of_an_effect_are_all_sets_with_it_against_all_without() -> None:
@@ -93,7 +91,7 @@ def test_an_effect_in_every_set_has_the_largest_odds_that_count() -> None:
 )
 def test_a_refitted_law_imitates_what_it_could_be(names: str, imitated: float) -> None:
     one = explained(names)
-    assert grounds_of_verdict(one, HELD_OUT, [0.9], unexplained=False)["imitated"] == imitated
+    assert grounds_of_verdict(one, HELD_OUT, unexplained=False)["imitated"] == imitated
     assert sum(grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects) == imitated
 
 

@@ -10,7 +10,6 @@ from scipy.special import expit
 from tirelab.diagnosis.confidence import OF_VERDICT
 from tirelab.validation.calibrate import (
     Row,
-    Trial,
     calibration_of,
     fitted_weights,
     probabilities,
@@ -84,19 +83,3 @@ def test_a_verdict_is_right_in_the_sense_of_its_kind(score: Callable[..., Score]
         stated = {"viscous_damping": probability}
         one = score("outside", "unknown", "viscous_damping unknown", probabilities=stated)
         assert verdict_row(one, {}).right is right
-
-
-def test_a_verdict_is_judged_by_the_probabilities_of_the_effects_that_it_names(
-    score: Callable[..., Score],
-) -> None:
-    """Effects that were doubted are judged too, but are no part of the verdict."""
-    weights = {"constant": 0.0, "odds": 1.0}
-    effects = {"inertia": {"odds": np.log(3.0)}, "force_lag": {"odds": -np.log(4.0)}}
-    trial = Trial(score("single", "inertia", "inertia"), {"odds": 2.0}, effects).stating(weights)
-    assert trial.score.probabilities == {"inertia": pytest.approx(0.75), "force_lag": pytest.approx(0.2)}
-    assert trial.grounds == {
-        "odds": 2.0,
-        "certainty": pytest.approx(np.log(0.75)),
-        "unknown": 0.0,
-        "nothing": 0.0,
-    }
