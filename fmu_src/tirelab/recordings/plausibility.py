@@ -41,6 +41,12 @@ EARLY, EARLY_PART = 2e-3, 0.08
 FORCES = (("kN", 1e3), ("lbf", 4.4482216152605), ("kgf", 9.80665), ("mN", 1e-3))
 LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0))
 
+CLOCKS = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
+"""Units of clocks with their size [s]."""
+
+YEAR_2001, YEAR_2096 = 1e9, 4e9
+"""Seconds since 1970 [s]; a recording is not that long."""
+
 FLAT_BINS = 60
 
 UNLOADED, AT_START = 0.03, 0.04
@@ -225,12 +231,24 @@ def _unit_guess(stroke: float, load: float, units: Mapping[str, str]) -> tuple[s
     return min(fits)[1:] if fits else None
 
 
+def _likely_clock(time: FloatArray) -> str:
+    """Return the unit of a clock: of one since 1970 by the date, else by its steps and its length."""
+    first = float(time[np.isfinite(time)][0]) if np.isfinite(time).any() else 0.0
+    for unit, factor in CLOCKS:
+        if YEAR_2001 <= first * factor <= YEAR_2096:
+            return unit
+    step, length = float(np.nanmedian(np.diff(time))), float(np.nanmax(time) - np.nanmin(time))
+    for unit, factor in reversed(CLOCKS[1:]):
+        if step >= 1e-3 / factor and length > 3.6 / factor:
+            return unit
+    return "s"
+
+
 def guessed_units(columns: Mapping[str, FloatArray]) -> dict[str, str]:
     """Return the likeliest unit of each of the channels time, deflection, radius and force, from their sizes alone."""
     guesses: dict[str, str] = {}
     if "time" in columns:
-        steps = np.diff(columns["time"])
-        guesses["time"] = "ms" if np.median(steps) >= 1.0 and np.ptp(columns["time"]) > 3600.0 else "s"
+        guesses["time"] = _likely_clock(columns["time"])
     stroke = (
         float(np.nanmax(columns["deflection"]) - np.nanmin(columns["deflection"]))
         if "deflection" in columns
