@@ -156,9 +156,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     )
 
 
-def _others_alike(
-    headers: Sequence[Header], matches: Mapping[str, Match], settings: Settings
-) -> list[str]:
+def _others_alike(headers: Sequence[Header], matches: Mapping[str, Match], settings: Settings) -> list[str]:
     """Return a note for each channel that is not named by the user although other columns have a unit of it too."""
     taken = {match.index for match in matches.values()}
     notes = []

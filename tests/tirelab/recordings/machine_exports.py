@@ -148,15 +148,14 @@ def _(path: Path, m: Motion) -> None:
 
 @export("mts_testsuite.txt")
 def _(path: Path, m: Motion) -> None:
-    head = (
-        "Data Acquisition: Timed\tTime: 0.10 s\t6/3/2025 14:05:00\nCrosshead \tLoad \tTime \nmm\tN\tsec\n"
-    )
+    head = "Data Acquisition: Timed\tTime: 0.10 s\t6/3/2025 14:05:00\nCrosshead \tLoad \tTime \nmm\tN\tsec\n"
     path.write_text(head + table((mm(m), m.force, m.time), "\t"))
 
 
 @export("zwick_de.TRA")
 def _(path: Path, m: Motion) -> None:
-    head = '"Prüfer";"Labor 2"\n"Probe";"Nr. 3"\n"Prüfzeit";"Standardweg";"Standardkraft";"Traversenweg absolut"\n"s";"mm";"N";"mm"\n'
+    head = '"Prüfer";"Labor 2"\n"Probe";"Nr. 3"\n"Prüfzeit";"Standardweg";"Standardkraft";"Traversenweg absolut"\n'
+    head += '"s";"mm";"N";"mm"\n'
     rows = table((m.time, mm(m), m.force, 210.0 - mm(m)), ";", comma=True)
     path.write_bytes((head + rows).encode("latin-1"))
 
@@ -283,9 +282,7 @@ def _(path: Path, m: Motion) -> None:
         text += f"Channels,2,,\nSamples,{count},{count},\nY_Unit_Label,N,mm,\nX_Dimension,Time,Time,\n"
         text += f"X0,{m.time[part][0]:.3f},{m.time[part][0]:.3f},\nDelta_X,0.100000,0.100000,\n"
         text += "***End_of_Header***,,,\nX_Value,Force,Displacement,Comment\n"
-        text += "".join(
-            f",{f:.5f},{x:.5f}\n" for f, x in zip(m.force[part], mm(m)[part], strict=True)
-        )
+        text += "".join(f",{f:.5f},{x:.5f}\n" for f, x in zip(m.force[part], mm(m)[part], strict=True))
         text += "\n"
     path.write_text(text)
 
@@ -312,9 +309,7 @@ def _(path: Path, m: Motion) -> None:
 
 @export("arduino_ms.txt")
 def _(path: Path, m: Motion) -> None:
-    rows = [
-        f"{1000 * t:.0f} {x:.4f} {f:.3f}" for t, x, f in zip(m.time, mm(m), m.force, strict=True)
-    ]
+    rows = [f"{1000 * t:.0f} {x:.4f} {f:.3f}" for t, x, f in zip(m.time, mm(m), m.force, strict=True)]
     path.write_text("\n".join(rows) + "\n")
 
 
@@ -375,7 +370,9 @@ def _(path: Path, m: Motion) -> None:
 @export("summary_below.csv")
 def _(path: Path, m: Motion) -> None:
     rows = table((m.time, mm(m), m.force))
-    path.write_text("Time (s),Displacement (mm),Force (N)\n" + rows + "\nMaximum,20.0,1520.4\nMinimum,0.0,0.4\n")
+    path.write_text(
+        "Time (s),Displacement (mm),Force (N)\n" + rows + "\nMaximum,20.0,1520.4\nMinimum,0.0,0.4\n"
+    )
 
 
 @export("statistics_below.csv")
@@ -389,7 +386,8 @@ def _(path: Path, m: Motion) -> None:
 def _(path: Path, m: Motion) -> None:
     head = "Time (s),Displacement (mm),Force (N)\n"
     parts = [
-        head + table((m.time[p], mm(m)[p], m.force[p])) for p in (slice(0, 120), slice(120, 260), slice(260, 400))
+        head + table((m.time[p], mm(m)[p], m.force[p]))
+        for p in (slice(0, 120), slice(120, 260), slice(260, 400))
     ]
     path.write_text("".join(parts))
 
@@ -427,7 +425,9 @@ def _(path: Path, m: Motion) -> None:
 
 @export("slash_units.csv")
 def _(path: Path, m: Motion) -> None:
-    path.write_text("Zeit/s;Weg/µm;Kraft/daN\n" + table((m.time, 1e3 * mm(m), 0.1 * m.force), ";", comma=True))
+    path.write_text(
+        "Zeit/s;Weg/µm;Kraft/daN\n" + table((m.time, 1e3 * mm(m), 0.1 * m.force), ";", comma=True)
+    )
 
 
 @export("symbols.csv")
@@ -565,7 +565,9 @@ def _(path: Path, m: Motion) -> None:
 def _(path: Path, m: Motion) -> None:
     import polars as pl
 
-    pl.DataFrame({"t [ms]": 1e3 * m.time, "Weg [mm]": mm(m), "Kraft [kN]": 1e-3 * m.force}).write_parquet(path)
+    pl.DataFrame({"t [ms]": 1e3 * m.time, "Weg [mm]": mm(m), "Kraft [kN]": 1e-3 * m.force}).write_parquet(
+        path
+    )
 
 
 @export("groups.tdms")

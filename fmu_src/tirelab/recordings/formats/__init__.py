@@ -106,7 +106,9 @@ def open_table(path: Path, skip_rows: int | None = None) -> Table:
     except RecordingError as error:
         if known:
             raise
-        raise _unknown(path, f"no table is found in its text ({str(error).removeprefix(path.name + ': ')})") from None
+        raise _unknown(
+            path, f"no table is found in its text ({str(error).removeprefix(path.name + ': ')})"
+        ) from None
 
 
 def _advice(path: Path, read_as: str) -> str:
@@ -116,8 +118,9 @@ def _advice(path: Path, read_as: str) -> str:
 
 
 def _unknown(path: Path, what: str) -> RecordingError:
+    if what:
+        return RecordingError(f"{path.name}: {what}")
     return RecordingError(
-        what and f"{path.name}: {what}"
-        or f"{path.name}: recordings ending in {quoted(path.suffix.lower())} cannot be read; "
+        f"{path.name}: recordings ending in {quoted(path.suffix.lower())} cannot be read; "
         f"export it as one of {', '.join(LOADERS)}"
     )

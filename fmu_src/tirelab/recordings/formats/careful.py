@@ -45,7 +45,7 @@ class RowReader:
         self.clocks = {want.index: Clock() for want in wanted if layout.headers[want.index].dated}
         self.cells = _Cells(path, layout)
         self.guarded = layout.counted and all(want.index for want in wanted)
-        self.text_rows = TextRows(path.name, layout)
+        self.text_rows = TextRows(path.name, layout.headers, layout.separator, layout.spaced)
 
     def read(self, source: Iterable[str], first_line: int) -> Rows:
         """The rows in some lines of the file; a blank cell is NaN, an empty line a row of NaN.
@@ -101,9 +101,9 @@ class RowReader:
         if len(row) > expected:
             self._refuse_extra_fields(line, row)
         # a label in a column of numbers that nobody wants: a row of statistics
-        if row and self.guarded and not is_value(row[0], self.layout.separator):
-            if row[0].strip().lower() not in BLANK_WORDS:
-                raise not_a_number(self.path.name, f"row {line}", self.layout.headers[0].text, row[0])
+        label = row[0] if row and self.guarded else ""
+        if label.strip().lower() not in BLANK_WORDS and not is_value(label, self.layout.separator):
+            raise not_a_number(self.path.name, f"row {line}", self.layout.headers[0].text, label)
         cells: list[float | str] = []
         for index, header, flat in targets:
             cell = row[index] if index < len(row) else ""

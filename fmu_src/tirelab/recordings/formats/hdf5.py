@@ -33,7 +33,7 @@ class _Place:
 
 
 class Hdf5Table:
-    """The vectors of an HDF5 file by their path, log/force; a matrix column as log/x:2 (from 0), a field as log.force."""
+    """The vectors of an HDF5 file by path, log/force; a matrix column as log/x:2 (from 0), a field as log.force."""
 
     time_axis: int | None = None
 

@@ -119,14 +119,16 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         start + 1,
         _provenance(lines[:start], separator, declared),
         spaced > 0,
-        _counted(body, separator),
+        column_counted(body, separator),
     )
 
 
-def _counted(body: Sequence[Sequence[str]], separator: str) -> bool:
+def column_counted(body: Sequence[Sequence[str]], separator: str) -> bool:
     """Return whether the cells of the first column are numbers, times or blank, but for some rows about the table."""
     cells = [row[0] for row in body if sum(map(bool, map(str.strip, row))) > 1]
-    texts = sum(bool(c.strip()) and c.strip().lower() not in BLANK_WORDS and not is_value(c, separator) for c in cells)
+    texts = sum(
+        bool(c.strip()) and c.strip().lower() not in BLANK_WORDS and not is_value(c, separator) for c in cells
+    )
     return bool(cells) and texts <= max(BELOW_NAMES, 0.1 * len(cells))
 
 

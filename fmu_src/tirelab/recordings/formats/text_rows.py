@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .layout import Layout
-from .table import BLANK_WORDS, RecordingError, listed, quoted
+from .table import BLANK_WORDS, Header, RecordingError, listed, quoted
 from .table_search import bare_unit, is_units, is_value
 
 MOST_ASIDE = 60
@@ -34,11 +33,13 @@ class _Aside:
 class TextRows:
     """Judges the rows of one file that cannot be read as numbers, in the order of the file."""
 
-    def __init__(self, file: str, layout: Layout) -> None:
+    def __init__(
+        self, file: str, headers: Sequence[Header], separator: str = "\t", spaced: bool = False
+    ) -> None:
         self.file = file
-        self.headers = layout.headers
-        self.separator = layout.separator
-        self.spaced = layout.spaced
+        self.headers = headers
+        self.separator = separator
+        self.spaced = spaced
         self.remarks: list[str] = []
         self.repeated: list[str] = []
         self.begins = 0
