@@ -85,7 +85,7 @@ def asked(
     guessed = _guessed_columns(lacking.columns, matches, values, headers) if lacking.columns else {}
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
-    likely = guessed_units(sized)
+    likely = guessed_units(sized, settings.part)
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
     without_unit = [*lacking.units, *(n for n in guessed if headers[guessed[n]].unit is None)]
     units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
@@ -96,6 +96,7 @@ def asked(
         {**settings.units, **units},
         settings.radius if radius is None else radius,
         sampling=settings.sampling,
+        part=settings.part,
     )
     parts = _parts(origin, headers, matches, lacking, whole)
     if len(parts) == 1 and len(lacking.units) < 2:

@@ -46,6 +46,7 @@ class Plan:
 
     interval: between samples [s] where no column gives the time; timed: whether the time was measured, or its interval
     given; trials: how many tests stand side by side in the table; constants: of channels that no column holds [SI]
+    part: whether it is of a part, and not of a tire
     """
 
     origin: Origin
@@ -58,6 +59,7 @@ class Plan:
     timed: bool = True
     trials: int = 1
     constants: Mapping[str, float] = field(default_factory=dict)
+    part: bool = False
 
     @property
     def wanted(self) -> tuple[Wanted, ...]:
@@ -72,6 +74,7 @@ class Interpreted:
     doubt: why the signs could not be determined, "" where they could
     turned: the channels of which the sign was turned; units: of the channels as they were read
     doubts: what is doubtful of their sizes; first: how many samples were left out before those of the piece
+    part: whether it is of a part, and not of a tire
     """
 
     values: Mapping[str, FloatArray]
@@ -82,6 +85,7 @@ class Interpreted:
     units: Mapping[str, str] = field(default_factory=dict)
     doubts: tuple[str, ...] = ()
     first: int = 0
+    part: bool = False
 
     def error(self, index: int, channel: str, what: str) -> RecordingError:
         """Return the error for one sample, with its place in the file."""
@@ -106,7 +110,7 @@ class Interpreted:
                 f"a sign before each column, + to keep and - to turn it: {naming}"
             )
         deepest = int(np.argmax(deflection))
-        if deflection[deepest] > DEEPEST:
+        if deflection[deepest] > DEEPEST and not self.part:
             guess = too_deep(self.rows.origin, float(np.ptp(deflection)), self.units.get("deflection", ""))
             what = f"{deflection[deepest]:.6g} m is deeper than a wheel; correct its unit"
             raise self.error(deepest, "deflection", what + (f" ({guess})" if guess else ""))
@@ -153,6 +157,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         not no_time,
         found.trials,
         constants,
+        settings.part,
     )
 
 
@@ -220,7 +225,7 @@ def interpret(
     notes += _unit_notes(plan.conversions, plan.headers)
     if since_1970:
         notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
-    doubt, turned = _turn_signs(values, plan.matches, notes)
+    doubt, turned = _turn_signs(values, plan, notes)
     believed = values.get("believed_force")
     if believed is not None and float(np.dot(believed, values["force"])) < 0.0:
         values["believed_force"] = -believed
@@ -240,9 +245,9 @@ def interpret(
         column = f"column {quoted(header.text)}"
         return column if sample is None else f"{rows.place(sample + first)}, {column}"
 
-    doubts = doubts_of(plan.origin, values, units, where) if not doubt else ()
+    doubts = doubts_of(plan.origin, values, units, where) if not (doubt or plan.part) else ()
     notes += [f"doubtful: {sentence}" for sentence in doubts]
-    return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first)
+    return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first, plan.part)
 
 
 def _part_text(piece: Piece) -> str:
@@ -305,7 +310,7 @@ def _given_radius(
             return length, [f"surface radius {_radius_text(length)} from {source}"]
     except UnitError as error:
         raise RecordingError(f"{source if settings.radius is None else origin}: {error}") from None
-    return None, []
+    return (np.inf, []) if settings.part else (None, [])
 
 
 def _radius_text(radius: float) -> str:
@@ -360,10 +365,12 @@ def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Hea
     return notes
 
 
-def _turn_signs(
-    values: dict[str, FloatArray], matches: Mapping[str, Match], notes: list[str]
-) -> tuple[str, tuple[str, ...]]:
-    """Turn channels that count the other way round; return why, where that cannot be determined, and those turned."""
+def _turn_signs(values: dict[str, FloatArray], plan: Plan, notes: list[str]) -> tuple[str, tuple[str, ...]]:
+    """Turn channels that count the other way round; return why, where that cannot be determined, and those turned.
+
+    A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are.
+    """
+    matches = plan.matches
     asked_for = tuple(name for name, match in matches.items() if match.sign < 0 and name in values)
     for name, match in matches.items():
         if match.sign < 0 and name in values:
@@ -373,6 +380,8 @@ def _turn_signs(
     given = {name for name in ("deflection", "force") if matches[name].sign}
     turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
     if len(given) == 2:
+        return "", asked_for
+    if plan.part and signs.doubt and not signs.falls:
         return "", asked_for
     if signs.doubt or turned & given:
         return signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned", asked_for

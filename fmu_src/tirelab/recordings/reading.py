@@ -26,7 +26,7 @@ class Reading(Choices):
 
     def of_part(self) -> Reading:
         """Return how recordings of a part are read: a damper or a bushing has no ground, so none is asked for."""
-        return self if self.radius is not None else replace(self, radius="flat")
+        return replace(self, part=True)
 
     def words(self) -> list[str]:
         """Return the words of a command line that read recordings in the same way."""

@@ -263,6 +263,7 @@ def understand(path: Path | str, how: Choices) -> Understood:
     skip_rows = sidecar.skip_rows if how.skip_rows is None else how.skip_rows
     table = open_table(path, skip_rows)
     settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling)
+    settings = replace(settings, part=settings.part or how.part)
     plan = plan_reading(Origin(path.name), table, settings, piece.trial)
     _refuse_too_large(path, table, len(plan.headers) + 1)
     piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)

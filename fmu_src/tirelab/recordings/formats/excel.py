@@ -50,7 +50,7 @@ _DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 class _Sheet:
     """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns.
 
-    style: of numbers that are stored as text; rows: of those that were looked at, how many stand below the names;
+    style: of numbers that are stored as text, where most rows hold one; rows: how many were seen below the names;
     counted: whether its first column holds no text
     """
 
@@ -59,7 +59,7 @@ class _Sheet:
     first_row: int
     headers: tuple[Header, ...]
     notes: tuple[str, ...]
-    style: NumberStyle = NumberStyle()  # noqa: RUF009  # a frozen value
+    style: NumberStyle | None = None
     rows: int = 0
     counted: bool = False
 
@@ -177,9 +177,9 @@ class ExcelTable:
         raise not_a_number(self.path.name, f"row {line}", header.text, cell)
 
     @staticmethod
-    def _as_text(cell: object, style: NumberStyle) -> float | None:
+    def _as_text(cell: object, style: NumberStyle | None) -> float | None:
         """Return a number that is stored as text, written as others of its sheet are; None for any other cell."""
-        if not isinstance(cell, str):
+        if style is None or not isinstance(cell, str):
             return None
         text = style.ungrouped(cell.strip())
         if style.decimal_comma:
@@ -246,12 +246,11 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
     if start > first:
         notes = (*notes, f"table found at row {start + 1}: the rows above it are left out")
     body = head[start + 1 + below :]
-    style = style_of((cell for row in body for cell in row if isinstance(cell, str)), "\t")
-    if any(isinstance(cell, str) and _NUMBER.fullmatch(cell.strip()) for row in body for cell in row):
-        notes = (
-            *notes,
-            f"numbers that are stored as text read with decimal {'commas' if style.decimal_comma else 'points'}",
-        )
+    style = None
+    if 2 * sum(any(map(_is_text_number, row)) for row in body) > len(body):
+        style = style_of((cell for row in body for cell in row if isinstance(cell, str)), "\t")
+        marks = "commas" if style.decimal_comma else "points"
+        notes = (*notes, f"numbers that are stored as text read with decimal {marks}")
     counted = column_counted([[_text(cell) for cell in row] for row in body], "\t")
     return _Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted)
 
@@ -272,6 +271,10 @@ def _channels(headers: Sequence[Header]) -> int:
 def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
     filled = [n for n, cell in enumerate(row, 1) if _holds_any((cell,))]
     return row[: filled[-1]] if filled else ()
+
+
+def _is_text_number(cell: object) -> bool:
+    return isinstance(cell, str) and _NUMBER.fullmatch(cell.strip()) is not None
 
 
 def _at(row: Sequence[Any], place: int) -> Any:

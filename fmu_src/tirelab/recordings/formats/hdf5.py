@@ -91,7 +91,7 @@ class Hdf5Table:
                 array = np.asarray(dataset[place.part] if isinstance(place.part, str) else dataset[()])
                 if array.ndim == 2:
                     along = array if array.shape[0] == max(array.shape) else array.T
-                    array = along[:, place.part or 0]
+                    array = along[:, int(place.part or 0)]
                 values.append(numbers(Origin(self.path.name), header, array, want.channel))
         of_one_length(Origin(self.path.name), headers, values)
         return Columns(tuple(values), sample_place)

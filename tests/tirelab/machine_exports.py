@@ -56,8 +56,7 @@ Writer = Callable[[Path, Motion], None]
 class Export:
     """One export: the name of its file and how it is written.
 
-    signed: of a part that pulls; columns, units, sampling: what the user has to say, where the file cannot; loose: the
-    digits that the file keeps, over the 1e-3 of the largest value that the others do
+    signed: of a part that pulls
     """
 
     name: str
@@ -596,3 +595,23 @@ def _(path: Path, m: Motion) -> None:
             ]
         )
         mdf.save(path, overwrite=True)
+
+
+@export("arrays.h5")
+def _(path: Path, m: Motion) -> None:
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        for name, values, unit in (("time", m.time, "s"), ("stroke", mm(m), "mm"), ("load", m.force, "N")):
+            file.create_dataset(f"run 1/{name}", data=values).attrs["units"] = unit
+
+
+@export("version_7_3.mat")
+def _(path: Path, m: Motion) -> None:
+    import h5py
+
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, values in (("t", m.time), ("stroke_mm", mm(m)), ("load_kN", 1e-3 * m.force)):
+            file.create_dataset(name, data=values.reshape(1, -1)).attrs["MATLAB_class"] = np.bytes_("double")
+    with path.open("r+b") as stream:
+        stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
