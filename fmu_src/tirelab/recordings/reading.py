@@ -38,6 +38,8 @@ class Reading(Choices):
                 words += [option, assignments_text(values)]
         if self.radius is not None:
             words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
+        elif self.part:
+            words += ["--radius", "flat"]  # not every command has a word for a part
         if self.sampling is not None:
             sampling = self.sampling if isinstance(self.sampling, str) else f"{self.sampling!r}Hz"
             words += ["--sampling", sampling]

@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from machine_exports import EXPORTS, Motion, damped, mm, pressed, table
 from tirelab.cli import main
 from tirelab.recordings.asking import IncompleteRecording
+from tirelab.recordings.reading import Reading
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
 
 ASKED = {
@@ -220,6 +221,10 @@ class TestParts:
         path.write_text(HEAD + "\n" + table((m.time, mm(m), force)))
         (tmp_path / "recording.toml").write_text("part = true\n")
         assert_the_motion(read_recording(path), Motion(m.time, m.deflection, force))
+
+    def test_the_words_of_another_command_ask_for_no_surface(self) -> None:
+        assert Reading().of_part().words() == ["--radius", "flat"]
+        assert Reading(radius="25.4cm").of_part().words() == ["--radius", "25.4cm"]
 
     def test_part_is_true_or_false(self, tmp_path: Path) -> None:
         path = self.part(tmp_path / "a.csv")
