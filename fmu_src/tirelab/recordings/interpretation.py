@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .asking import Lacking, asked, rises
-from .channels import UNIT_OF, Match, known_channel, match_channels, says_absolute, unit_of_column
+from .channels import UNIT_OF, Match, known_channel, match_channels, recognised, says_absolute, unit_of_column
 from .formats import Columns, Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
 from .metadata import Settings
@@ -145,7 +145,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
             f"acceleration can be told (if the sampling is known: {origin.sampling('10Hz')})"
         )
     constants, told = _constants(matches, settings)
-    told += _others_alike(table.headers, matches, settings) if found.trials == 1 else []
+    told += _others_alike(table.headers, found.columns, settings) if found.trials == 1 else []
     return Plan(
         origin,
         matches,
@@ -171,7 +171,9 @@ def _others_alike(headers: Sequence[Header], matches: Mapping[str, Match], setti
         others = [
             f"{quoted(header.text)} (#{i + 1})"
             for i, header in enumerate(headers)
-            if i not in taken and measures(unit_of_column(header, name) or "", UNIT_OF[name])
+            if i not in taken
+            and "radius" not in recognised([header], {})
+            and measures(unit_of_column(header, name) or "", UNIT_OF[name])
         ]
         if others:
             chosen = quoted(headers[matches[name].index].text)

@@ -166,6 +166,14 @@ class TestNothingIsLostWithoutAWord:
         assert_the_motion(read_recording(f"{path}@2:401", radius="flat"), m)
         assert_the_motion(read_recording(f"{path}@403:802", radius="flat"), m)
 
+    def test_a_radius_that_is_given_is_no_other_deflection(self, tmp_path: Path) -> None:
+        m = pressed()
+        path = tmp_path / "a.csv"
+        rows = table((m.time, mm(m), 0.0 * m.time + 127.0, m.force))
+        path.write_text("Time (s),Displacement (mm),Radius (mm),Force (N)\n" + rows)
+        notes = read_recording(path, radius="flat").notes
+        assert notes == ("surface radius flat as given, not taken from 'Radius (mm)'",)
+
     @pytest.mark.parametrize("unit", ["counts", "%", "V", "deg"])
     def test_what_is_no_length_is_asked_for_without_a_guess(self, unit: str, tmp_path: Path) -> None:
         with pytest.raises(RecordingError) as caught:
