@@ -78,10 +78,15 @@ class Lacking:
 
 def asked(
     origin: Origin, table: Table, matches: Mapping[str, Match], lacking: Lacking, settings: Settings
-) -> IncompleteRecording:
+) -> RecordingError:
     """Return the error that asks for all that is lacking, with guesses from the sizes of the numbers."""
     headers = table.headers
     values = _numbers(table, {**matches}, headers)
+    if lacking.columns and not values:
+        return RecordingError(
+            f"{origin}: no column holds numbers (its columns are {columns_listed(headers)}); "
+            "export the readings themselves, one row for each sample"
+        )
     guessed = _guessed_columns(lacking.columns, matches, values, headers) if lacking.columns else {}
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}

@@ -107,6 +107,11 @@ def samples_within(
         return None
     begin = _index(where, piece.start, time, rows, first=True) if piece.start else 0
     end = _index(where, piece.stop, time, rows, first=False) if piece.stop else len(time)
+    if end < begin:
+        raise RecordingError(
+            f"{where}: {piece.start} to {piece.stop} ends before it begins; write the earlier bound first: "
+            f"{piece.stop}:{piece.start}, or --from {piece.stop} --to {piece.start}"
+        )
     if end - begin < 2:
         raise RecordingError(
             f"{where}: {piece.start or 'the start'} to {piece.stop or 'the end'} holds {max(end - begin, 0)} samples; "

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import openpyxl
 import pytest
 from click.testing import CliRunner
 from machine_exports import EXPORTS, Motion, damped, mm, pressed, table
@@ -186,6 +187,27 @@ class TestNothingIsLostWithoutAWord:
             or unit == "%"
         )
         assert "did you mean" not in str(caught.value)
+
+
+class TestErrors:
+    def test_a_workbook_of_words(self, tmp_path: Path) -> None:
+        book = openpyxl.Workbook()
+        for row in (("only", "words"), ("no", "numbers"), ("at", "all")):
+            book.active.append(row)
+        book.save(tmp_path / "a.xlsx")
+        result = inspected([str(tmp_path / "a.xlsx"), "--radius", "flat"])
+        assert result.exit_code == 2
+        assert "a.xlsx: no column holds numbers (its columns are 'only', 'words'); export" in result.stderr
+        assert "NAME" not in result.stderr
+
+    @pytest.mark.parametrize(
+        ("name", "options"), [("a.csv@20s:10s", []), ("a.csv", ["--from", "20s", "--to", "10s"])]
+    )
+    def test_a_part_that_ends_before_it_begins(self, name: str, options: list[str], tmp_path: Path) -> None:
+        written(tmp_path / "a.csv", HEAD)
+        result = inspected([str(tmp_path / name), "--radius", "flat", *options])
+        assert result.exit_code == 2
+        assert "20s to 10s ends before it begins; write the earlier bound first: 10s:20s" in result.stderr
 
 
 class TestParts:
