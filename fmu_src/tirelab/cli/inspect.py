@@ -34,15 +34,19 @@ COLUMNS = 110
 )
 @click.argument("recordings", metavar="FILE...", nargs=-1, required=True, type=FILE)
 @output_options(SETTINGS, "File of settings written; unless given, one beside each recording.", "FILE")
+@click.option("--part", is_flag=True, help="Of a damper, a bushing, a spring: no surface is asked for.")
 @click.option("--picture", type=FILE, metavar="PNG", help="Draw the recordings into this picture too.")
 @reading_options
-def command(recordings: tuple[Path, ...], output: Output, picture: Path | None, reading: Reading) -> None:
+def command(
+    recordings: tuple[Path, ...], output: Output, picture: Path | None, reading: Reading, part: bool
+) -> None:
     """Show what is understood of each FILE (or folder of them), and write it into recording.toml, which all
     commands then use."""
     check_files(recordings)
     from ..recordings.files import recording_files
     from ..recordings.inspection import inspect_recording
 
+    reading = reading.of_part() if part else reading
     console = _console()
     files, skipped = recording_files(recordings, reading.columns)
     for other in skipped:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units
 from .units import measures
-from .vocabulary import begins_like
+from .vocabulary import begins_like, counts_rows
 
 FloatArray = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class IncompleteRecording(RecordingError):
     """
 
     def __init__(self, what: str, advice: str, settings: Settings) -> None:
-        super().__init__(f"{what}; {advice}")
+        super().__init__(f"{what}{' ' if what.endswith('?') else '; '}{advice}")
         self.what = what
         self.settings = settings
 
@@ -62,35 +62,46 @@ class IncompleteRecording(RecordingError):
 
 @dataclass(frozen=True)
 class Lacking:
-    """What is not known: channels without a column, channels without a unit, the radius of the surface."""
+    """What is not known: channels without a column, channels without a unit, the radius of the surface.
+
+    wrong: of a channel whose unit is none, or one of something else: what is said of it, and the unit that is meant
+    """
 
     columns: tuple[str, ...]
     units: tuple[str, ...]
     radius: bool
+    wrong: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        return bool(self.columns or self.units or self.radius)
+        return bool(self.columns or self.units or self.radius or self.wrong)
 
 
 def asked(
     origin: Origin, table: Table, matches: Mapping[str, Match], lacking: Lacking, settings: Settings
-) -> IncompleteRecording:
+) -> RecordingError:
     """Return the error that asks for all that is lacking, with guesses from the sizes of the numbers."""
     headers = table.headers
     values = _numbers(table, {**matches}, headers)
+    if lacking.columns and not values:
+        return RecordingError(
+            f"{origin}: no column holds numbers (its columns are {columns_listed(headers)}); "
+            "export the readings themselves, one row for each sample"
+        )
     guessed = _guessed_columns(lacking.columns, matches, values, headers) if lacking.columns else {}
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
-    likely = guessed_units(sized)
+    likely = guessed_units(sized, settings.part)
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
     without_unit = [*lacking.units, *(n for n in guessed if headers[guessed[n]].unit is None)]
     units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
+    units |= {name: meant for name, (_, meant) in lacking.wrong.items()}
     radius = "flat" if lacking.radius else None
     whole = Settings(
         {**settings.columns, **columns},
         {**settings.units, **units},
         settings.radius if radius is None else radius,
         sampling=settings.sampling,
+        part=settings.part,
     )
     parts = _parts(origin, headers, matches, lacking, whole)
     if len(parts) == 1 and len(lacking.units) < 2:
@@ -144,6 +155,8 @@ def _parts(
                 f"write it into the header, such as {name} [{unit}], or give it: {origin.units(**{name: unit})}",
             )
         )
+    for name, (what, meant) in lacking.wrong.items():
+        parts.append((what, f"Then give it: {origin.units(**{name: meant})}"))
     if lacking.radius:
         in_file = "" if origin.kind != "file" else ', or write radius = "flat" into recording.toml beside it'
         parts.append(
@@ -177,13 +190,11 @@ def _numbers(table: Table, matches: Mapping[str, Match], headers: Sequence[Heade
 
 
 def rises(values: FloatArray) -> bool:
-    """Whether numbers rise from each to the next, evenly enough for a clock."""
+    """Whether numbers rise from each to the next, evenly enough for a clock; one by one they count the rows."""
     steps = np.diff(values[np.isfinite(values)])
-    return (
-        bool(len(steps))
-        and bool(steps.min() > 0.0)
-        and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
-    )
+    if not len(steps) or np.all(steps == 1.0):
+        return False
+    return bool(steps.min() > 0.0) and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
 
 
 def _guessed_columns(
@@ -201,7 +212,7 @@ def _guessed_columns(
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
     guessed: dict[str, int] = {}
     if "time" in missing:
-        clocks = [i for i in free if rises(values[i])]
+        clocks = [i for i in free if rises(values[i]) and not counts_rows(headers[i].name)]
         if clocks:
             guessed["time"] = clocks[0]
             free.remove(clocks[0])

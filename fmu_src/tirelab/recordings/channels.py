@@ -8,7 +8,7 @@ from .formats import Header, RecordingError
 from .formats.table import listed, quoted
 from .origin import Origin
 from .units import measures
-from .vocabulary import foreign_channel, name_and_unit, without_count
+from .vocabulary import foreign_channel, is_measured, name_and_unit, without_count
 
 
 @dataclass(frozen=True)
@@ -65,6 +65,9 @@ CHANNELS = (
 
 UNIT_OF = {channel.name: channel.unit for channel in CHANNELS}
 """The SI unit of each channel."""
+
+_GERMAN_SYMBOL = {"deflection": "s"}
+"""Symbols of channels in German exports, taken where a fitting unit follows: s [mm]."""
 
 # "force_min" is a minimum and "stroke_in" an input as often as they are minutes and inches.
 _NO_SUFFIX_UNITS = frozenset({"in", "min", "max"})
@@ -334,7 +337,8 @@ def _may_be(header: Header, channel: Channel) -> bool:
         return False
     if len(name) == 1:
         if header.unit:
-            return name.lower() == channel.symbol.lower() and measures(header.unit, channel.unit)
+            symbols = (channel.symbol.lower(), _GERMAN_SYMBOL.get(channel.name, ""))
+            return name.lower() in symbols and measures(header.unit, channel.unit)
         return name == channel.symbol
     if _words(name) in channel.words:
         return True
@@ -352,6 +356,8 @@ def _may_be_foreign(header: Header, channel: Channel) -> bool:
     parts = name_and_unit(header.name)
     if unit is None and parts is not None and measures(parts[1], channel.unit):
         names, unit = [parts[0]], parts[1]
+    elif unit is None and "_" in header.name and unit_of_column(header, channel.name):
+        names, unit = [header.name.rpartition("_")[0]], unit_of_column(header, channel.name)
     fits = unit is not None and measures(unit, channel.unit)
     if (unit is not None and not fits) or (not channel.required and not fits):
         return False
@@ -382,7 +388,10 @@ def _may_be_qualified(header: Header, channel: Channel) -> bool:
         return False
     name = header.name if header.unit else header.name.removesuffix(unit)
     words = _words(name.partition("(")[0]).split()
-    return any(" ".join(words[i:]) in channel.words for i in range(1, len(words)))
+    ends = (" ".join(words[i:]) for i in range(1, len(words)))
+    return is_measured(name) and any(
+        end in channel.words or foreign_channel(end) == channel.name for end in ends
+    )
 
 
 def _words(name: str) -> str:

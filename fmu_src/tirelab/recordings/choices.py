@@ -14,7 +14,7 @@ class Choices:
     columns: channel -> column; units: channel -> unit; radius: "flat", "25.4cm" or a number [m], None: as in the file;
     sampling: "10 Hz"; skip_rows: above the table; each as for `read_recording`. start, stop: of the part that is read
     of every file, "10s" or a row, where the file's name does not say it; settings: a file that is read instead of the
-    recording.toml beside each recording.
+    recording.toml beside each recording. part: a damper or a bushing, and no tire: it has no ground to be pressed on.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -25,3 +25,4 @@ class Choices:
     start: str = ""
     stop: str = ""
     settings: Path | None = None
+    part: bool = False

@@ -119,6 +119,7 @@ def step_of(values: FloatArray) -> float | None:
 
 def _facts(found: Understood) -> list[tuple[str, str]]:
     recording = found.recording
+    part = found.plan.part
     zero = force_begins(recording.deflection, recording.force, recording.surface_radius)
     begins = (
         "not seen in these readings"
@@ -129,7 +130,7 @@ def _facts(found: Understood) -> list[tuple[str, str]]:
         ("table", _table_text(found)),
         ("samples", f"{len(recording)}"),
         ("sampling", _sampling_text(recording)),
-        ("surface", surface_text(recording.surface_radius)),
+        ("surface", "none: a part, not a tire" if part else surface_text(recording.surface_radius)),
         ("zero", begins),
     ]
 
@@ -170,6 +171,8 @@ def _sampling_text(recording: Recording) -> str:
 def _channels(found: Understood) -> list[ChannelFound]:
     rows = []
     for name, values in found.recording.channels():
+        if name == "radius" and found.plan.part and "radius" not in found.plan.matches:
+            continue
         unit, factor = SHOWN_IN.get(name, (_si(name), 1.0))
         finite = values[np.isfinite(values)] * factor
         span = _span(finite, unit, flat=len(finite) < len(values))
@@ -232,7 +235,9 @@ def _settings(found: Understood) -> dict[str, Any]:
     settings["units"] = dict(found.found.units)
     for name, value in plan.constants.items():
         settings[name] = f"{value!r} {UNIT_OF[name]}"
-    if plan.radius is not None:
+    if plan.part:
+        settings["part"] = True
+    elif plan.radius is not None:
         settings["radius"] = "flat" if np.isinf(plan.radius) else f"{plan.radius!r} m"
     if plan.interval is not None and recording.timed:
         settings["sampling"] = f"{plan.interval!r} s"

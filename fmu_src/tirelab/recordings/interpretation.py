@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .asking import Lacking, asked, rises
-from .channels import UNIT_OF, Match, known_channel, match_channels, says_absolute, unit_of_column
+from .channels import UNIT_OF, Match, known_channel, match_channels, recognised, says_absolute, unit_of_column
 from .formats import Columns, Header, RecordingError, Table, Wanted
-from .formats.table import quoted
+from .formats.table import listed, quoted
 from .metadata import Settings
 from .origin import Origin
 from .pieces import Piece, samples_within
-from .plausibility import doubts_of, too_deep
+from .plausibility import YEAR_2001, YEAR_2096, doubts_of, too_deep
 from .rows import Rows, complete_rows
 from .samples import gap_notes
 from .sign_convention import compressive_signs
@@ -24,10 +24,12 @@ from .units import (
     Conversion,
     UnitError,
     conversion,
+    measures,
     parse_interval,
     parse_quantity,
     parse_radius,
 )
+from .vocabulary import counts_rows
 
 FloatArray = NDArray[np.float64]
 
@@ -44,6 +46,7 @@ class Plan:
 
     interval: between samples [s] where no column gives the time; timed: whether the time was measured, or its interval
     given; trials: how many tests stand side by side in the table; constants: of channels that no column holds [SI]
+    part: whether it is of a part, and not of a tire
     """
 
     origin: Origin
@@ -56,6 +59,7 @@ class Plan:
     timed: bool = True
     trials: int = 1
     constants: Mapping[str, float] = field(default_factory=dict)
+    part: bool = False
 
     @property
     def wanted(self) -> tuple[Wanted, ...]:
@@ -70,6 +74,7 @@ class Interpreted:
     doubt: why the signs could not be determined, "" where they could
     turned: the channels of which the sign was turned; units: of the channels as they were read
     doubts: what is doubtful of their sizes; first: how many samples were left out before those of the piece
+    part: whether it is of a part, and not of a tire
     """
 
     values: Mapping[str, FloatArray]
@@ -80,10 +85,16 @@ class Interpreted:
     units: Mapping[str, str] = field(default_factory=dict)
     doubts: tuple[str, ...] = ()
     first: int = 0
+    part: bool = False
 
     def error(self, index: int, channel: str, what: str) -> RecordingError:
         """Return the error for one sample, with its place in the file."""
         return self.rows.error(index + self.first, channel, what)
+
+    def above(self, index: int) -> str:
+        """Return how the part of the file above one sample is named."""
+        first, last = (self.rows.place(i + self.first).split()[-1] for i in (0, max(index - 1, 0)))
+        return f"{self.rows.origin}@{first}:{last}"
 
     def check_loading(self) -> None:
         """Refuse a deflection that never changes or is deeper than a wheel, and signs that are in doubt."""
@@ -99,7 +110,7 @@ class Interpreted:
                 f"a sign before each column, + to keep and - to turn it: {naming}"
             )
         deepest = int(np.argmax(deflection))
-        if deflection[deepest] > DEEPEST:
+        if deflection[deepest] > DEEPEST and not self.part:
             guess = too_deep(self.rows.origin, float(np.ptp(deflection)), self.units.get("deflection", ""))
             what = f"{deflection[deepest]:.6g} m is deeper than a wheel; correct its unit"
             raise self.error(deepest, "deflection", what + (f" ({guess})" if guess else ""))
@@ -119,12 +130,12 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     if radius is not None:
         matches.pop("radius", None)
     headers = {name: table.headers[match.index] for name, match in matches.items()}
-    conversions, without_unit = _conversions(origin, headers, settings.units)
+    conversions, without_unit, wrong = _conversions(origin, headers, settings.units)
     lacking = tuple(name for name in found.missing if name != "time")
     no_time = "time" not in matches and interval is None
     if no_time and settings.columns.get("time") is None and _may_hold_time(table, matches):
         lacking = ("time", *lacking)
-    wanted = Lacking(lacking, without_unit, radius is None and "radius" not in matches)
+    wanted = Lacking(lacking, without_unit, radius is None and "radius" not in matches, wrong)
     if wanted:
         raise asked(origin, table, matches, wanted, settings)
     if no_time:
@@ -134,6 +145,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
             f"acceleration can be told (if the sampling is known: {origin.sampling('10Hz')})"
         )
     constants, told = _constants(matches, settings)
+    told += _others_alike(table.headers, found.columns, settings) if found.trials == 1 else []
     return Plan(
         origin,
         matches,
@@ -145,7 +157,28 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         not no_time,
         found.trials,
         constants,
+        settings.part,
     )
+
+
+def _others_alike(headers: Sequence[Header], matches: Mapping[str, Match], settings: Settings) -> list[str]:
+    """Return a note for each channel that is not named by the user although other columns have a unit of it too."""
+    taken = {match.index for match in matches.values()}
+    notes = []
+    for name in ("deflection", "force"):
+        if name in settings.columns:
+            continue
+        others = [
+            f"{quoted(header.text)} (#{i + 1})"
+            for i, header in enumerate(headers)
+            if i not in taken
+            and "radius" not in recognised([header], {})
+            and measures(unit_of_column(header, name) or "", UNIT_OF[name])
+        ]
+        if others:
+            chosen = quoted(headers[matches[name].index].text)
+            notes.append(f"{name} taken from {chosen}; not from {listed(others)}")
+    return notes
 
 
 def _constants(matches: Mapping[str, Match], settings: Settings) -> tuple[dict[str, float], list[str]]:
@@ -178,6 +211,11 @@ def interpret(
     rows = complete_rows(plan.origin, plan.headers, read)
     values = {name: _in_si(column, plan.conversions[name]) for name, column in rows.values.items()}
     samples = len(values["deflection"])
+    since_1970 = float(values["time"][0]) if "time" in values else 0.0
+    if YEAR_2001 <= since_1970 <= YEAR_2096:
+        values["time"] = values["time"] - since_1970
+    else:
+        since_1970 = 0.0
     if plan.interval is not None:
         kept = np.arange(samples) if rows.kept is None else rows.kept
         values = {"time": np.asarray(kept * plan.interval, dtype=np.float64), **values}
@@ -187,7 +225,9 @@ def interpret(
     notes = [*read.notes, *rows.notes, *plan.notes]
     notes += [f"settings read from {source}" for source in sources]
     notes += _unit_notes(plan.conversions, plan.headers)
-    doubt, turned = _turn_signs(values, plan.matches, notes)
+    if since_1970:
+        notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
+    doubt, turned = _turn_signs(values, plan, notes)
     believed = values.get("believed_force")
     if believed is not None and float(np.dot(believed, values["force"])) < 0.0:
         values["believed_force"] = -believed
@@ -207,9 +247,9 @@ def interpret(
         column = f"column {quoted(header.text)}"
         return column if sample is None else f"{rows.place(sample + first)}, {column}"
 
-    doubts = doubts_of(plan.origin, values, units, where) if not doubt else ()
+    doubts = doubts_of(plan.origin, values, units, where) if not (doubt or plan.part) else ()
     notes += [f"doubtful: {sentence}" for sentence in doubts]
-    return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first)
+    return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first, plan.part)
 
 
 def _part_text(piece: Piece) -> str:
@@ -242,7 +282,8 @@ def _given_interval(
 def _may_hold_time(table: Table, matches: Mapping[str, Match]) -> bool:
     """Return whether a column that is no channel may be the time: its numbers rise evenly."""
     taken = {match.index for match in matches.values()}
-    for index in [i for i in range(len(table.headers)) if i not in taken][:MOST_LOOKED_AT]:
+    free = [i for i in range(len(table.headers)) if i not in taken]
+    for index in [i for i in free if not counts_rows(table.headers[i].name)][:MOST_LOOKED_AT]:
         try:
             if rises(table.read((Wanted(index, "time"),)).values[0]):
                 return True
@@ -271,7 +312,7 @@ def _given_radius(
             return length, [f"surface radius {_radius_text(length)} from {source}"]
     except UnitError as error:
         raise RecordingError(f"{source if settings.radius is None else origin}: {error}") from None
-    return None, []
+    return (np.inf, []) if settings.part else (None, [])
 
 
 def _radius_text(radius: float) -> str:
@@ -280,10 +321,12 @@ def _radius_text(radius: float) -> str:
 
 def _conversions(
     origin: Origin, headers: Mapping[str, Header], units: Mapping[str, str]
-) -> tuple[dict[str, Conversion], tuple[str, ...]]:
-    """Return how each column becomes SI, and the channels of which no unit is known."""
+) -> tuple[dict[str, Conversion], tuple[str, ...], dict[str, tuple[str, str]]]:
+    """Return how each column becomes SI, the channels of which no unit is known, and those whose unit is none although
+    one was likely meant: what is said of it, and that unit."""
     found: dict[str, Conversion] = {}
     without: list[str] = []
+    wrong: dict[str, tuple[str, str]] = {}
     for name in units:
         known_channel(name, f"{origin}, units")
     for name, header in headers.items():
@@ -297,9 +340,12 @@ def _conversions(
             if name == "pressure" and not found[name].absolute_pressure and says_absolute(header):
                 found[name] = conversion(f"{unit} abs", UNIT_OF[name])
         except UnitError as error:
+            if error.likely and name not in units:
+                wrong[name] = (f"{place}: {error}", error.likely)
+                continue
             giving = origin.units(**{name: "UNIT"})
             raise RecordingError(f"{place}: {error} (or give it: {giving})") from None
-    return found, tuple(without)
+    return found, tuple(without), wrong
 
 
 def _in_si(values: FloatArray, convert: Conversion) -> FloatArray:
@@ -321,10 +367,12 @@ def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Hea
     return notes
 
 
-def _turn_signs(
-    values: dict[str, FloatArray], matches: Mapping[str, Match], notes: list[str]
-) -> tuple[str, tuple[str, ...]]:
-    """Turn channels that count the other way round; return why, where that cannot be determined, and those turned."""
+def _turn_signs(values: dict[str, FloatArray], plan: Plan, notes: list[str]) -> tuple[str, tuple[str, ...]]:
+    """Turn channels that count the other way round; return why, where that cannot be determined, and those turned.
+
+    A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are.
+    """
+    matches = plan.matches
     asked_for = tuple(name for name, match in matches.items() if match.sign < 0 and name in values)
     for name, match in matches.items():
         if match.sign < 0 and name in values:
@@ -334,6 +382,8 @@ def _turn_signs(
     given = {name for name in ("deflection", "force") if matches[name].sign}
     turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
     if len(given) == 2:
+        return "", asked_for
+    if plan.part and signs.doubt and not signs.falls:
         return "", asked_for
     if signs.doubt or turned & given:
         return signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned", asked_for

@@ -26,7 +26,7 @@ _CONSTANT = {channel.name: f"{channel.usual:.4g} {channel.unit}" for channel in 
 
 _TEXTS = ("radius", "sampling", "from", "to", *_CONSTANT)
 _TABLES = ("columns", "units")
-_KEYS = (*_TEXTS, *_TABLES, "skip_rows", "files")
+_KEYS = (*_TEXTS, *_TABLES, "skip_rows", "part", "files")
 _SAID = ("table", "provenance", "doubtful")
 """Keys that `inspect` writes for the reader of the file alone."""
 
@@ -45,6 +45,7 @@ class Sidecar:
     start: str = ""
     stop: str = ""
     constants: Mapping[str, str] = field(default_factory=dict)
+    part: bool = False
 
     def overruled(
         self,
@@ -62,6 +63,7 @@ class Sidecar:
             self.radius_source,
             self.sampling if sampling is None else sampling,
             self.constants,
+            self.part,
         )
 
     def below(self, over: Sidecar) -> Sidecar:
@@ -77,6 +79,7 @@ class Sidecar:
             start=over.start or self.start,
             stop=over.stop or self.stop,
             constants={**self.constants, **over.constants},
+            part=self.part or over.part,
         )
 
 
@@ -86,7 +89,7 @@ class Settings:
 
     radius: as the user gave it; radius_in_file: as `radius_source` states it, over which the former goes
     sampling: rate or interval of the samples, where the table has no time; constants: the one value of a channel that
-    no column holds, such as "2.5 bar" of the pressure
+    no column holds, such as "2.5 bar" of the pressure; part: of a part that has no ground, and not of a tire
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -96,14 +99,16 @@ class Settings:
     radius_source: str = ""
     sampling: str | float | None = None
     constants: Mapping[str, str] = field(default_factory=dict)
+    part: bool = False
 
 
 def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None) -> Sidecar:
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
     For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
-    `skip_rows = 3`, `pressure = "2.5 bar"` and `temperature = "21 degC"` where no column holds them, and the tables
-    `[columns]` and `[units]`, which say per channel what `--columns` and `--units` say.
+    `skip_rows = 3`, `part = true` of a damper or a bushing, `pressure = "2.5 bar"` and `temperature = "21 degC"` where
+    no column holds them, and the tables `[columns]` and `[units]`, which say per channel what `--columns` and `--units`
+    say.
     The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
     named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of
@@ -142,6 +147,7 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
         start=content.get("from", ""),
         stop=content.get("to", ""),
         constants={name: content[name] for name in _CONSTANT if name in content},
+        part=content.get("part", False),
     )
 
 
@@ -179,6 +185,9 @@ def _check(file: Path, content: Mapping[str, Any], inside: str) -> None:
                 raise RecordingError(
                     f"{file.name}: skip_rows is {value!r}; write the number of rows above the table"
                 )
+        elif key == "part":
+            if not isinstance(value, bool):
+                raise RecordingError(f"{file.name}: part is {value!r}; write part = true, or leave it out")
         elif key in _TEXTS:
             _as_text(file, key, value)
 

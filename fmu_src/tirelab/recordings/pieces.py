@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -32,6 +33,14 @@ class Piece:
     def within(self, start: str, stop: str) -> Piece:
         """Return this piece with bounds where it has none itself."""
         return self if self.start or self.stop else replace(self, start=start, stop=stop)
+
+    @property
+    def rows(self) -> tuple[int, int] | None:
+        """The first and the last row, where it is rows that bound the piece; None where times do, or nothing."""
+        bounds = [bit for bit in (self.start, self.stop) if bit]
+        if not bounds or not all(bit.isdecimal() for bit in bounds):
+            return None
+        return int(self.start or 1), int(self.stop or sys.maxsize)
 
     @property
     def suffix(self) -> str:
@@ -98,6 +107,11 @@ def samples_within(
         return None
     begin = _index(where, piece.start, time, rows, first=True) if piece.start else 0
     end = _index(where, piece.stop, time, rows, first=False) if piece.stop else len(time)
+    if end < begin:
+        raise RecordingError(
+            f"{where}: {piece.start} to {piece.stop} ends before it begins; write the earlier bound first: "
+            f"{piece.stop}:{piece.start}, or --from {piece.stop} --to {piece.start}"
+        )
     if end - begin < 2:
         raise RecordingError(
             f"{where}: {piece.start or 'the start'} to {piece.stop or 'the end'} holds {max(end - begin, 0)} samples; "

@@ -38,8 +38,17 @@ LARGEST_RADIUS = 2.0
 EARLY, EARLY_PART = 2e-3, 0.08
 """The force begins at another deflection than zero where it is farther away than this [m], this part of the stroke."""
 
+PULLS = 0.2
+"""What pulls with more than this part of its largest push is no tire, so that its force is not compared with one's."""
+
 FORCES = (("kN", 1e3), ("lbf", 4.4482216152605), ("kgf", 9.80665), ("mN", 1e-3))
 LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0))
+
+CLOCKS = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
+"""Units of clocks with their size [s]."""
+
+YEAR_2001, YEAR_2096 = 1e9, 4e9
+"""Seconds since 1970 [s]; a recording is not that long."""
 
 FLAT_BINS = 60
 
@@ -185,7 +194,7 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
         float(x.max() - x.min()),
         float(np.quantile(f, 0.999) - np.median(f[x <= x.min() + 0.05 * np.ptp(x)])),
     )
-    if not (stroke > 0.0 and load > 0.0):
+    if not (stroke > 0.0 and load > 0.0) or f.min() < -PULLS * f.max():
         return ""
     usual = USUAL[0] * (100.0 * stroke) ** USUAL[1]
     ratio = load / usual
@@ -198,10 +207,11 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
         far = f"{max(rounded, 1.0 / rounded):.0f} times too {'small' if ratio < 1.0 else 'large'}"
     what = f"the force, up to {load:.3g} N, is about {far} for a tire at {1e3 * stroke:.3g} mm of deflection"
     guess = _unit_guess(stroke, load, units)
+    other = "" if origin.kind != "file" else "; if this is no tire, write part = true into recording.toml"
     return (
-        f"{what}: {guess[1]}? Then {origin.units(**{guess[0]: guess[1]})}"
+        f"{what}: {guess[1]}? Then {origin.units(**{guess[0]: guess[1]})}{other}"
         if guess
-        else f"{what}: check both units"
+        else f"{what}: check both units{other}"
     )
 
 
@@ -225,12 +235,25 @@ def _unit_guess(stroke: float, load: float, units: Mapping[str, str]) -> tuple[s
     return min(fits)[1:] if fits else None
 
 
-def guessed_units(columns: Mapping[str, FloatArray]) -> dict[str, str]:
-    """Return the likeliest unit of each of the channels time, deflection, radius and force, from their sizes alone."""
+def _likely_clock(time: FloatArray) -> str:
+    """Return the unit of a clock: of one since 1970 by the date, else by its steps and its length."""
+    first = float(time[np.isfinite(time)][0]) if np.isfinite(time).any() else 0.0
+    dated = [unit for unit, size in CLOCKS if YEAR_2001 <= first * size <= YEAR_2096]
+    if dated:
+        return dated[0]
+    step, length = float(np.nanmedian(np.diff(time))), float(np.nanmax(time) - np.nanmin(time))
+    likely = [unit for unit, size in CLOCKS[1:] if step >= 1e-3 / size and length > 3.6 / size]
+    return likely[-1] if likely else "s"
+
+
+def guessed_units(columns: Mapping[str, FloatArray], part: bool = False) -> dict[str, str]:
+    """Return the likeliest unit of each of the channels time, deflection, radius and force, from their sizes alone.
+
+    part: not of a tire, so that the force's size says nothing
+    """
     guesses: dict[str, str] = {}
     if "time" in columns:
-        steps = np.diff(columns["time"])
-        guesses["time"] = "ms" if np.median(steps) >= 1.0 and np.ptp(columns["time"]) > 3600.0 else "s"
+        guesses["time"] = _likely_clock(columns["time"])
     stroke = (
         float(np.nanmax(columns["deflection"]) - np.nanmin(columns["deflection"]))
         if "deflection" in columns
@@ -239,7 +262,9 @@ def guessed_units(columns: Mapping[str, FloatArray]) -> dict[str, str]:
     if stroke > 0.0:
         sized = [(abs(float(np.log(stroke * f / 0.02))), name) for name, f in LENGTHS if name != "in"]
         guesses["deflection"] = min(sized)[1]
-    if "force" in columns and stroke > 0.0:
+    if "force" in columns and part:
+        guesses["force"] = "N"
+    elif "force" in columns and stroke > 0.0:
         usual = USUAL[0] * (100.0 * stroke * dict(LENGTHS)[guesses["deflection"]]) ** USUAL[1]
         load = max(float(np.nanmax(np.abs(columns["force"]))), 1e-300)
         guesses["force"] = min(

@@ -26,7 +26,7 @@ class Reading(Choices):
 
     def of_part(self) -> Reading:
         """Return how recordings of a part are read: a damper or a bushing has no ground, so none is asked for."""
-        return self if self.radius is not None else replace(self, radius="flat")
+        return replace(self, part=True)
 
     def words(self) -> list[str]:
         """Return the words of a command line that read recordings in the same way."""
@@ -38,6 +38,8 @@ class Reading(Choices):
                 words += [option, assignments_text(values)]
         if self.radius is not None:
             words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
+        elif self.part:
+            words += ["--radius", "flat"]  # not every command has a word for a part
         if self.sampling is not None:
             sampling = self.sampling if isinstance(self.sampling, str) else f"{self.sampling!r}Hz"
             words += ["--sampling", sampling]

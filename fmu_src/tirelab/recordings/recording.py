@@ -16,7 +16,8 @@ from .asking import EXAMPLE_UNITS
 from .channels import UNIT_OF
 from .choices import Choices
 from .description import facts, html_table, one_line
-from .formats import RecordingError, Table, open_table
+from .formats import Columns, RecordingError, Table, open_table
+from .formats.delimited import DelimitedTable
 from .formats.table import quoted
 from .frames import array_table, array_units, frame_table, is_single, single_radius
 from .interpretation import Interpreted, Plan, interpret, plan_reading
@@ -262,15 +263,27 @@ def understand(path: Path | str, how: Choices) -> Understood:
     skip_rows = sidecar.skip_rows if how.skip_rows is None else how.skip_rows
     table = open_table(path, skip_rows)
     settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling)
+    settings = replace(settings, part=settings.part or how.part)
     plan = plan_reading(Origin(path.name), table, settings, piece.trial)
     _refuse_too_large(path, table, len(plan.headers) + 1)
     piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)
-    found = interpret(plan, table.read(plan.wanted), sidecar.sources, piece)
+    found = interpret(plan, _read(table, plan, piece), sidecar.sources, piece)
     recording = _checked(found, plan, path.stem + piece.suffix, path)
     provenance = tuple(getattr(table, "provenance", ()))
     if provenance:
         recording = replace(recording, provenance=provenance)
     return Understood(recording, path, piece, table, plan, found)
+
+
+def _read(table: Table, plan: Plan, piece: Piece) -> Columns:
+    """Return the columns of a plan; where rows cannot be read, those of the piece alone if it names its rows."""
+    try:
+        return table.read(plan.wanted)
+    except RecordingError:
+        rows = piece.rows
+        if rows is None or not isinstance(table, DelimitedTable):
+            raise
+        return table.read_rows(plan.wanted, *rows)
 
 
 def _recording_of(origin: Origin, table: Table, settings: Settings) -> Recording:
@@ -298,7 +311,12 @@ def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> 
             believed_force=values.get("believed_force"),
         )
     except SampleFault as fault:
-        raise found.error(fault.index, fault.channel, fault.what) from None
+        part = (
+            f"; if another test begins here, read one of them: {found.above(fault.index)}"
+            if fault.anew
+            else ""
+        )
+        raise found.error(fault.index, fault.channel, fault.what + part) from None
     found.check_loading()
     return recording
 

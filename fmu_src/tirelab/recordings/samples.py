@@ -11,6 +11,12 @@ FloatArray = NDArray[np.float64]
 GAP = 1.75
 """A step in time longer than this many sampling intervals is a gap: at least one sample is missing."""
 
+COARSE = 0.05
+"""A clock that stands still for more than this share of the steps is coarser than the samples."""
+
+MOST_TESTS = 50
+"""A clock that goes back so often at most may have begun anew with each of several tests."""
+
 LARGEST_PLAUSIBLE = {
     "time": 1e12,
     "deflection": 1e3,
@@ -24,13 +30,17 @@ LARGEST_PLAUSIBLE = {
 
 
 class SampleFault(RecordingError):
-    """One sample that cannot be: its number, its channel and what is wrong with it."""
+    """One sample that cannot be: its number, its channel and what is wrong with it.
 
-    def __init__(self, index: int, channel: str, what: str) -> None:
+    anew: whether another test may begin with it
+    """
+
+    def __init__(self, index: int, channel: str, what: str, anew: bool = False) -> None:
         super().__init__(f"sample {index + 1}, {channel}: {what}")
         self.index = index
         self.channel = channel
         self.what = what
+        self.anew = anew
 
 
 def find_gaps(steps: FloatArray) -> NDArray[np.intp]:
@@ -66,8 +76,16 @@ def check_time(time: FloatArray) -> None:
         return
     late = int(np.argmax(steps <= 0.0)) + 1
     before, after = float(time[late - 1]), float(time[late])
-    how = "repeats" if before == after else f"goes back from {before:.9g} s to"
-    raise SampleFault(late, "time", f"time {how} {after:.9g} s; sort the rows by time, and keep one of each")
+    if before > after:
+        what = f"time goes back from {before:.9g} s to {after:.9g} s; sort the rows by time, and keep one of each"
+        raise SampleFault(late, "time", what, anew=int(np.count_nonzero(steps < 0.0)) <= MOST_TESTS)
+    what = f"time repeats {after:.9g} s"
+    still = int(np.count_nonzero(steps == 0.0))
+    if steps.min() == 0.0 and still > COARSE * len(steps):
+        rate = len(time) / float(time[-1] - time[0] + steps[steps > 0.0].min()) if still < len(steps) else 0.0
+        what += f", as do {still - 1} others: the clock is coarser than the samples; if these are evenly spaced, give "
+        raise SampleFault(late, "time", what + f"their rate: --sampling {rate:.6g}Hz")
+    raise SampleFault(late, "time", what + "; sort the rows by time, and keep one of each")
 
 
 def check_values(name: str, values: FloatArray) -> None:

@@ -14,11 +14,15 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True)
 class Signs:
-    """The factors, 1 or -1, that make deflection and force positive in compression, or why they are in doubt."""
+    """The factors, 1 or -1, that make deflection and force positive in compression, or why they are in doubt.
+
+    falls: whether the force falls where the deflection rises
+    """
 
     deflection: int = 1
     force: int = 1
     doubt: str = ""
+    falls: bool = False
 
 
 def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> Signs:
@@ -45,7 +49,8 @@ def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64
     falls = {1: "rises with", 0: "does not follow", -1: "falls with"}[together]
     side = {1: "positive", 0: "of both signs", -1: "negative"}
     return Signs(
-        doubt=f"force {falls} deflection; under load force is {side[pushing]}, deflection {side[compressed]}"
+        doubt=f"force {falls} deflection; under load force is {side[pushing]}, deflection {side[compressed]}",
+        falls=together < 0,
     )
 
 

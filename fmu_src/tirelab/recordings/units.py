@@ -39,10 +39,16 @@ _SPELLINGS = {
     ("K", "° F"): "degF",
     ("K", "℃"): "degC",
     ("K", "℉"): "degF",
+    ("s", "S"): "s",
     ("s", "Sec"): "s",
     ("s", "Seconds"): "s",
     ("N", "Newton"): "N",
     ("N", "Newtons"): "N",
+    ("N", "lbF"): "lbf",
+    ("N", "kp"): "kgf",
+    # pint's mil is an angle
+    ("m", "mil"): "thou",
+    ("m", "mils"): "thou",
 }
 # Names and small exponents only: pint would also work out 9**9**9 for us.
 _WORD = r"[^\W\d_]+(?:_[^\W\d_]+)*"
@@ -67,7 +73,11 @@ FLAT_WORDS = frozenset({"flat", "inf", "+inf", "-inf", "infinity", "+infinity", 
 
 
 class UnitError(TirelabError):
-    """A unit or a length that cannot be read."""
+    """A unit or a length that cannot be read; likely: the unit that was meant, "" where none is near."""
+
+    def __init__(self, what: str, likely: str = "") -> None:
+        super().__init__(what)
+        self.likely = likely
 
 
 @dataclass(frozen=True)
@@ -117,7 +127,7 @@ def conversion(unit: str, si: str) -> Conversion:
     Errors: UnitError with the likely spelling when pint does not know the unit or it measures something else.
     Source: pint's default registry (definitions of NIST SP 811).
     """
-    text = " ".join(unit.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").split())
+    text = " ".join(unit.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").split()).removesuffix(".")
     quantity = QUANTITIES[si]
     gauge = _GAUGE.match(text) if si == "Pa" else None
     absolute = gauge is not None and gauge["kind"].startswith("a")
@@ -129,9 +139,11 @@ def conversion(unit: str, si: str) -> Conversion:
         parsed = registry.Unit(spelled)
         known = parsed.dimensionality
     except Exception:  # pint raises whatever its tokenizer meets: AttributeError, AssertionError, ...
-        raise UnitError(f"unknown unit {unit[:40]!r} of {quantity}; {_advice(text, si)}") from None
+        what = f"unknown unit {unit[:40]!r} of {quantity}; {_advice(text, si)}"
+        raise UnitError(what, _likely(text, si)) from None
     if known != registry.Unit(si).dimensionality or "delta_" in spelled:
-        raise UnitError(f"{unit[:40]!r} is not a unit of {quantity}; {_advice(text, si)}")
+        what = f"{unit[:40]!r} is not a unit of {quantity}; {_advice(text, si, known=True)}"
+        raise UnitError(what, _likely(text, si, known=True))
     zero, one = registry.Quantity(0.0, parsed), registry.Quantity(1.0, parsed)
     factor = float((one - zero).to(si).magnitude)
     divisor = round(1.0 / factor) if factor < 1.0 else 1
@@ -237,10 +249,18 @@ def parse_interval(text: str | float) -> float:
     return interval
 
 
-def _advice(unit: str, si: str) -> str:
-    known = {name.lower(): name for name in _COMMON[si]}
-    hint = _LIKELY.get((si, unit.lower()))
-    near = [known[name] for name in difflib.get_close_matches(unit.lower(), known, n=1, cutoff=0.5)]
-    if hint or near:
-        return f"did you mean {hint or near[0]}?"
+def _likely(unit: str, si: str, known: bool = False) -> str:
+    """Return the unit that was likely meant, "" where none is near; known: it is a unit, but of something else."""
+    hint = _LIKELY.get((si, unit.lower()), "")
+    if hint or known:
+        return hint if hint and measures(hint, si) else ""
+    names = {name.lower(): name for name in _COMMON[si]}
+    near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)
+    return names[near[0]] if near else ""
+
+
+def _advice(unit: str, si: str, known: bool = False) -> str:
+    meant = _LIKELY.get((si, unit.lower())) or _likely(unit, si, known)
+    if meant:
+        return f"did you mean {meant}?"
     return f"write {', '.join(_COMMON[si][:-1])} or {_COMMON[si][-1]}"

@@ -10,7 +10,17 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("zeit", "testzeit", "prufzeit", "pruefzeit", "messzeit", "versuchszeit", "laufzeit", "zeitstempel"),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
-        *("datetime", "date time", "running time", "total time", "ts", "时间", "時間", "试验时间"),
+        *(
+            "datetime",
+            "date time",
+            "running time",
+            "total time",
+            "ts",
+            "时间",
+            "時間",
+            "试验时间",
+            "経過時間",
+        ),
     ),
     "deflection": (
         *("weg", "traversenweg", "standardweg", "federweg", "kolbenweg", "hub", "stauchung", "verformung"),
@@ -26,7 +36,8 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "axial displacement",
         ),
         *("compressive displacement", "compressive extension", "extension", "position"),
-        *("位移", "变形", "行程", "横梁位移"),
+        *("machine extension", "disp", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
+        *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量"),
     ),
     "radius": (
         "oberflachenradius",
@@ -50,9 +61,20 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("force verticale", "effort", "charge", "charge verticale"),
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
         *("compressive load", "axial force", "axial load", "standard force"),
-        *("力", "载荷", "负荷", "试验力", "荷重"),
+        *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
-    "pressure": ("druck", "luftdruck", "reifendruck", "innendruck", "pression", "presion", "压力", "气压"),
+    "pressure": (
+        "druck",
+        "luftdruck",
+        "reifendruck",
+        "innendruck",
+        "pression",
+        "presion",
+        "压力",
+        "气压",
+        "圧力",
+        "空気圧",
+    ),
     "temperature": ("temperatur", "reifentemperatur", "temperature du pneu", "temperatura", "温度"),
     "speed": ("geschwindigkeit", "vitesse", "velocidad", "速度"),
 }
@@ -60,6 +82,49 @@ FOREIGN: dict[str, tuple[str, ...]] = {
 
 BESIDE = {"deflection": ("displacement", "distance", "stroke", "travel"), "force": ("load",)}
 """English words for a channel of which a column may have the beginning."""
+
+NOT_MEASURED = frozenset(
+    {
+        *("command", "cmd", "demand", "target", "setpoint", "set", "reference", "program", "error"),
+        *("peak", "valley", "maximum", "max", "minimum", "min", "mean", "average", "amplitude", "limit"),
+        *("soll", "sollwert", "consigne", "consigna", "mittelwert", "moyenne", "media"),
+    }
+)
+"""Words of a name that say that its column holds no reading: what was asked for, or what was worked out."""
+
+COUNTERS = frozenset(
+    {
+        *(
+            "sample",
+            "samples",
+            "index",
+            "idx",
+            "no",
+            "nr",
+            "number",
+            "point",
+            "points",
+            "scan",
+            "record",
+            "row",
+        ),
+        *(
+            "reading",
+            "count",
+            "counter",
+            "n",
+            "id",
+            "line",
+            "data point",
+            "sample number",
+            "sample no",
+            "sample nr",
+        ),
+        *("point number", "messpunkt", "messwert", "nummer", "zeile", "echantillon", "numero", "muestra"),
+        *("序号", "编号", "番号"),
+    }
+)
+"""Names of columns that count the rows."""
 
 SHORTEST = 4
 """Letters of a name that is taken for the beginning of a word."""
@@ -86,6 +151,16 @@ def begins_like(name: str, channel: str) -> bool:
     short = plain(name)
     words = (channel, *FOREIGN.get(channel, ()), *BESIDE.get(channel, ()))
     return len(short) >= SHORTEST and any(word.startswith(short) for word in words)
+
+
+def is_measured(name: str) -> bool:
+    """Whether no word of a name says that its column holds what was asked for or worked out: `Force command`."""
+    return not NOT_MEASURED & set(re.split(r"[^\w]+", plain(name)))
+
+
+def counts_rows(name: str) -> bool:
+    """Whether a name is one of a column that counts the rows: `Sample`, `No.`, `Messpunkt`."""
+    return plain(name) in COUNTERS
 
 
 def without_count(name: str) -> str | None:

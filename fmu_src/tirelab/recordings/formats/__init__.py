@@ -1,11 +1,13 @@
 """Files of measurements: one loader per format, each giving the same kind of table."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 from .delimited import DelimitedTable
 from .excel import ExcelTable
-from .matlab import MatlabTable
+from .hdf5 import Hdf5Table
+from .matlab import matlab_table
 from .mdf import MdfTable
 from .parquet import ParquetTable
 from .table import Columns, Header, RecordingError, Table, Wanted, quoted
@@ -19,9 +21,15 @@ LOADERS: dict[str, Callable[[Path], Table]] = {
     ".txt": DelimitedTable,
     ".dat": DelimitedTable,
     ".asc": DelimitedTable,
+    ".tra": DelimitedTable,
+    ".lvm": DelimitedTable,
+    ".log": DelimitedTable,
+    ".prn": DelimitedTable,
     ".parquet": ParquetTable,
     ".pq": ParquetTable,
-    ".mat": MatlabTable,
+    ".mat": matlab_table,
+    ".h5": Hdf5Table,
+    ".hdf5": Hdf5Table,
     ".mf4": MdfTable,
     ".mdf": MdfTable,
     ".tdms": TdmsTable,
@@ -36,31 +44,40 @@ LOADERS: dict[str, Callable[[Path], Table]] = {
 TEXT_SUFFIXES = tuple(suffix for suffix, loader in LOADERS.items() if loader is DelimitedTable)
 """Those of them that are text."""
 
+SNIFFED = 4096
+"""So much of a file [B] is looked at for what it is."""
+
 _SIGNATURES = (
-    (b"PAR1", "Parquet", "rename it to .parquet"),
-    (b"MATLAB 5.0", "MATLAB", "rename it to .mat"),
-    (b"MDF     ", "MDF", "rename it to .mf4"),
-    (b"TDSm", "TDMS", "rename it to .tdms"),
-    (b"\x89HDF", "HDF5", "export it as CSV"),
-    (b"PK\x03\x04", "a zip archive or Excel", "unpack it, or rename it to .xlsx"),
-    (b"\x1f\x8b", "gzip", "unpack it"),
-    (b"BZh", "bzip2", "unpack it"),
-    (b"\xfd7zXZ", "xz", "unpack it"),
-    (b"\x28\xb5\x2f\xfd", "Zstandard", "unpack it"),
-    (b"\xd0\xcf\x11\xe0", "an old Excel workbook", "rename it to .xls"),
+    (b"PAR1", "Parquet", ".parquet"),
+    (b"MATLAB 5.0", "MATLAB", ".mat"),
+    (b"MATLAB 7.3", "MATLAB", ".mat"),
+    (b"MDF     ", "MDF", ".mf4"),
+    (b"TDSm", "TDMS", ".tdms"),
+    (b"\x89HDF", "HDF5", ".h5"),
+    (b"PK\x03\x04", "a zip archive or Excel", ".xlsx"),
+    (b"\xd0\xcf\x11\xe0", "an old Excel workbook", ".xls"),
+    (b"\x1f\x8b", "gzip", ""),
+    (b"BZh", "bzip2", ""),
+    (b"\xfd7zXZ", "xz", ""),
+    (b"\x28\xb5\x2f\xfd", "Zstandard", ""),
+    (b"|CF,", "imc Famos", "export"),
+    (b"%PDF", "PDF", "export"),
 )
+"""First bytes of files that are no text: what they are, and the suffix under which they are read, where they are."""
+
+_CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 
 
 def open_table(path: Path, skip_rows: int | None = None) -> Table:
-    """The table in a file, its loader chosen by the suffix.
+    """The table in a file, its loader chosen by the suffix; where that is not known, by what the file holds.
 
     skip_rows: rows above the table of a text file; None: it is found
-    Errors: RecordingError when there is no such file, it is empty, its suffix is not known, its content is of
-    another kind than its suffix says, or the library for it is not installed.
+    Errors: RecordingError when there is no such file, it is empty, its suffix is not known and it holds no table of
+    text, its content is of another kind than its suffix says, or the library for it is not installed.
     """
     try:
         with path.open("rb") as file:
-            start = file.read(16)
+            start = file.read(SNIFFED)
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file; check the path") from None
     except IsADirectoryError:
@@ -70,17 +87,40 @@ def open_table(path: Path, skip_rows: int | None = None) -> Table:
     if not start:
         raise RecordingError(f"{path.name}: is empty (0 bytes); record again, or export the file anew")
     suffix = path.suffix.lower()
-    if suffix in TEXT_SUFFIXES:
-        for signature, kind, advice in _SIGNATURES:
-            if start.startswith(signature):
-                raise RecordingError(f"{path.name}: is no text table but {kind}; {advice}")
+    kind, read_as = next(((kind, end) for mark, kind, end in _SIGNATURES if start.startswith(mark)), ("", ""))
+    if kind and suffix in TEXT_SUFFIXES:
+        raise RecordingError(f"{path.name}: is no text table but {kind}; {_advice(path, read_as)}")
+    known = suffix in LOADERS
+    if not known and read_as in LOADERS:
+        suffix = read_as
     if suffix not in LOADERS:
-        raise RecordingError(
-            f"{path.name}: recordings ending in {quoted(suffix)} cannot be read; "
-            f"export it as one of {', '.join(LOADERS)}"
-        )
-    if skip_rows is None:
-        return LOADERS[suffix](path)
-    if suffix not in TEXT_SUFFIXES:
+        if kind or _CONTROL.search(start):
+            raise _unknown(path, f"is {kind}; {_advice(path, read_as)}" if kind else "")
+        suffix = ".txt"
+    if skip_rows is not None and suffix not in TEXT_SUFFIXES:
         raise RecordingError(f"{path.name}: rows can be skipped in text files alone; leave out --skip-rows")
-    return DelimitedTable(path, skip_rows)
+    if suffix not in TEXT_SUFFIXES:
+        return LOADERS[suffix](path)
+    try:
+        return DelimitedTable(path, skip_rows)
+    except RecordingError as error:
+        if known:
+            raise
+        raise _unknown(
+            path, f"no table is found in its text ({str(error).removeprefix(path.name + ': ')})"
+        ) from None
+
+
+def _advice(path: Path, read_as: str) -> str:
+    if read_as in LOADERS:
+        return f"rename it to {path.stem}{read_as}"
+    return "export it as text" if read_as else "unpack it"
+
+
+def _unknown(path: Path, what: str) -> RecordingError:
+    if what:
+        return RecordingError(f"{path.name}: {what}")
+    return RecordingError(
+        f"{path.name}: recordings ending in {quoted(path.suffix.lower())} cannot be read; "
+        f"export it as one of {', '.join(LOADERS)}"
+    )

@@ -4,6 +4,7 @@ import csv
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
@@ -12,11 +13,13 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ..units import FLAT_WORDS
-from .clock import Clock, ClockError
+from .clock import Clock, ClockError, is_clock
 from .layout import Layout
 from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS
 from .spaced import with_tabs
 from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
+from .table_search import is_value
+from .text_rows import TextRows
 
 LONGEST_LINE = 1_048_576
 """More characters than this in one line are not a row of numbers."""
@@ -41,6 +44,8 @@ class RowReader:
         self.comments: list[int] = []
         self.clocks = {want.index: Clock() for want in wanted if layout.headers[want.index].dated}
         self.cells = _Cells(path, layout)
+        self.guarded = layout.counted and all(want.index for want in wanted)
+        self.text_rows = TextRows(path.name, layout.headers, layout.separator, layout.spaced)
 
     def read(self, source: Iterable[str], first_line: int) -> Rows:
         """The rows in some lines of the file; a blank cell is NaN, an empty line a row of NaN.
@@ -53,12 +58,10 @@ class RowReader:
         ]
         lines = array("q")
         targets = [
-            (column, want.index, self.layout.headers[want.index].text, want.channel == "radius")
-            for column, want in zip(columns, self.wanted, strict=True)
+            (want.index, self.layout.headers[want.index].text, want.channel == "radius")
+            for want in self.wanted
         ]
         rows = csv.reader(source, delimiter=self.layout.separator)
-        expected = len(self.layout.headers)
-        number = self.cells.number
         line = first_line
         try:
             for row in rows:
@@ -66,17 +69,16 @@ class RowReader:
                 if row and is_comment(row[0]):
                     self.comments.append(start)
                     continue
-                if self.layout.spaced and len(row) != expected and any(map(str.strip, row)):
-                    raise self._other_width(start, row)
-                if len(row) > expected:
-                    self._refuse_extra_fields(start, row)
+                try:
+                    cells = self._cells_of(row, start, targets)
+                except RecordingError as fault:
+                    self.text_rows.take(start, row, fault)
+                    continue
+                if (self.text_rows.open or not self.text_rows.begins) and any(map(str.strip, row)):
+                    self.text_rows.numbers(start)
                 lines.append(start)
-                for column, index, header, flat in targets:
-                    cell = row[index] if index < len(row) else ""
-                    if isinstance(column, list):
-                        column.append(cell)
-                    else:
-                        column.append(number(cell, start, header, flat))
+                for column, cell in zip(columns, cells, strict=True):
+                    column.append(cell)  # type: ignore[arg-type]  # clock times are texts, all else numbers
         except csv.Error as error:
             raise RecordingError(
                 f"{self.path.name}, row {line}: {error}; a quote may be left open there: close it"
@@ -88,6 +90,30 @@ class RowReader:
             for column, want in zip(columns, self.wanted, strict=True)
         ]
         return Rows(tuple(values), np.array(lines, dtype=np.int64), first_line + rows.line_num)
+
+    def _cells_of(
+        self, row: Sequence[str], line: int, targets: Sequence[tuple[int, str, bool]]
+    ) -> list[float | str]:
+        """Return the cells wanted of a row, clock times as they are. Errors: RecordingError for any other text."""
+        expected = len(self.layout.headers)
+        if self.layout.spaced and len(row) != expected and any(map(str.strip, row)):
+            raise self._other_width(line, row)
+        if len(row) > expected:
+            self._refuse_extra_fields(line, row)
+        # a label in a column of numbers that nobody wants: a row of statistics
+        label = row[0] if row and self.guarded else ""
+        if label.strip().lower() not in BLANK_WORDS and not is_value(label, self.layout.separator):
+            raise not_a_number(self.path.name, f"row {line}", self.layout.headers[0].text, label)
+        cells: list[float | str] = []
+        for index, header, flat in targets:
+            cell = row[index] if index < len(row) else ""
+            if index not in self.clocks:
+                cells.append(self.cells.number(cell, line, header, flat))
+            elif is_clock(cell) or cell.strip().lower() in BLANK_WORDS:
+                cells.append(cell)
+            else:
+                raise not_a_time(self.path.name, line, header, cell)
+        return cells
 
     def _seconds(self, texts: Sequence[str], want: Wanted, lines: Sequence[int]) -> FloatArray:
         """The seconds that clock times say; RecordingError with the row of one that is none."""
@@ -101,15 +127,17 @@ class RowReader:
                 texts[fault.index],
             ) from None
 
-    def read_file(self) -> Rows:
-        """The rows of the whole file, whichever way its lines end."""
+    def read_file(self, rows: tuple[int, int] | None = None) -> Rows:
+        """The rows of the whole file, whichever way its lines end; rows: the first and the last of those read."""
         encoding = self.layout.encoding
         errors = "surrogateescape" if encoding.startswith("utf-8") else "replace"
         with self.path.open(encoding=encoding, errors=errors, newline="") as file:
             lines = self._bounded_lines(file)
-            for _ in range(self.layout.lines_before_data):
-                next(lines)
-            return self.read(lines, self.layout.lines_before_data + 1)
+            first = self.layout.lines_before_data + 1
+            if rows is not None:
+                first = max(first, rows[0])
+                return self.read(islice(lines, first - 1, max(first - 1, rows[1])), first)
+            return self.read(islice(lines, first - 1, None), first)
 
     def _bounded_lines(self, file: TextIO) -> Iterator[str]:
         number = 0

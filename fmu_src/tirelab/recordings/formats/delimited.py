@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .careful import LONGEST_LINE, RowReader, Rows
 from .clock import ClockError
-from .encoding import BY_BYTES
+from .encoding import BY_BYTES, EAST_ASIAN
 from .layout import Layout, find_layout
 from .number_style import NumberStyle
 from .spaced import block_with_tabs
@@ -31,6 +31,7 @@ class DelimitedTable:
         self.path = path
         self.layout = find_layout(path, skip_rows)
         self.provenance = self.layout.provenance
+        self.rows: tuple[int, int] | None = None
 
     @property
     def headers(self) -> Sequence[Header]:
@@ -42,15 +43,23 @@ class DelimitedTable:
         rows = self.path.stat().st_size / self.layout.bytes_per_row
         return int(rows * columns * 8 * 2) + 32 * BLOCK
 
+    def read_rows(self, wanted: Sequence[Wanted], first: int, last: int) -> Columns:
+        """The columns wanted of these rows of the file alone, whatever the others hold."""
+        self.rows = (first, last)
+        try:
+            return self.read(wanted)
+        finally:
+            self.rows = None
+
     def read(self, wanted: Sequence[Wanted]) -> Columns:
         """The columns wanted, block by block: by columns where that works, row by row where it does not."""
         pieces = _Pieces(len(wanted))
         reader = RowReader(self.path, self.layout, wanted)
-        if not (self.layout.plain and _read_blocks(pieces, reader)):
+        if self.rows or not (self.layout.plain and _read_blocks(pieces, reader)):
             # What cannot be cut into blocks, or is wrong, is judged by one reading from the first row.
             pieces = _Pieces(len(wanted))
             reader = RowReader(self.path, self.layout, wanted)
-            pieces.add_rows(reader.read_file())
+            pieces.add_rows(reader.read_file(self.rows))
         notes = [*self.layout.notes, *(note for clock in reader.clocks.values() for note in clock.notes)]
         if reader.cells.decimal_mark() == ",":
             notes.append("commas read as decimal commas")
@@ -59,6 +68,7 @@ class DelimitedTable:
         if reader.comments:
             lines = listed([str(line) for line in reader.comments])
             notes.append(f"comment lines (#) skipped: row {lines}")
+        notes += reader.text_rows.notes()
         return Columns(tuple(pieces.joined()), pieces.place, tuple(notes))
 
 
@@ -112,10 +122,14 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
     """Read a file in blocks; False where only a reading from the first row to the last can judge it."""
     path, layout = reader.path, reader.layout
     line = layout.lines_before_data + 1
-    codec = layout.encoding if layout.encoding in ("latin-1", "gb18030") else "utf-8"
+    codec = layout.encoding if layout.encoding in ("latin-1", *EAST_ASIAN) else "utf-8"
     wanted = [want.index for want in reader.wanted]
+    if reader.guarded:
+        wanted.append(0)
     try:
         for block in _blocks(path, layout):
+            if reader.text_rows.open:
+                return False
             quotes = block.count(b'"') if b'"' in block else 0
             if quotes % 2:
                 return False
@@ -156,7 +170,7 @@ def _parsed(block: bytes, layout: Layout, wanted: Sequence[int]) -> pl.DataFrame
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             frame = pl.read_csv(
-                block if layout.encoding != "gb18030" else block.decode(layout.encoding).encode(),
+                block if layout.encoding not in EAST_ASIAN else block.decode(layout.encoding).encode(),
                 has_header=False,
                 schema={_named(i): kind for i, kind in kinds.items()},
                 columns=[_named(i) for i in wanted],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 from pathlib import Path
 
+from ..vocabulary import FOREIGN
 from .table import RecordingError
 
 BYTE_ORDER_MARKS = (
@@ -18,7 +19,10 @@ BYTE_ORDER_MARKS = (
 JUDGED = 16_384
 """So many bytes [B] of a file are shown to the detector."""
 
-BY_BYTES = frozenset({"utf-8", "utf-8-sig", "latin-1", "gb18030"})
+EAST_ASIAN = {"gb18030": "GBK (GB 18030)", "cp932": "Shift-JIS (CP 932)"}
+"""Encodings of Chinese and Japanese machines, and what a note calls them."""
+
+BY_BYTES = frozenset({"utf-8", "utf-8-sig", "latin-1", *EAST_ASIAN})
 """Encodings in which the bytes of separators, quotes, line ends and # stand for nothing else, so far as tables go."""
 
 
@@ -37,8 +41,9 @@ def find_encoding(path: Path, raw: bytes, whole: bool) -> tuple[str, tuple[str, 
         codecs.getincrementaldecoder("utf-8")().decode(raw, final=whole)
     except UnicodeDecodeError as error:
         where = f"not UTF-8 (byte 0x{raw[error.start]:02x} at {error.start})"
-        if _is_chinese(raw):
-            return "gb18030", (f"{where}: read as GBK (GB 18030)",)
+        east = _east_asian(raw, whole)
+        if east:
+            return east, (f"{where}: read as {EAST_ASIAN[east]}",)
         return "latin-1", (f"{where}: read as Latin-1",)
     return "utf-8", ()
 
@@ -51,6 +56,21 @@ def _without_mark(path: Path, raw: bytes) -> str:
     raise RecordingError(
         f"{path.name}: is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
     )
+
+
+def _east_asian(raw: bytes, whole: bool) -> str:
+    """Return the encoding in which the text has words for channels, else the likelier one; "" for western letters."""
+    words = {word for known in FOREIGN.values() for word in known if not word.isascii() and len(word) > 1}
+    found = []
+    for encoding in EAST_ASIAN:
+        try:
+            text = codecs.getincrementaldecoder(encoding)().decode(raw, final=whole)
+        except UnicodeDecodeError:
+            continue
+        found.append((sum(word in text for word in words), encoding))
+    if found and max(found)[0]:
+        return max(found)[1]
+    return "gb18030" if _is_chinese(raw) else ""
 
 
 def _is_chinese(raw: bytes) -> bool:

@@ -5,6 +5,7 @@ same columns, as testing machines write one for each specimen, are tests side by
 """
 
 import datetime
+import re
 from array import array
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,10 +19,12 @@ import numpy as np
 
 from ..units import FLAT_WORDS, measures, split_header
 from ..vocabulary import foreign_channel
-from .layout import below_names
+from .layout import below_names, column_counted
 from .libraries import load_library, reading_with
+from .number_style import NumberStyle, style_of
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, not_a_number, quoted
-from .table_search import SEARCHED, find_table
+from .table_search import SEARCHED, find_table, is_value
+from .text_rows import TextRows
 
 MOST_ROWS = 1_048_576
 """The rows of a sheet (Excel's own limit)."""
@@ -38,18 +41,27 @@ _NEEDED = (
 )
 """Of the two channels that are needed: the SI unit, and English words of their names."""
 
+_NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+
 _DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 
 
 @dataclass(frozen=True)
 class _Sheet:
-    """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns."""
+    """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns.
+
+    style: of numbers that are stored as text, where most rows hold one; rows: how many were seen below the names;
+    counted: whether its first column holds no text
+    """
 
     title: str
     header_row: int
     first_row: int
     headers: tuple[Header, ...]
     notes: tuple[str, ...]
+    style: NumberStyle | None = None
+    rows: int = 0
+    counted: bool = False
 
 
 class ExcelTable:
@@ -73,7 +85,8 @@ class ExcelTable:
                     found.append(_sheet(path, title, head))
         if not found:
             raise RecordingError(f"{path.name}: holds no header and no numbers; export the workbook anew")
-        chosen = max(found, key=lambda sheet: _channels(sheet.headers))
+        # of sheets with the same channels the longest: one of results has a row for each specimen
+        chosen = max(found, key=lambda sheet: (_channels(sheet.headers), sheet.rows))
         if not chosen.header_row:
             raise RecordingError(
                 f"{path.name}, row {chosen.first_row}: is no header; put a row above the numbers that names "
@@ -99,12 +112,14 @@ class ExcelTable:
         A time column of dates, durations or times of day becomes seconds from its first row.
         """
         width = len(self.sheets[0].headers)
-        numbers = {want.index // width for want in wanted}
-        if len(numbers) > 1:
+        chosen = {want.index // width for want in wanted}
+        if len(chosen) > 1:
             raise RecordingError(
                 f"{self.path.name}: the columns named are on several sheets; name those of one of them"
             )
-        sheet = self.sheets[min(numbers, default=0)]
+        sheet = self.sheets[min(chosen, default=0)]
+        text_rows = TextRows(self.path.name, sheet.headers)
+        guarded = sheet.counted and all(want.index % width for want in wanted)
         columns = [array("d") for _ in wanted]
         lines = array("q")
         empty: list[int] = []
@@ -119,21 +134,29 @@ class ExcelTable:
                 if not _holds_any(row):
                     empty.append(line)
                     continue
+                texts = [_text(cell) for cell in (*row, *[None] * width)[: max(width, len(row))]]
+                try:
+                    numbers = [self._number(_at(row, want.index % width), line, want) for want in wanted]
+                    if guarded and texts[0] and not is_value(texts[0], "\t"):
+                        raise not_a_number(self.path.name, f"row {line}", sheet.headers[0].text, texts[0])
+                except RecordingError as fault:
+                    text_rows.take(line, texts, fault)
+                    continue
+                text_rows.numbers(line)
                 # Empty rows at the very end are no rows; those before a row are.
                 for skipped in [*empty, line]:
                     lines.append(skipped)
                 empty.clear()
-                for column, want in zip(columns, wanted, strict=True):
+                for column, number in zip(columns, numbers, strict=True):
                     column.extend([np.nan] * (len(lines) - len(column) - 1))
-                    place = want.index % width
-                    cell = row[place] if place < len(row) else None
-                    column.append(self._number(cell, line, want))
+                    column.append(number)
         values = [np.array(column, dtype=np.float64) for column in columns]
         for want, seconds in zip(wanted, values, strict=True):
             if self.headers[want.index].dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
         read = () if len(self.sheets) == 1 else (f"read from sheet {quoted(sheet.title)}",)
-        return Columns(tuple(values), lambda i: f"row {lines[i]}", (*self.notes, *read))
+        said = (*self.notes, *read, *text_rows.notes())
+        return Columns(tuple(values), lambda i: f"row {lines[i]}", said)
 
     def _number(self, cell: object, line: int, want: Wanted) -> float:
         header = self.headers[want.index]
@@ -148,7 +171,22 @@ class ExcelTable:
             return float("nan")
         if want.channel == "radius" and word in FLAT_WORDS:
             return float("inf")
+        number = self._as_text(cell, self.sheets[want.index // len(self.sheets[0].headers)].style)
+        if number is not None:
+            return number
         raise not_a_number(self.path.name, f"row {line}", header.text, cell)
+
+    @staticmethod
+    def _as_text(cell: object, style: NumberStyle | None) -> float | None:
+        """Return a number that is stored as text, written as others of its sheet are; None for any other cell."""
+        if style is None or not isinstance(cell, str):
+            return None
+        text = style.ungrouped(cell.strip())
+        if style.decimal_comma:
+            text = "" if "." in text else text.replace(",", ".")
+        if _NUMBER.fullmatch(text) is None:
+            return None
+        return float(text)
 
 
 class _OfOpenpyxl:
@@ -207,7 +245,14 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
     )
     if start > first:
         notes = (*notes, f"table found at row {start + 1}: the rows above it are left out")
-    return _Sheet(title, start + 1, start + below + 2, headers, notes)
+    body = head[start + 1 + below :]
+    style = None
+    if 2 * sum(any(map(_is_text_number, row)) for row in body) > len(body):
+        style = style_of((cell for row in body for cell in row if isinstance(cell, str)), "\t")
+        marks = "commas" if style.decimal_comma else "points"
+        notes = (*notes, f"numbers that are stored as text read with decimal {marks}")
+    counted = column_counted([[_text(cell) for cell in row] for row in body], "\t")
+    return _Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted)
 
 
 def _channels(headers: Sequence[Header]) -> int:
@@ -226,6 +271,14 @@ def _channels(headers: Sequence[Header]) -> int:
 def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
     filled = [n for n, cell in enumerate(row, 1) if _holds_any((cell,))]
     return row[: filled[-1]] if filled else ()
+
+
+def _is_text_number(cell: object) -> bool:
+    return isinstance(cell, str) and _NUMBER.fullmatch(cell.strip()) is not None
+
+
+def _at(row: Sequence[Any], place: int) -> Any:
+    return row[place] if place < len(row) else None
 
 
 def _text(cell: object) -> str:

@@ -6,6 +6,7 @@ import codecs
 import csv
 import io
 import re
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,9 @@ HEAD = 65_536
 SAMPLE = 500
 """How many of its lines are looked at for decimal commas and clock times."""
 
+_UNITS_CALLED = re.compile(r'\s*"?(?:[xy]_)?(?:unit|einheit|unité|unidad)', re.IGNORECASE)
+_SERIAL = re.compile(r"\s*\d{1,2}:\d\d:\d\d[.,]\d+ -> ")
+
 BELOW_NAMES = 3
 """So many rows of text may stand between the names of the columns and the numbers: units, addresses, remarks."""
 
@@ -34,7 +38,7 @@ class Layout:
 
     table_line: of the header, from 1, or of the first numbers where there is no header; provenance: the lines above it
     plain: whether lines end as they usually do, so that a parser by columns may be tried; spaced: whether its columns
-    stand between spaces, which are read as tabs
+    stand between spaces, which are read as tabs; counted: whether the first column holds no text, as far as was looked
     """
 
     encoding: str
@@ -48,6 +52,7 @@ class Layout:
     table_line: int = 1
     provenance: tuple[str, ...] = ()
     spaced: bool = False
+    counted: bool = False
 
 
 def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
@@ -64,6 +69,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     first, declared = _preamble(lines)
     if skip_rows is not None:
         first = skip_rows + _preamble(lines[skip_rows:])[0]
+    _refuse_serial_monitor(path, lines[first:])
     spaced = 0 if declared else spaced_columns(lines[first:])
     if spaced:
         lines = [with_tabs(line, spaced) for line in lines]
@@ -84,13 +90,17 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
             f"{path.name}, row {start + 1}: {error}; correct the quotes of the header"
         ) from None
     names, in_table, said = _names(lines, start, header, separator)
+    widest = max((len(row) for row in body[:SAMPLE]), default=0)
+    if len(names) == widest - 1 and all(not row[-1].strip() for row in body if len(row) == widest):
+        names = [*names, ""]  # rows of numbers that end with a separator
     headers = tuple(_header(cell, number) for number, cell in enumerate(names, 1))
     before = 0
     if in_table:
         before = header_lines
         headers, below, more = below_names(lines, start + header_lines, headers, separator)
         before += below
-        said = (*said, *more)
+        headers, above = above_names(lines[first:start], headers, separator)
+        said = (*said, *more, *above)
     if start > first:
         said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
     clocks = _clock_columns(body)
@@ -109,6 +119,28 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         start + 1,
         _provenance(lines[:start], separator, declared),
         spaced > 0,
+        column_counted(body, separator),
+    )
+
+
+def column_counted(body: Sequence[Sequence[str]], separator: str) -> bool:
+    """Return whether the cells of the first column are numbers, times or blank, but for some rows about the table."""
+    cells = [row[0] for row in body if sum(map(bool, map(str.strip, row))) > 1]
+    texts = sum(
+        bool(c.strip()) and c.strip().lower() not in BLANK_WORDS and not is_value(c, separator) for c in cells
+    )
+    return bool(cells) and texts <= max(BELOW_NAMES, 0.1 * len(cells))
+
+
+def _refuse_serial_monitor(path: Path, lines: Sequence[str]) -> None:
+    """Refuse text of a serial monitor that put its time stamps before an arrow, with the command that mends it."""
+    if sum(_SERIAL.match(line) is not None for line in lines) <= len(lines) / 2:
+        return
+    text = lines[-1].partition(" -> ")[2]
+    mark = next((mark for mark in (";", ",", "\t") if mark in text), " ").replace("\t", "\\t")
+    raise RecordingError(
+        f"{path.name}, row 1: a serial monitor wrote the time and an arrow before each row; make columns of them: "
+        f"sed -i 's/ -> /{mark}/' {shlex.quote(str(path))}"
     )
 
 
@@ -155,6 +187,27 @@ def below_names(
         notes.append(f"text between the names and the numbers skipped: row {', '.join(others)}")
     last = texts[-1][0] if whole else (units or texts[0])[0]
     return headers, last - line, tuple(notes)
+
+
+def above_names(
+    lines: Sequence[str], headers: tuple[Header, ...], separator: str
+) -> tuple[tuple[Header, ...], tuple[str, ...]]:
+    """Return the headers with the units of the last row above them that calls itself one of units, and a note.
+
+    Such a row begins with a word for units, Y_Unit_Label or Einheit, and holds a unit for each of the other columns.
+    """
+    if any(header.unit for header in headers):
+        return headers, ()
+    for line in reversed(lines):
+        if _UNITS_CALLED.match(line) is None:
+            continue
+        row = next(csv.reader([line], delimiter=separator), [])
+        cells = ["", *row[1:]]
+        if is_units(cells) and sum(map(bool, map(str.strip, cells))) > 1:
+            units = [*cells, *[""] * len(headers)]
+            named = tuple(_with_unit(h, cell) for h, cell in zip(headers, units, strict=False))
+            return named, (f"units taken from the row above the names that begins with {quoted(row[0])}",)
+    return headers, ()
 
 
 def _rows_of_text(

@@ -15,15 +15,18 @@ from ...errors import TirelabError, missing_library
 from .table import RecordingError
 
 
-def load_library(path: Path, module: str, package: str) -> ModuleType:
-    """A library that the base installation may lack; RecordingError says which package brings it."""
+def load_library(path: Path, module: str, package: str, instead: str = "") -> ModuleType:
+    """A library that the base installation may lack; RecordingError says which package brings it.
+
+    instead: what else can be done, at the end of that sentence
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return importlib.import_module(module)
     except ImportError:
         purpose = f"{path.name}: reading {path.suffix}"
-        raise RecordingError(missing_library(purpose, module, package)) from None
+        raise RecordingError(missing_library(purpose, module, package) + instead) from None
 
 
 @contextmanager

@@ -1,4 +1,6 @@
-"""MATLAB .mat files (version 7 and older), read with SciPy."""
+"""MATLAB .mat files: version 7 and older are read with SciPy, version 7.3 as the HDF5 that it is."""
+
+from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -8,11 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..origin import Origin
+from .hdf5 import Hdf5Table
 from .libraries import reading_with
-from .table import Columns, FloatArray, Header, RecordingError, Wanted, numbers, of_one_length, sample_place
+from .table import Columns, FloatArray, Header, Wanted, numbers, of_one_length, sample_place
 
 MOST_COLUMNS = 64
 """A matrix with more columns than this is a picture or a map, not a set of channels."""
+
+
+def matlab_table(path: Path) -> MatlabTable | Hdf5Table:
+    """The vectors of a .mat file of either kind: one of version 7.3 is HDF5 within."""
+    with path.open("rb") as file:
+        later = b"MATLAB 7.3" in file.read(128)
+    return Hdf5Table(path, "; or in MATLAB, save it with save(..., '-v7')") if later else MatlabTable(path)
 
 
 class MatlabTable:
@@ -22,11 +32,6 @@ class MatlabTable:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        with path.open("rb") as file:
-            if b"MATLAB 7.3" in file.read(128):
-                raise RecordingError(
-                    f"{path.name}: is a MATLAB 7.3 (HDF5) file; in MATLAB, save it with save(..., '-v7')"
-                )
         # Variables are opened one by one: the shapes say which may be channels before anything is loaded.
         with reading_with(path, "a .mat file"):
             self.shapes = [(name, shape, kind) for name, shape, kind in _scipy_io().whosmat(str(path))]

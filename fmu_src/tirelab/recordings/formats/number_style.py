@@ -48,7 +48,7 @@ def style_of(cells: Iterable[str], separator: str) -> NumberStyle:
     """Return how numbers are written, from cells of which at least one leaves no doubt.
 
     `1.234,5` has a decimal comma and points between thousands, `1,234.5` the reverse; a lone `1,234` may be either,
-    and `0,5` or `12,34` is a decimal comma where commas do not separate the columns.
+    and `0,5` or `12,34` is a decimal comma; where commas separate the columns, such a cell stands between quotes.
     """
     commas = False
     for cell in cells:
@@ -59,7 +59,8 @@ def style_of(cells: Iterable[str], separator: str) -> NumberStyle:
                     return NumberStyle(decimal == ",", thousands)
             if spaced := _SPACED.fullmatch(text):
                 return NumberStyle("," in text or commas, spaced[1])
-        if not commas and separator != "," and _is_decimal_comma(cell):
+        # where commas separate the columns, one within a cell stood between quotes
+        if not commas and _is_decimal_comma(cell):
             commas = True
     return NumberStyle(commas)
 

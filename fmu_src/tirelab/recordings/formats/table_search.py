@@ -61,8 +61,8 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
         return None
     length, rows, first, found = best
     width = len(rows[first].cells)
-    above = [row for row in rows[:first] if len(row.cells) == width and not row.numeric and any(row.cells)]
-    above = [row for row in above if not is_units(row.cells)]
+    texts = [row for row in rows[:first] if not row.numeric and any(row.cells) and not is_units(row.cells)]
+    above = [row for row in texts if len(row.cells) == width] or _nearly_as_wide(texts, rows[first])
     header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
     if header is not None and _named(header.cells) > 0:
         header = next(row for row in above if _named(row.cells) == _named(header.cells))
@@ -73,6 +73,19 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     while begin and rows[begin - 1].numeric and len(rows[begin - 1].cells) == width:
         begin -= 1
     return TablePlace(found, start + rows[begin].line)
+
+
+def _nearly_as_wide(texts: Sequence[_Row], numbers: _Row) -> list[_Row]:
+    """Return the row of text nearest above the numbers if it is a cell wider or narrower and names channels.
+
+    Some programs name a column for remarks that few rows have, or end each row of numbers with a separator.
+    """
+    if not texts:
+        return []
+    names, width = [cell for cell in texts[-1].cells if cell.strip()], len(numbers.cells)
+    trailed = not numbers.cells[-1].strip()
+    fits = len(names) == width + 1 or (trailed and len(names) == width - 1)
+    return [texts[-1]] if fits and _named(names) > 1 else []
 
 
 def is_value(cell: str, separator: str) -> bool:

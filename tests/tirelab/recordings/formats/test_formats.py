@@ -41,16 +41,26 @@ class TestEveryFormat:
         assert said in refusal(tmp_path / "a.csv")
 
     @pytest.mark.parametrize(
-        ("name", "said"), [("a.xls", "damaged or cut short"), ("a.hdf5", "'.hdf5'"), ("a", "''")]
+        ("name", "content", "said"),
+        [
+            ("a.xls", b"anything", "damaged or cut short"),
+            ("a.hdf5", b"anything", "damaged or cut short"),
+            ("a.xyz", b"anything", "no table is found in its text"),
+            ("a.xyz", b"\x01\x02", "recordings ending in '.xyz' cannot be read; export it as one of .csv"),
+            ("a", b"\x01\x02", "recordings ending in '' cannot be read"),
+            ("a.raw", b"|CF,2,1,1;", "is imc Famos; export it as text"),
+            ("a.gz", b"\x1f\x8b\x08", "is gzip; unpack it"),
+        ],
     )
-    def test_a_suffix_that_cannot_be_read_is_told(self, tmp_path: Path, name: str, said: str) -> None:
-        (tmp_path / name).write_bytes(b"anything")
+    def test_what_cannot_be_read_is_told(self, tmp_path: Path, name: str, content: bytes, said: str) -> None:
+        (tmp_path / name).write_bytes(content)
         assert said in refusal(tmp_path / name)
 
     @pytest.mark.parametrize(
         ("suffix", "module", "package"),
         [
             (".mf4", "asammdf", "asammdf"),
+            (".h5", "h5py", "h5py"),
             (".tdms", "nptdms", "npTDMS"),
             (".xlsx", "openpyxl", "openpyxl"),
             (".ods", "python_calamine", "python-calamine"),

@@ -1,8 +1,10 @@
 """The recording comes the same from MATLAB files, and what is none is refused."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 import scipy.io
 from one_recording import COLUMNS, DEFLECTION, FORCE, TIME, UNITS, assert_the_recording, refusal
 from tirelab.recordings.recording import read_recording
@@ -35,8 +37,13 @@ class TestMatlab:
         scipy.io.savemat(tmp_path / "a.mat", {"time": TIME, "deflection": DEFLECTION, "force": FORCE * 1j})
         assert "complex numbers" in refusal(tmp_path / "a.mat", units=UNITS)
 
-    def test_version_7_3_is_asked_to_be_saved_again(self, tmp_path: Path) -> None:
+    def test_version_7_3_is_asked_to_be_saved_again_without_its_library(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setitem(sys.modules, "h5py", None)
         (tmp_path / "a.mat").write_bytes(
             b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n"
         )
-        assert "save(..., '-v7')" in refusal(tmp_path / "a.mat")
+        said = refusal(tmp_path / "a.mat")
+        assert "needs h5py; install it: python -m pip install h5py" in said
+        assert said.endswith("or in MATLAB, save it with save(..., '-v7')")

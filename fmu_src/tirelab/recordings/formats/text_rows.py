@@ -1,0 +1,123 @@
+"""Rows of text among the rows of numbers: remarks, headers that are written again, and what stands below the table.
+
+Machines name the steps of a test between its rows, begin each block of an acquisition with the header again, and put
+statistics below. Such rows are left out, and it is said which. A row is left out only where no number is lost by it: a
+row with numbers in it has to stand above a repeated header or below the table. Anything else is refused as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .table import BLANK_WORDS, Header, RecordingError, listed, quoted
+from .table_search import bare_unit, is_units, is_value
+
+MOST_ASIDE = 60
+"""So many rows may stand below the table, or between a block of it and its next header."""
+
+
+@dataclass(frozen=True)
+class _Aside:
+    """A row that was set aside: its line, its first cell, whether that is all it holds, and the fault found in it."""
+
+    line: int
+    text: str
+    remark: bool
+    fault: RecordingError
+
+    def __str__(self) -> str:
+        return f"{self.line} ({quoted(self.text)})"
+
+
+class TextRows:
+    """Judges the rows of one file that cannot be read as numbers, in the order of the file."""
+
+    def __init__(
+        self, file: str, headers: Sequence[Header], separator: str = "\t", spaced: bool = False
+    ) -> None:
+        self.file = file
+        self.headers = headers
+        self.separator = separator
+        self.spaced = spaced
+        self.remarks: list[str] = []
+        self.repeated: list[str] = []
+        self.begins = 0
+        self._aside: list[_Aside] = []
+        self._after_header = False
+        self._another = 0
+
+    @property
+    def open(self) -> bool:
+        """Whether what follows decides over rows that were set aside."""
+        return bool(self._aside) or self._after_header
+
+    def take(self, line: int, row: Sequence[str], fault: RecordingError) -> None:
+        """Set a row aside, or raise the fault that was found in it."""
+        cells = " ".join(row).split() if self.spaced else row
+        filled = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS]
+        if self._is_header(row):
+            self.repeated.append(str(line))
+            self._aside.clear()
+            self._after_header, self._another = True, 0
+            return
+        if self._after_header and is_units(row):
+            self._check_units(line, row)
+            return
+        if not filled or is_value(filled[0], self.separator):
+            raise fault
+        if len(self._aside) >= MOST_ASIDE:
+            raise self._aside[0].fault
+        numbers = any(is_value(cell, self.separator) for cell in filled)
+        if len(filled) > 1 and not numbers and len(row) == len(self.headers):
+            self._another = self._another or line
+        alone = sum(map(bool, map(str.strip, row))) == 1
+        self._aside.append(_Aside(line, filled[0], alone, fault))
+
+    def numbers(self, line: int) -> None:
+        """Note a row of numbers: what was set aside above it has to be remarks alone. Errors: RecordingError."""
+        self.begins = self.begins or line
+        self._after_header = False
+        for row in self._aside:
+            if row.remark:
+                self.remarks.append(str(row))
+            elif self._another:
+                above = f"{self.file}@{self.begins}:{self._aside[0].line - 1}"
+                raise RecordingError(
+                    f"{self.file}, row {self._another}: another table begins here; read the one above it, {above}, or "
+                    f"this one, --skip-rows {self._another - 1}"
+                )
+            else:
+                raise row.fault
+        self._aside.clear()
+
+    def notes(self) -> list[str]:
+        """Return what was left out, at the end of the file."""
+        said = []
+        if self.remarks:
+            said.append(f"rows of text among the numbers left out: row {listed(self.remarks)}")
+        if self.repeated:
+            said.append(f"header written again, its rows read on: row {listed(self.repeated)}")
+        if self._aside:
+            said.append(f"rows below the table left out: row {listed(list(map(str, self._aside)))}")
+        return said
+
+    def _is_header(self, row: Sequence[str]) -> bool:
+        """Whether a row names the same columns in the same order."""
+        texts = [" ".join(cell.split()) for cell in row]
+        names = [header.text for header in self.headers]
+        while texts and not texts[-1]:
+            texts.pop()
+        while names and names[-1].startswith("#"):
+            names.pop()
+        return len(texts) > 1 and texts == names
+
+    def _check_units(self, line: int, row: Sequence[str]) -> None:
+        """Refuse units below a repeated header that are not those of the first."""
+        for header, cell in zip(self.headers, row, strict=False):
+            unit = bare_unit(cell)
+            if unit and header.unit and not header.dated and unit != header.unit:
+                raise RecordingError(
+                    f"{self.file}, row {line}, column {quoted(header.text)}: the unit is {quoted(unit)} here and "
+                    f"{quoted(header.unit)} above; read the blocks one by one: {self.file}@{self.begins}:{line - 2}"
+                )
