@@ -29,7 +29,11 @@ def aside(parameter: Parameter, part: float) -> float:
     """A value beside the nominal one: by a part of it upwards, or downwards where it is the largest one."""
     value = parameter.nominal_value
     step = part * (abs(value) or min(1.0, parameter.maximum))
-    return value + step if value + step <= parameter.maximum else max(value - step, parameter.minimum)
+    return (
+        min(value + step, parameter.maximum)
+        if value < parameter.maximum
+        else max(value - step, parameter.minimum)
+    )
 
 
 def values(effect: Effect, r: random.Random, *, optional: bool) -> tuple[float, ...]:
