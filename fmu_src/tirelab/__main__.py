@@ -1,6 +1,36 @@
-"""The program `tirelab` as a module: python -m tirelab."""
+"""The program `tirelab`, also as a module: python -m tirelab."""
 
-from .cli import main
+from __future__ import annotations
+
+import signal
+import sys
+from typing import Any, NoReturn
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C was pressed.
+
+    Python ends by the signal, not with our status, where a plain KeyboardInterrupt left code that was made from a text
+    at run time, as that of dataclasses is; one of another class is not looked at.
+    """
+
+
+def interrupt(*_: Any) -> NoReturn:
+    """End what is done now, wherever it is."""
+    raise Interrupted
+
+
+def main() -> None:
+    """Run the command on the command line; interrupted, also while modules are loaded, end with status 1."""
+    try:
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, interrupt)
+        from .cli import main as program
+
+        program()
+    except KeyboardInterrupt:
+        sys.exit("\nAborted!")
+
 
 if __name__ == "__main__":
     main()

@@ -64,7 +64,8 @@ def diagnose(
     timed = is_timed(fitted)
     explanation = explain_misfit(fitted, baseline, allowed, report, timed=timed)
     levels = [floor.level for floor in explanation.floors]
-    check_signal(dataset, levels, beside=any(getattr(r, "believed_force", None) is not None for r in fitted))
+    beside = any(getattr(r, "believed_force", None) is not None for r in fitted)
+    check_signal(dataset, [r.name for r in fitted], levels, beside=beside)
     report("validating the correction on held-out data")
     before = [r.force - simulate(baseline, r) for r in fitted]
     validate = validation_on(fitted, kept, dataset, before)

@@ -44,22 +44,24 @@ def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False)
             )
 
 
-def check_signal(dataset: Dataset, levels: Sequence[float], *, beside: bool = False) -> None:
+def check_signal(
+    dataset: Dataset, names: Sequence[str], levels: Sequence[float], *, beside: bool = False
+) -> None:
     """Raise PoorRecording where the deflection is noise, or the force does not follow it.
 
-    levels [N]: noise floor of each recording; beside: whether the force is what a simulation leaves of the recorded one
-    beside its law, which of a part without a law may be noise alone
+    names, levels [N]: what each recording is called, its noise floor; beside: whether the force is what a simulation
+    leaves of the recorded one beside its law, which of a part without a law may be noise alone
     """
-    for number, (record, level) in enumerate(zip(dataset.experiments, levels, strict=True), start=1):
+    for record, name, level in zip(dataset.experiments, names, levels, strict=True):
         motion = record.motion
         travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
         if motion.noise > 0.3 * float(np.std(motion.deflection)):
             raise PoorRecording(
-                f"the deflection of recording {number} is noise only; check that the displacement sensor was connected"
+                f"the deflection of recording {name} is noise only; check that the displacement sensor was connected"
             )
         if travel > 0.7 * float(np.std(motion.deflection)):
             raise PoorRecording(
-                f"recording {number} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
+                f"recording {name} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
         if beside and record.two_sided:
             continue
@@ -68,6 +70,6 @@ def check_signal(dataset: Dataset, levels: Sequence[float], *, beside: bool = Fa
         related = float(np.corrcoef(record.force, elastic)[0, 1])
         if not np.isfinite(related) or abs(related) < 0.2 or level > 0.9 * float(np.std(record.force)):
             raise PoorRecording(
-                f"the force of recording {number} does not follow its deflection (correlation {related:.2f}); "
+                f"the force of recording {name} does not follow its deflection (correlation {related:.2f}); "
                 "check channels and units"
             )

@@ -8,7 +8,7 @@ import struct
 from collections.abc import Iterator
 from pathlib import Path
 
-from radialtire import CATALOGUE, Effect, PowerLaw, Recalibrated, TireModel
+from radialtire import CATALOGUE, Effect, Parameter, PowerLaw, Recalibrated, TireModel
 from radialtire.curvature_law import CurvatureLaw
 from radialtire.effect import PLACES
 
@@ -25,13 +25,24 @@ HELD = ("rate_independent_hysteresis", "viscous_damping", "force_offset")
 Moment = tuple[float, float, float]
 
 
+def aside(parameter: Parameter, part: float) -> float:
+    """A value beside the nominal one: by a part of it upwards, or downwards where it is the largest one."""
+    value = parameter.nominal_value
+    step = part * (abs(value) or min(1.0, parameter.maximum))
+    return (
+        min(value + step, parameter.maximum)
+        if value < parameter.maximum
+        else max(value - step, parameter.minimum)
+    )
+
+
 def values(effect: Effect, r: random.Random, *, optional: bool) -> tuple[float, ...]:
     """Usual values, each up to a third larger or smaller; optional parameters only where they are asked for."""
     found = []
     for parameter in effect.parameters:
         value = parameter.nominal_value
         if parameter.optional and optional:
-            value += r.choice([0.3, 0.5]) * (abs(value) or min(1.0, parameter.maximum))
+            value = aside(parameter, r.choice([0.3, 0.5]))
         if not parameter.optional:
             value *= r.uniform(0.75, 1.33)
         found.append(min(max(value, parameter.minimum), parameter.maximum))
@@ -67,6 +78,20 @@ def tires(random_sets: int) -> Iterator[tuple[str, TireModel]]:
         )
     every = tuple((effect, values(effect, r, optional=True)) for effect in ORDER)
     yield "every effect", TireModel(effects=every, reading_noise=NOISE)
+
+
+def options() -> Iterator[tuple[str, TireModel]]:
+    """Yield each optional parameter of each effect alone, as the catalogue declares them."""
+    for effect in ORDER:
+        plain = effect.nominal
+        for number, parameter in enumerate(effect.parameters):
+            if parameter.optional:
+                changed = (*plain[:number], aside(parameter, 0.4), *plain[number + 1 :])
+                noise = NOISE if effect.differentiates else 0.0
+                yield (
+                    f"{effect.name}.{parameter.name}",
+                    TireModel(effects=((effect, changed),), reading_noise=noise),
+                )
 
 
 def drive(count: int, seed: int) -> list[Moment]:

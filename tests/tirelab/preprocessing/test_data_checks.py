@@ -32,7 +32,9 @@ def refused(*recordings: Recording) -> str:
 
 
 def checked(level: float = 0.0, **channels: np.ndarray) -> None:
-    check_signal(dataset_of([recording(**channels)], TireModel()), [level])
+    """Check a good recording and one with these channels."""
+    pair = [recording(), recording(**channels)]
+    check_signal(dataset_of(pair, TireModel()), ["good.csv", "bad.csv"], [0.0, level])
 
 
 def first(samples: int) -> dict[str, np.ndarray]:
@@ -70,13 +72,16 @@ def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason:
     [
         (
             {"deflection": 1e-3 * np.random.default_rng(1).standard_normal(2000)},
-            "the deflection of recording 1 is noise",
+            "the deflection of recording bad.csv is noise",
         ),
         (
             {"force": np.random.default_rng(2).standard_normal(2000)},
             "does not follow its deflection (correlation",
         ),
-        ({"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 13.0 * TIME))}, "about one sample per cycle"),
+        (
+            {"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 13.0 * TIME))},
+            "recording bad.csv has about one sample per cycle",
+        ),
     ],
 )
 def test_a_signal_without_a_tire_in_it_is_refused(channels: dict[str, np.ndarray], reason: str) -> None:
@@ -87,5 +92,7 @@ def test_a_signal_without_a_tire_in_it_is_refused(channels: dict[str, np.ndarray
 
 def test_a_force_that_is_noise_for_the_most_part_is_refused() -> None:
     checked(0.5 * float(np.std(FORCE)))
-    with pytest.raises(PoorRecording, match="the force of recording 1 does not follow its deflection"):
+    with pytest.raises(
+        PoorRecording, match=r"the force of recording bad\.csv does not follow its deflection"
+    ):
         checked(float(np.std(FORCE)))

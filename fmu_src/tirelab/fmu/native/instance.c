@@ -107,7 +107,7 @@ bool given(const Instance *self, const void *references, size_t n, const void *v
     return false;
 }
 
-Status instance_get_reals(Instance *self, const Reference v[], size_t n, double x[])
+Status instance_get_any(Instance *self, const Reference v[], size_t n, double x[])
 {
     if (!given(self, v, n, x))
         return ERROR;
@@ -120,7 +120,7 @@ Status instance_get_reals(Instance *self, const Reference v[], size_t n, double 
     return status;
 }
 
-Status instance_set_reals(Instance *self, const Reference v[], size_t n, const double x[])
+Status instance_set_any(Instance *self, const Reference v[], size_t n, const double x[])
 {
     if (!given(self, v, n, x))
         return ERROR;
@@ -132,7 +132,7 @@ Status instance_set_reals(Instance *self, const Reference v[], size_t n, const d
                        : fail(self, "value reference %u = %.17g cannot be set; set inputs and parameters only", v[i], x[i]);
     Inputs *const u = &self->tire.m.inputs;
     self->tire.current = false;
-    for (size_t i = 0; i < n; i++) /* the inputs of every step first: no call */
+    for (size_t i = 0; i < n; i++) /* the inputs first: no call */
         if (v[i] == DEFLECTION)
             u->deflection = x[i];
         else if (v[i] == SURFACE_RADIUS)
@@ -246,7 +246,7 @@ Status instance_derivatives(Instance *self, const Reference unknown[], size_t un
 
 /* Co-Simulation. */
 
-Status instance_step(Instance *self, double time, double step)
+Status instance_step_any(Instance *self, double time, double step)
 {
     char trouble[TROUBLE];
     return tire_advance(&self->tire, time, step, trouble) ? OK : tell(self, ERROR, trouble);

@@ -30,8 +30,11 @@ struct Instance {
     if (!allowed(self, states, function)) \
         return ERROR;
 
+/* What is seldom called: kept out of the functions of every step, which then save no registers. */
+#define SELDOM __attribute__((noinline, cold))
+
 /* A message where a call is not allowed; false. */
-bool not_allowed(const Instance *, String function);
+SELDOM bool not_allowed(const Instance *, String function);
 
 static inline bool allowed(const Instance *self, int states, String function)
 {
@@ -39,8 +42,8 @@ static inline bool allowed(const Instance *self, int states, String function)
 }
 
 /* Tell the host of a status; the status. */
-Status tell(const Instance *, Status, String text);
-__attribute__((format(printf, 2, 3))) Status fail(const Instance *, String format, ...);
+SELDOM Status tell(const Instance *, Status, String text);
+SELDOM __attribute__((format(printf, 2, 3))) Status fail(const Instance *, String format, ...);
 
 /* A new instance like `how`, with a tire read from its data; NULL and a message where that cannot be done. */
 Instance *instance_new(Instance how, String name, String guid, String resources);
@@ -49,8 +52,30 @@ void instance_free(Instance *);
 Status instance_start_at(Instance *, double start, bool has_stop, double stop);
 Status instance_begin(Instance *);
 
-Status instance_get_reals(Instance *, const Reference v[], size_t n, double x[]);
-Status instance_set_reals(Instance *, const Reference v[], size_t n, const double x[]);
+/* Any Real variables. */
+__attribute__((noinline)) Status instance_get_any(Instance *, const Reference v[], size_t n, double x[]);
+__attribute__((noinline)) Status instance_set_any(Instance *, const Reference v[], size_t n, const double x[]);
+
+/* Real variables; the force, as it is asked for in every step, at once. */
+static inline Status instance_get_reals(Instance *self, const Reference v[], size_t n, double x[])
+{
+    if (n != 1 || !v || !x || *v != RADIAL_FORCE || !self->tire.current || !isfinite(self->tire.force))
+        return instance_get_any(self, v, n, x);
+    *x = self->tire.force;
+    return OK;
+}
+
+/* Real variables; deflection and radius, as they are set in every step, at once. */
+static inline Status instance_set_reals(Instance *self, const Reference v[], size_t n, const double x[])
+{
+    if (n != 2 || !v || !x || v[0] != DEFLECTION || v[1] != SURFACE_RADIUS)
+        return instance_set_any(self, v, n, x);
+    self->tire.m.inputs.deflection = x[0];
+    self->tire.m.inputs.radius = x[1];
+    self->tire.current = false;
+    return OK;
+}
+
 Status instance_get_boolean(Instance *, Reference v, bool *x);
 
 /* Whether these are Boolean parameters (there is one); a message where one is not. */
@@ -71,7 +96,12 @@ Status instance_derivatives(Instance *, const Reference unknown[], size_t unknow
                             size_t knowns, const double seed[], double x[]);
 
 /* Co-Simulation. */
-Status instance_step(Instance *, double time, double step);
+__attribute__((noinline)) Status instance_step_any(Instance *, double time, double step);
+
+static inline Status instance_step(Instance *self, double time, double step)
+{
+    return tire_glides(&self->tire, time, step) ? OK : instance_step_any(self, time, step);
+}
 
 /* Model Exchange. */
 Status instance_set_time(Instance *, double time);

@@ -37,13 +37,15 @@ FLAGS = ("-std=c99", "-shared", "-ffp-contract=off", "-fvisibility=hidden", "-s"
 
 @dataclass(frozen=True)
 class Platform:
-    """One platform: its names in FMI 2 and FMI 3, the target of ziglang, the library's ending, what else it needs."""
+    """One platform: its names in FMI 2 and FMI 3, the target of ziglang, the library's ending, its flags."""
 
     fmi2: str
     fmi3: str
     target: str
     ending: str
     flags: tuple[str, ...]
+    more: str | None = None
+    """A C file beside the sources that this binary needs."""
 
     def folder(self, fmi: int) -> str:
         """Return the name of its folder in an FMU of a version of FMI."""
@@ -63,10 +65,13 @@ _FAST = ("-O2", "-fno-unroll-loops", "-mllvm", "-inline-threshold=25")
 """As fast as a plain -O2, and a sixth smaller."""
 
 _MACH_O = ("-fPIC", *_SMALL, *_NO_TABLES, f"-Wl,-install_name,@rpath/{MODEL}.dylib")
+_WINDOWS = (*_SMALL, "-rtlib=none")
+"""Without ziglang's own library of the compiler: exp, log, sin, cos come from Windows, as pow does."""
+
 PLATFORMS = (
     Platform("linux64", "x86_64-linux", "x86_64-linux-gnu.2.17", "so", (*_FAST, *_ELF)),
     Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", "so", (*_SMALL, *_ELF)),
-    Platform("win64", "x86_64-windows", "x86_64-windows-gnu", "dll", _SMALL),
+    Platform("win64", "x86_64-windows", "x86_64-windows-gnu", "dll", _WINDOWS, "windows_stack.c"),
     Platform("darwin64", "x86_64-darwin", "x86_64-macos.11.0", "dylib", _MACH_O),
     Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", "dylib", _MACH_O),
 )
@@ -97,12 +102,14 @@ def compile_for(platform: Platform, fmi: int, destination: Path, cache: Path | N
         work = Path(name)
         for file, content in source_files(fmi).items():
             (work / file).write_bytes(content)
+        if platform.more:
+            shutil.copy(HERE / platform.more, work)
         kept = str(cache or work / "cache")
         environment = {"ZIG_GLOBAL_CACHE_DIR": kept, "ZIG_LOCAL_CACHE_DIR": kept, **os.environ}
         library = f"{MODEL}.{platform.ending}"
         command = [sys.executable, "-m", "ziglang", "cc", "-target", platform.target, *FLAGS, "-o", library]
         done = subprocess.run(
-            [*command, *c_files(fmi), *platform.flags],
+            [*command, *c_files(fmi), *filter(None, [platform.more]), *platform.flags],
             cwd=work,
             env=environment,
             capture_output=True,

@@ -13,8 +13,7 @@
 #define VERSION "tirelab-tire 1"
 #define MOST_BYTES (1 << 20) /* of a data file: a tire of a thousand surfaces has 50 kB */
 
-static const double LOWEST = -1e3, HIGHEST = 0.33; /* deflections accepted [m], as radialtire.model */
-static const double FLAT = 1e5;                    /* start value of the surface radius [m] */
+static const double FLAT = 1e5;    /* start value of the surface radius [m] */
 static const double ON_TIME = 1e-3; /* part of a step by which a time may be off: hosts add times up in their own ways */
 
 /* Reading the data. */
@@ -386,9 +385,9 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
     const Inputs *const u = &tire->m.inputs; /* a copy would wait for both inputs to be written */
     tire->current = true;
     tire->force = NAN;
-    if (!(LOWEST <= u->deflection && u->deflection <= HIGHEST)) {
+    if (!(DEFLECTION_MIN <= u->deflection && u->deflection <= DEFLECTION_MAX)) {
         snprintf(trouble, TROUBLE, "deflection = %.17g m is not allowed; it must lie between %g m (wheel in the air) and "
-                 "%g m (the wheel's radius)", u->deflection, LOWEST, HIGHEST);
+                 "%g m (the wheel's radius)", u->deflection, DEFLECTION_MIN, DEFLECTION_MAX);
         return false;
     }
     if (!(u->radius > 0 || u->radius < 0)) {
@@ -586,27 +585,9 @@ static bool step_fits(const Tire *tire, double time, double step, char trouble[T
     return true;
 }
 
-/* The usual step of a tire without effects, on the surface of the last one: the force alone is new. */
-static bool glides(Tire *tire, double time, double step)
-{
-    const Inputs *const u = &tire->m.inputs;
-    if (!tire->bare || tire->unchecked || u->radius != tire->surface || tire->channel_count || time != tire->m.reached
-        || !(step >= 0 && time + step <= tire->m.stop && LOWEST <= u->deflection && u->deflection <= HIGHEST))
-        return false;
-    const double force = tire_elastic(u->deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
-    if (!isfinite(force) || !(step < INFINITY))
-        return false;
-    tire->force = force;
-    tire->compression = u->deflection;
-    tire->current = true;
-    tire->m.time = tire->m.reached = time + step;
-    return true;
-}
-
 bool tire_advance(Tire *tire, double time, double step, char trouble[TROUBLE])
 {
-    return glides(tire, time, step)
-           || (step_fits(tire, time, step, trouble) && tire_accept(tire, time + step, trouble));
+    return step_fits(tire, time, step, trouble) && tire_accept(tire, time + step, trouble);
 }
 
 bool tire_in_range(const Tire *tire)

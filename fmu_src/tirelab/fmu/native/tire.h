@@ -4,6 +4,7 @@
 
 #include "kernel.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -24,6 +25,9 @@ enum { DEFLECTION, SURFACE_RADIUS, RADIAL_FORCE, RADIAL_STIFFNESS, IN_TESTED_RAN
 /* after the channels: */
 enum { DEFLECTION_RATE, DEFLECTION_ACCELERATION, MOTION_GIVEN, MOTION_VARIABLES };
 enum { MOST_CONTINUOUS = 8 };
+
+#define DEFLECTION_MIN (-1e3) /* deflections accepted [m], as radialtire.model */
+#define DEFLECTION_MAX 0.33
 
 typedef struct {
     double deflection, radius, rate, acceleration;
@@ -70,7 +74,7 @@ typedef struct {
     bool current;        /* force is that of the inputs */
     bool unchecked;      /* a parameter was set since the last check */
     Vector2 coefficients; /* A and B on the surface of radius `surface` */
-    double surface;
+    double surface; /* not a number where they are to be computed anew */
     double force, compression;
 } Tire;
 
@@ -103,6 +107,25 @@ bool tire_can_set(Tire *tire, unsigned reference);
 /* The change of a value per unit of a change of inputs, parameters and states along a direction, by differences. */
 bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const double seed[], size_t count,
                      double *value);
+
+/* The usual step of a tire without effects, on the surface of the last one: the force alone is new. False where it is
+   another one, and then nothing is changed. */
+static inline bool tire_glides(Tire *tire, double time, double step)
+{
+    const Inputs *const u = &tire->m.inputs;
+    const double end = time + step;
+    if (!tire->bare || u->radius != tire->surface || time != tire->m.reached || !(step >= 0 && end <= tire->m.stop)
+        || !(DEFLECTION_MIN <= u->deflection && u->deflection <= DEFLECTION_MAX))
+        return false;
+    const double force = tire_elastic(u->deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
+    if (!isfinite(force) || !isfinite(end))
+        return false;
+    tire->force = force;
+    tire->compression = u->deflection;
+    tire->current = true;
+    tire->m.time = tire->m.reached = end;
+    return true;
+}
 
 /* Make a step; a sentence where it may not begin, is too long, or ends with inputs that no tire has. */
 bool tire_advance(Tire *tire, double time, double step, char trouble[TROUBLE]);

@@ -6,18 +6,18 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import pytest
 from loader_bench import guid_of, unpacked_archive
-from native_tires import drive, read, sensitivity, stepped, tires, written
-from radialtire import TireModel
+from native_tires import drive, options, read, sensitivity, stepped, tires, written
+from radialtire import CATALOGUE, TireModel
 from tirelab.fmu.loader import Compiler
 from tirelab.fmu.native.pack import build_native_fmu
 
 HOST = Path(__file__).parents[1] / "drive.c"
-MOMENTS = 10_000
+MOMENTS, FEW = 10_000, 2000
 RANDOM_SETS = 20
 
 Run = Callable[[TireModel, list[tuple[float, float, float]], Path], list[float]]
@@ -41,10 +41,12 @@ def runner(command: Sequence[str], library: str, where: Callable[[Path], str] = 
     return run
 
 
-def differing(run: Run, folder: Path, count: int, sets: int) -> dict[str, float]:
+def differing(
+    run: Run, folder: Path, count: int, chosen: Iterable[tuple[str, TireModel]]
+) -> dict[str, float]:
     """Run every tire and return the largest relative difference of those that are not equal bit by bit."""
     found = {}
-    for number, (name, tire) in enumerate(tires(sets)):
+    for number, (name, tire) in enumerate(chosen):
         moments = drive(count, number)
         expected = stepped(tire, moments)
         forces = run(tire, moments, folder / str(number))
@@ -60,19 +62,29 @@ def test_the_same_bits_in_a_host_in_c(compiler: Compiler, tmp_path: Path) -> Non
     host = tmp_path / "drive"
     subprocess.run([*compiler.command, "-std=c11", "-O2", "-o", host, HOST, "-ldl"], check=True)
     run = runner([str(host)], "binaries/linux64/BicycleTire.so")
-    assert differing(run, tmp_path, MOMENTS, RANDOM_SETS) == {}
+    assert differing(run, tmp_path, MOMENTS, tires(RANDOM_SETS)) == {}
+    assert differing(run, tmp_path, FEW, options()) == {}
 
 
-def test_the_tires_have_a_rebound_that_is_not_one() -> None:
-    """Friction's and damping's optional parameter: another force when the tire lets go."""
-    moved = {
-        effect.name
-        for _, tire in tires(0)
-        for effect, values in tire.effects
-        for parameter, value in zip(effect.parameters, values, strict=True)
-        if parameter.name == "rebound" and value != parameter.nominal_value
+def test_the_tires_have_every_optional_parameter() -> None:
+    """Each one that the catalogue declares is another than its start: together with the effect's others, and alone."""
+    declared = {
+        (effect.name, parameter.name)
+        for effect in CATALOGUE.values()
+        for parameter in effect.parameters
+        if parameter.optional
     }
-    assert moved == {"rate_independent_hysteresis", "viscous_damping"}
+    assert len(declared) > 40
+    for chosen in (tires(0), options()):
+        moved = {
+            (effect.name, parameter.name)
+            for name, tire in chosen
+            if name != "every effect"
+            for effect, values in tire.effects
+            for parameter, value in zip(effect.parameters, values, strict=True)
+            if parameter.optional and value != parameter.nominal_value
+        }
+        assert moved == declared
 
 
 def zig(target: str, destination: Path, *flags: str) -> None:
@@ -102,7 +114,7 @@ def test_the_same_bits_on_aarch64(tmp_path: Path) -> None:
     host = tmp_path / "drive"
     zig("aarch64-linux-gnu.2.36", host, "-ldl")
     run = runner([emulator, "-L", str(library), str(host)], "binaries/aarch64-linux/BicycleTire.so")
-    assert differing(run, tmp_path, 2000, 10) == {}
+    assert differing(run, tmp_path, FEW, [*tires(10), *options()]) == {}
 
 
 @pytest.mark.slow
@@ -118,11 +130,12 @@ def test_close_on_windows(tmp_path: Path) -> None:
         return "Z:" + str(path).replace("/", "\\")
 
     run = runner([emulator, str(host)], "binaries/win64/BicycleTire.dll", where)
-    found = differing(run, tmp_path, 2000, 10)
+    chosen = [*tires(10), *options()]
+    found = differing(run, tmp_path, FEW, chosen)
     print({name: f"{value:.1e}" for name, value in found.items()})
-    for number, (name, tire) in enumerate(tires(10)):
+    for number, (name, tire) in enumerate(chosen):
         noisy = tire.differentiates and tire.reading_noise > 0.0
         bound = 1e-9 if noisy else 1e-12
         if noisy and found.get(name, 0.0) > bound:  # all effects at once are chaotic: in Python itself, too
-            bound = 10.0 * sensitivity(tire, drive(2000, number))
+            bound = 10.0 * sensitivity(tire, drive(FEW, number))
         assert found.get(name, 0.0) < bound, name
