@@ -49,7 +49,7 @@ SENSITIVITY = Path(__file__).parent / "sensitivity.json"
 KINDS: dict[str, str] = {
     "derived": "from a definition, a theorem, a cited source or the numbers' own precision",
     "calibrated": "measured by a command on declared seeds",
-    "budget": "bounds time or memory; more would change a verdict only where the search was cut short",
+    "budget": "bounds time or memory, or says where a search begins; it changes a verdict only where a search was cut short",
     "chosen": "set by hand and tried on drawn cases",
 }
 
@@ -63,6 +63,10 @@ DERIVED = (
     "preprocessing/deflection_noise.GRID_TOLERANCE",
     "preprocessing/robust_scale.MEDIAN_TO_SIGMA",
     "preprocessing/robust_scale.SPIKE_LIMIT",
+    "preprocessing/robust_scale.TRIMMED",
+    "regressors/noise_floor.SHARE_OF_STEP",
+    "estimation/uncertainty.SHAPE_INDICES",
+    "diagnosis/acceptance.LIKELY",
     "preprocessing/smoothing.PADDING",
     "preprocessing/smoothing.WEIGHT_ROUNDS",
     "preprocessing/kinematics.CORNER_SAMPLES",
@@ -120,6 +124,11 @@ BUDGET = (
     "estimation/ranking.PROMISING",
     "estimation/ranking.SWAPPED",
     "estimation/ranking.HOPE",
+    "preprocessing/robust_scale.FIRST_QUANTILE",
+    "regressors/channel_evidence.COURSES",
+    "regressors/channel_evidence.DRAWS",
+    "estimation/fit.LAW_LOOSE",
+    "estimation/free_parameter.AWAKE",
     "diagnosis/acceptance.CONSIDERED",
     "diagnosis/alternatives.MOST",
     "diagnosis/localization.MOST_SPANS",

@@ -24,7 +24,7 @@ def robust_sigma(values: NDArray[np.float64]) -> float:
 TRIMMED = 3.0
 """Standard deviations beyond which values are left out: a normal law has 0.3 % there, which is made up for."""
 
-BEGUN = 0.8
+FIRST_QUANTILE = 0.8
 """Quantile of the sizes with which the trimming begins: of readings in coarse steps the median is often 0."""
 
 
@@ -34,7 +34,7 @@ def trimmed_sigma(values: NDArray[np.float64]) -> float:
     Twice as precise as that of the median, and right for rounded values too, of which the median is a step or none.
     """
     sizes = np.abs(values)
-    sigma = float(np.quantile(sizes, BEGUN) / norm.ppf(0.5 + 0.5 * BEGUN))
+    sigma = float(np.quantile(sizes, FIRST_QUANTILE) / norm.ppf(0.5 + 0.5 * FIRST_QUANTILE))
     within = norm.cdf(TRIMMED) - norm.cdf(-TRIMMED)
     kept = 1.0 - 2.0 * TRIMMED * norm.pdf(TRIMMED) / within
     for _ in range(100):
