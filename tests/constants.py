@@ -49,7 +49,7 @@ SENSITIVITY = Path(__file__).parent / "sensitivity.json"
 KINDS: dict[str, str] = {
     "derived": "from a definition, a theorem, a cited source or the numbers' own precision",
     "calibrated": "measured by a command on declared seeds",
-    "budget": "bounds time or memory, or says where a search begins; it changes a verdict only where a search was cut short",
+    "budget": "bounds time or memory, or says where a search begins; more changes a verdict where one was cut short",
     "chosen": "set by hand and tried on drawn cases",
 }
 
