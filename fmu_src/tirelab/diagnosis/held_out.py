@@ -45,7 +45,7 @@ class HeldOut:
     """What was fitted and what was held out.
 
     by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"; of several surfaces
-    in one recording "the end on each surface"
+    in one recording "the end on each surface"; with " of each recording" where there are several
     """
 
     by: str
@@ -147,7 +147,7 @@ def _parts(recordings: Sequence[Recorded], before: Sequence[FloatArray]) -> tupl
     more = " and the ends of the others" if len(recordings) > 1 else ""
     first = kept[0].size - count
     if kept[0][first:].any():
-        return kept, f"the end on each surface{more}"
+        return kept, "the end on each surface" + (" of each recording" if len(recordings) > 1 else "")
     if not is_timed([r]):
         return kept, f"samples {first + 1}-{r.time.size}{more}"
     return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"
