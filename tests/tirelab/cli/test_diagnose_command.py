@@ -67,7 +67,12 @@ def check_contract(content: Any) -> None:
 
     verdict = content["verdict"]
     keys = {"effects", "confidence", "alternatives", "unexplained", "summary", "separating_test"}
-    assert verdict.keys() - {"corrections"} == keys | {"remainder", "grounds", "alternative_details"}
+    assert verdict.keys() - {"corrections"} == keys | {
+        "remainder",
+        "doubted",
+        "grounds",
+        "alternative_details",
+    }
     assert all(map(math.isfinite, verdict["grounds"].values()))
     assert len(verdict["alternative_details"]) == len(verdict["alternatives"])
     assert ("corrections" in verdict) == verdict["unexplained"]

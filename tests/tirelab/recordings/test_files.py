@@ -51,7 +51,7 @@ class TestFolders:
         (folder / "notes.txt").write_text(PROSE, encoding="utf-8")
         files, skipped = recording_files([folder / "notes.txt"])
         assert (files, skipped) == ((folder / "notes.txt",), ())
-        assert "no column for" in refusal(files[0])
+        assert "notes.txt: no column holds numbers" in refusal(files[0])
 
     def test_what_has_no_known_suffix_is_left_out(self, folder: Path) -> None:
         for name in ("photo.png", "recording.toml", "notes.md"):

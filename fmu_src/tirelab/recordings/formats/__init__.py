@@ -113,7 +113,7 @@ def open_table(path: Path, skip_rows: int | None = None) -> Table:
 
 def _advice(path: Path, read_as: str) -> str:
     if read_as in LOADERS:
-        return f"rename it to {path.stem}{read_as}"
+        return f"rename it to end in {read_as}"
     return "export it as text" if read_as else "unpack it"
 
 
