@@ -31,7 +31,8 @@ FIRST_QUANTILE = 0.8
 def trimmed_sigma(values: NDArray[np.float64]) -> float:
     """Return the standard deviation of `values` about zero, from those within three of it; in their unit.
 
-    Twice as precise as that of the median, and right for rounded values too, of which the median is a step or none.
+    Its variance is about half of that by the median, and it is right for rounded values too, of which the median is a
+    step or none.
     """
     sizes = np.abs(values)
     sigma = float(np.quantile(sizes, FIRST_QUANTILE) / norm.ppf(0.5 + 0.5 * FIRST_QUANTILE))
