@@ -4,9 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import dct, idct
-from scipy.signal import lfilter
+from scipy.signal import butter, freqz, lfilter
 
 from .motion import FloatArray
+
+WHOLE = np.linspace(0.0, np.pi, 4096)
+"""Angles [rad] of all frequencies up to half the sampling rate."""
+
+UNFILTERED = 0.01
+"""Part of the noise's power that comes in behind the filter: the converter's own."""
 
 
 @dataclass(frozen=True)
@@ -16,7 +22,7 @@ class Instrument:
     white, drifting (first-order Markov, of the correlation time [s]), pink (1/f) and hum: RMS [N];
     mains: its frequency [Hz], seen through the sampling; quantum: step of the converter [N];
     spikes: their number per recording and size over the noise; gauge: RMS of the deflection's white noise
-    [m].
+    [m]; cut_off: of the filter that smoothed the white noise, over half the sampling rate, 0: there was none.
     """
 
     white: float
@@ -29,6 +35,7 @@ class Instrument:
     spikes: int = 0
     spike_size: float = 0.0
     gauge: float = 0.0
+    cut_off: float = 0.0
 
     @property
     def noise(self) -> float:
@@ -38,7 +45,7 @@ class Instrument:
 
     def force_error(self, rng: np.random.Generator, samples: int, step: float) -> FloatArray:
         """Additive error of the force [N], before the converter."""
-        error = self.white * rng.standard_normal(samples)
+        error = self.white * self._smoothed(rng, rng.standard_normal(samples))
         if self.drifting > 0.0:
             keep = float(np.exp(-step / self.correlation_time))
             steps = self.drifting * np.sqrt(1.0 - keep**2) * rng.standard_normal(samples)
@@ -69,8 +76,8 @@ class Instrument:
         White noise of variance s^2 has s^2 in every coefficient.
         """
         angle = np.pi * np.arange(samples) / samples
-        flat = self.white**2 + self.quantum**2 / 12.0 + (self.gauge * stiffness) ** 2
-        total = np.full(samples, flat)
+        flat = self.quantum**2 / 12.0 + (self.gauge * stiffness) ** 2
+        total = flat + self.white**2 * self._passed(angle)
         if self.drifting > 0.0:
             keep = float(np.exp(-step / self.correlation_time))
             total += self.drifting**2 * (1.0 - keep**2) / (1.0 - 2.0 * keep * np.cos(angle) + keep**2)
@@ -82,6 +89,24 @@ class Instrument:
                 line = self.hum * np.sqrt(2.0) * wave(2.0 * np.pi * self.mains * time)
                 total += 0.5 * dct(line, norm="ortho") ** 2
         return total
+
+    def _smoothed(self, rng: np.random.Generator, noise: FloatArray) -> FloatArray:
+        """Return white noise as a filter of the second order leaves it, of the same RMS; the ends meet."""
+        if self.cut_off == 0.0:
+            return noise
+        filtered = lfilter(*butter(2, self.cut_off), np.concatenate([noise, noise]))[noise.size :]
+        filtered /= np.sqrt(np.mean(self._gain(WHOLE)))
+        behind = rng.standard_normal(noise.size)
+        return np.asarray(np.sqrt(1.0 - UNFILTERED) * filtered + np.sqrt(UNFILTERED) * behind)
+
+    def _passed(self, angle: FloatArray) -> FloatArray:
+        """Variance of the smoothed noise at each angle [rad], of RMS 1."""
+        if self.cut_off == 0.0:
+            return np.ones(angle.size)
+        return (1.0 - UNFILTERED) * self._gain(angle) / float(np.mean(self._gain(WHOLE))) + UNFILTERED
+
+    def _gain(self, angle: FloatArray) -> FloatArray:
+        return np.asarray(np.abs(freqz(*butter(2, self.cut_off), worN=angle)[1]) ** 2)
 
     def _pink_spectrum(self, samples: int) -> FloatArray:
         """Variance [N^2] of each cosine coefficient of the 1/f part, without a mean."""
@@ -105,6 +130,11 @@ class CoarseInstrument(Instrument):
         return super().spectrum(samples, step, stiffness) + (self.gauge_step * stiffness) ** 2 / 12.0
 
 
+def drawn_cut_off(rng: np.random.Generator) -> float:
+    """Cut-off of an amplifier's filter over half the sampling rate; three of four have none that shows."""
+    return float(np.exp(rng.uniform(np.log(0.1), np.log(0.6)))) if rng.random() < 0.25 else 0.0
+
+
 def drawn_instrument(rng: np.random.Generator) -> Instrument:
     """An instrument with 3 to 12 N of noise; each kind of error is present or absent at random."""
     noise = float(np.exp(rng.uniform(np.log(3.0), np.log(12.0))))
@@ -123,4 +153,5 @@ def drawn_instrument(rng: np.random.Generator) -> Instrument:
         spikes=int(rng.integers(1, 6)) if rng.random() < 0.25 else 0,
         spike_size=rng.uniform(6.0, 20.0),
         gauge=rng.uniform(3e-6, 15e-6) if rng.random() < 0.6 else 0.0,
+        cut_off=drawn_cut_off(rng),
     )

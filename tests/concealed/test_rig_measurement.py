@@ -7,6 +7,7 @@ from scipy.fft import dct
 
 COLOURS = {
     "white": Instrument(white=5.0),
+    "smoothed": Instrument(white=5.0, cut_off=0.2),
     "slow": Instrument(white=3.0, drifting=4.0, correlation_time=0.5),
     "pink": Instrument(white=3.0, pink=4.0),
     "hum": Instrument(white=3.0, hum=4.0, mains=50.0),
@@ -40,6 +41,19 @@ def test_slow_noise_is_correlated_over_its_own_time() -> None:
     assert lagged == pytest.approx(np.exp(-1.0), abs=0.05)
 
 
+def test_a_filter_leaves_little_above_its_cut_off() -> None:
+    """Butterworth of order 2, bilinear: power gain 1 / (1 + r^4), r = tan(pi f / 2) / tan(pi c / 2); the mean over f is
+    about 1.11 c. A hundredth is unfiltered.
+    """
+    cut_off, above = 0.1, 0.4
+    error = Instrument(white=5.0, cut_off=cut_off).force_error(np.random.default_rng(4), 200_000, 0.01)
+    power = np.abs(np.fft.rfft(error)) ** 2
+    ratio = np.tan(0.5 * np.pi * above) / np.tan(0.5 * np.pi * cut_off)
+    low = 0.99 / (1.11 * cut_off)
+    expected = (0.01 + low / (1.0 + ratio**4)) / low
+    assert np.mean(power[39_000:41_000]) / np.mean(power[:2000]) == pytest.approx(expected, rel=0.1)
+
+
 def test_mains_hum_is_seen_where_sampling_folds_it() -> None:
     """50.3 Hz at 20 samples a second stands at 10 - |50.3 mod 20 - 10| = 9.7 Hz."""
     error = Instrument(white=0.0, hum=3.0, mains=50.3).force_error(np.random.default_rng(0), 2000, 0.05)
@@ -61,6 +75,6 @@ def test_the_converter_makes_steps() -> None:
 def test_every_error_is_there_or_not_at_random() -> None:
     drawn = [drawn_instrument(np.random.default_rng(i)) for i in range(200)]
     assert all(2.9 < i.noise < 12.2 for i in drawn)
-    for part in ("drifting", "pink", "hum", "quantum", "spikes", "gauge"):
+    for part in ("drifting", "pink", "hum", "quantum", "spikes", "gauge", "cut_off"):
         share = np.mean([getattr(i, part) > 0 for i in drawn])
         assert 0.1 < share < 0.8, part

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .. import article
 from ..excitation import DepthLimits, cycles_of, polyline, stairs
-from ..measurement import CoarseInstrument
+from ..measurement import CoarseInstrument, drawn_cut_off
 from ..motion import Motion
 from ..tires import PowerTire, Surface, distinct
 from ..trial import Record
@@ -67,6 +67,7 @@ def drawn_instrument(rng: np.random.Generator) -> CoarseInstrument:
         quantum=float(np.exp(rng.uniform(*np.log(FORCE_STEPS)))) if steps[1] else 0.0,
         gauge=float(rng.uniform(0.0, 5e-6)),
         gauge_step=float(np.exp(rng.uniform(*np.log(GAUGE_STEPS)))) if steps[0] else 0.0,
+        cut_off=drawn_cut_off(rng),
     )
 
 
