@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..regressors.dataset import Dataset
-from ..regressors.noise_floor import white_level
+from ..regressors.noise_floor import noise_of
 from ..regressors.signature import Signature
 from ..selection.marginal_likelihood import NormalEquations, normal_equations
 
@@ -16,12 +16,14 @@ def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> D
     """Return the dataset with the noise that all signatures together leave, block by block."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.misfit - _saturated(equations)
-    levels, begin = [], 0
+    levels, samples, begin = [], [], 0
     for e in dataset.experiments:
         own = left[begin : begin + int(e.counts.sum())]
         begin += own.size
-        levels.append(e.noise * max(white_level(own), 1e-3))
-    return dataset.with_noise(levels)
+        noise = noise_of(own, e.smooth, e.deflection[e.counts])
+        samples.append(e.noise * noise.level)
+        levels.append(e.noise * max(noise.averaged, 1e-3))
+    return dataset.with_noise(levels, samples)
 
 
 def _saturated(equations: NormalEquations) -> np.ndarray:

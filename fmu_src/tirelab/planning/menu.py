@@ -129,6 +129,7 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
         NoiseFloor(noise, 0.0, 0.0, 0.0),
         0.0,
         stride,
+        1.0,
         moved.measured,
     )
 

@@ -21,7 +21,7 @@ from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
-from .noise_floor import SHARE_OF_STEP, NoiseFloor, noise_floor, white_level
+from .noise_floor import SHARE_OF_STEP, NoiseFloor, noise_floor, noise_of, white_level
 from .scales import Scales
 
 FloatArray = NDArray[np.float64]
@@ -48,6 +48,9 @@ FORMS_APART = 0.005
 STEPS_LEFT = 0.3
 """Part of a gauge's steps that is left of the motion behind them: smooth over a step, no average takes it out."""
 
+MEMORY_SPANS = float(np.pi / 3.0)
+"""Phase [rad] of the motion over which its misfit is smooth: the three lags of a difference are half a cycle."""
+
 LONE = 8.0
 """A sample this many noises off both its neighbours is a spike."""
 
@@ -67,6 +70,7 @@ class Experiment:
     counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
     least_noise [N]: what the steps of the force's reading leave of it, however smooth they are
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
+    smooth: blocks over which a misfit of the motion is smooth
     measured: the channels that were recorded, by their names, averaged over the blocks
     """
 
@@ -84,6 +88,7 @@ class Experiment:
     floor: NoiseFloor
     gauge: float
     size: int
+    smooth: float
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
@@ -130,12 +135,15 @@ class Dataset:
         """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
         return self.stacked([simulate(tire, e, e) - e.baseline for e in self.experiments])
 
-    def with_noise(self, levels: Sequence[float]) -> Dataset:
-        """Return the dataset with other noise levels [N] of the averaged misfits."""
-        pairs = zip(self.experiments, levels, strict=True)
-        return replace(
-            self, experiments=tuple(replace(e, noise=max(float(level), e.least_noise)) for e, level in pairs)
-        )
+    def with_noise(self, levels: Sequence[float], samples: Sequence[float]) -> Dataset:
+        """Return the dataset with other noise levels [N] of the averaged misfits, and floors that hold the noise of
+        their samples [N].
+        """
+        found = []
+        for e, level, sample in zip(self.experiments, levels, samples, strict=True):
+            floor = replace(e.floor, amplifier=max(e.floor.amplifier, float(sample)))
+            found.append(replace(e, noise=max(float(level), e.least_noise), floor=floor))
+        return replace(self, experiments=tuple(found))
 
     def only(self, kept: Sequence[BoolArray]) -> Dataset:
         """Return the dataset where only blocks count of which all samples are `kept` (n,) of the recordings; the
@@ -176,15 +184,19 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
     force_step = staircase_step(recording.force)
-    floor = noise_floor(misfit, stiffness, gauge, step, force_step)
     resolved = motion.resolved & ~_spikes(misfit)
     followed = ~beyond_travel(recording.deflection, recording.force)
     interval = float(np.median(np.diff(recording.time)))
-    loudness = float(np.std(misfit)) / max(white_level(misfit), 1e-300)
-    blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
-    turn = min(TURN, float(np.sqrt(12.0 * blur)))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
     slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
+    # Of a sine both are its frequency; of a triangle the second one is, and neither of steps, whose misfit may jump.
+    phase = interval * max(quick / max(slow, 1e-300), np.pi * slow / max(float(np.ptp(read)), 1e-300))
+    smooth = MEMORY_SPANS / max(phase, 1e-300)
+    read_noise = noise_of(misfit, smooth, read)
+    floor = noise_floor(read_noise.level, stiffness, gauge, step, force_step)
+    loudness = float(np.std(misfit)) / max(read_noise.level, 1e-300)
+    blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
+    turn = min(TURN, float(np.sqrt(12.0 * blur)))
     longest = turn * slow / max(quick * interval, 1e-300)
     least = size * ROWS // MOST_ROWS
     size = int(max(1, least, min(size, longest, recording.time.size // FEWEST_ROWS)))
@@ -216,9 +228,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         measured,
     )
     # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
-    noise = (
-        min(white_level(misfit) / np.sqrt(size), white_level(averaged)) if size > 1 else white_level(misfit)
-    )
+    of_blocks = noise_of(averaged, smooth / size, blocks.deflection)
+    noise = min(read_noise.averaged / np.sqrt(size), of_blocks.averaged)
     # A slow force rests on a step for many samples, and their average errs as each of them.
     moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
     least_noise = force_step * SHARE_OF_STEP / float(np.sqrt(max(size * moving, 1.0)))
@@ -237,6 +248,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         floor,
         gauge,
         size,
+        smooth / size,
         measured,
     )
 

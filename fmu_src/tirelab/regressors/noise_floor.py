@@ -5,14 +5,22 @@
     steps:     a gauge that steps by q leaves stiffness x q / sqrt(12) (B. Widrow, Stat. theory of quantization, 1996)
 
 What is left by the best tire cannot be less than all of them together, counted on the recorded samples.
+
+A filter before the converter smooths the noise of a force: neighbours err alike. How many do so shows in differences
+over growing lags, which rise until the lag is the noise's memory and then stay, where a smooth misfit rises on
+(variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). What comes
+again at the same deflection is no noise, however quick it is: a ripple of the tread (analysis of variance of visits).
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import savgol_filter
+from scipy.stats import f
 
 from ..preprocessing.robust_scale import trimmed_sigma
 
@@ -20,6 +28,16 @@ FloatArray = NDArray[np.float64]
 
 SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
 """Root mean square error of a reading that is rounded to steps, in steps."""
+
+STAYS = float(np.sqrt(2.0) ** 0.5)
+"""Growth of the differences for a doubled lag below which they stay: half the exponent of a random walk, the roughest
+noise that has a memory."""
+
+FEWEST_SPANS = 20
+"""Spans of a difference that a recording holds at least: their scale is then known to a sixth."""
+
+AGAIN = 0.01
+"""Level of the test that what is quick comes again at the same deflection."""
 
 
 @dataclass(frozen=True)
@@ -37,24 +55,82 @@ class NoiseFloor:
         return float(np.sqrt(self.amplifier**2 + self.gauge**2 + self.steps**2))
 
 
-def white_level(residual: FloatArray) -> float:
-    """Return the standard deviation of a residual's white noise, from its third differences, robust to corners."""
-    if residual.size < 8:
+@dataclass(frozen=True)
+class Noise:
+    """level: standard deviation of a sample; averaged: that of white noise which errs as much in long averages."""
+
+    level: float
+    averaged: float
+
+
+def white_level(residual: FloatArray, lag: int = 1) -> float:
+    """Return the standard deviation of what differs between samples `lag` apart, from third differences."""
+    if residual.size < 3 * lag + 5:
         return float(np.std(residual))
-    return trimmed_sigma(np.diff(residual, 3)) / float(np.sqrt(20.0))
+    ends = residual[3 * lag :] - residual[: -3 * lag]
+    inner = residual[2 * lag : -lag] - residual[lag : -2 * lag]
+    return trimmed_sigma(ends - 3.0 * inner) / float(np.sqrt(20.0))
+
+
+def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noise:
+    """Return the noise of a residual, white or with a memory.
+
+    smooth: samples over which what is no noise is smooth, so that its differences rise on; deflection [m]: beside them
+    """
+    levels = [white_level(residual)]
+    while 2 ** len(levels) <= smooth and residual.size >= FEWEST_SPANS * 3 * 2 ** len(levels):
+        levels.append(white_level(residual, 2 ** len(levels)))
+    rises = [after >= STAYS * before for before, after in itertools.pairwise(levels)]
+    last = max((i for i, rose in enumerate(rises) if not rose), default=0)
+    risen = [i for i in range(last) if rises[i]]
+    if not risen or _comes_again(residual, deflection, 2 ** (risen[-1] + 1)):
+        return Noise(levels[0], levels[0])
+    # Of n samples with a memory of m, n / m are independent.
+    slow = (2 ** (i + 1) * (levels[i + 1] ** 2 - levels[i] ** 2) for i in risen)
+    return Noise(levels[last], float(np.sqrt(levels[0] ** 2 + sum(slow))))
+
+
+def _comes_again(residual: FloatArray, deflection: FloatArray, memory: int) -> bool:
+    """Return whether what is quicker than a few memories is alike at every visit of the same deflection.
+
+    A visit is the way through half a memory's deflections; neighbours within two memories are not independent, so the
+    degrees of freedom are a quarter of their number.
+    """
+    quick = residual - savgol_filter(residual, 6 * memory + 1, 3)
+    way = float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
+    cell = (
+        (deflection - deflection.min()) / max(0.5 * way, 1e-6 * float(np.ptp(deflection)), 1e-300)
+    ).astype(int)
+    begin = np.flatnonzero(np.diff(cell, prepend=-1))
+    mean = np.add.reduceat(quick, begin) / np.diff(begin, append=quick.size)
+    where = cell[begin]
+    order = np.lexsort((begin, where))
+    where, begin, mean = where[order], begin[order], mean[order]
+    apart = (np.diff(where, prepend=-1) != 0) | (np.diff(begin, prepend=0) > 4 * memory)
+    _, number, visits = np.unique(where[apart], return_inverse=True, return_counts=True)
+    cells, within = int(np.sum(visits > 1)), int(np.sum(visits[visits > 1] - 1))
+    if cells < 8 or within < 8:
+        return False
+    middle = np.bincount(number, mean[apart]) / visits
+    several = visits[number] > 1
+    left = float(np.sum((mean[apart] - middle[number])[several] ** 2)) / within
+    overall = float(np.mean(mean[apart][several]))
+    between = float(np.sum((visits * (middle - overall) ** 2)[visits > 1])) / (cells - 1)
+    return bool(f.sf(between / max(left, 1e-300), (cells - 1) / 4.0, within / 4.0) < AGAIN)
 
 
 def noise_floor(
-    residual: FloatArray, stiffness: FloatArray, gauge_noise: float, step: float, force_step: float
+    level: float, stiffness: FloatArray, gauge_noise: float, step: float, force_step: float
 ) -> NoiseFloor:
     """Return the floor of a recording.
 
-    residual [N]: force less what a smooth model makes of it; stiffness [N/m] sample by sample; gauge_noise [m]
-    step [m], force_step [N]: in which the two are read, 0 where none is seen
+    level [N]: noise of the force less what a smooth model makes of it; stiffness [N/m] sample by sample
+    gauge_noise [m]: of the deflection's reading; step [m], force_step [N]: in which the two are
+    read, 0 where none is seen
     """
     mean_square = float(np.sqrt(np.mean(stiffness**2)))
     through_gauge = 0.0 if step > 0.0 else gauge_noise * mean_square
     through_steps = step * SHARE_OF_STEP * mean_square
-    whole = max(white_level(residual), force_step * SHARE_OF_STEP)
+    whole = max(level, force_step * SHARE_OF_STEP)
     amplifier = float(np.sqrt(max(whole**2 - through_gauge**2, 0.05 * whole**2)))
     return NoiseFloor(amplifier, through_gauge, through_steps, step)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from drives import Drive, damped, flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
+from scipy.signal import butter, lfilter
 from tirelab.diagnosis.confidence import probability, shared, unshared
 from tirelab.diagnosis.diagnose import PoorRecording, catalogue_names, diagnose
 from tirelab.simulation.simulate import simulate
@@ -81,6 +82,18 @@ def test_a_rim_that_is_met_softly_is_found(softness):
     bare = read("ride", time, deflection, np.zeros(time.size), 7, noise=0.0)
     verdict = diagnose([read("ride", time, deflection, simulate(tire, bare), 7)])
     assert verdict.names == ("bottoming",)
+
+
+@pytest.mark.parametrize("damping", [0.0, 500.0])
+def test_noise_that_a_filter_has_smoothed_is_nothing_unknown(damping):
+    """Samples of 1 ms through a second-order filter of 50 Hz: neighbours err alike, over a part of the motion."""
+    time, deflection, rate = ride(3, samples=4000, step=0.001)
+    noise = lfilter(*butter(2, 0.1), np.random.default_rng(3).normal(0.0, 1.0, time.size))
+    force = flat_force(deflection) + damping * rate + 5.0 * noise / np.std(noise)
+    verdict = diagnose([read("filtered", time, deflection, force, 3, noise=0.0)])
+    assert verdict.names == (("viscous_damping",) if damping else ())
+    # The noise's level is known where its memory ends, to the growth below which differences are said to stay.
+    assert verdict.fit.noise == pytest.approx(5.0, rel=0.25)
 
 
 def test_another_tire_is_a_recalibration():

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from tirelab.regressors.noise_floor import noise_floor, white_level
+from scipy.signal import butter, lfilter
+from tirelab.regressors.noise_floor import noise_floor, noise_of, white_level
 
 TIME = np.linspace(0.0, 10.0, 4001)
 RAMP = 2e-3 * TIME
@@ -12,7 +13,7 @@ STEPPED = STEP * np.round(RAMP / STEP)
 
 def test_floor_counts_the_steps_through_the_stiffness() -> None:
     noise = np.random.default_rng(1).normal(0.0, 0.5, TIME.size)
-    floor = noise_floor(noise, np.full(TIME.size, 15e3), 0.0, STEP, 0.0)
+    floor = noise_floor(white_level(noise), np.full(TIME.size, 15e3), 0.0, STEP, 0.0)
     uniform = 15e3 * (STEPPED - RAMP)
     assert floor.steps == pytest.approx(float(np.std(uniform)), rel=0.02)
     assert floor.amplifier == pytest.approx(0.5, rel=0.05)
@@ -36,5 +37,57 @@ def test_white_level_holds_for_forces_read_in_steps(step: float) -> None:
 def test_a_reading_in_steps_has_their_error_however_slowly_it_moves() -> None:
     force = 2.0 * np.round(np.linspace(0.0, 100.0, 4001) / 2.0)
     slow = force - np.linspace(0.0, 100.0, 4001)
-    floor = noise_floor(slow, np.full(force.size, 15e3), 0.0, 0.0, 2.0)
+    floor = noise_floor(white_level(slow), np.full(force.size, 15e3), 0.0, 0.0, 2.0)
     assert floor.level == pytest.approx(float(np.std(slow)), rel=0.02)
+
+
+WHITE = np.random.default_rng(5).normal(0.0, 1.0, 8000)
+SLOW = 40.0 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0)
+MOTION = 0.02 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0 + 0.3)
+SMOOTH = 900.0 / 6.0
+"""A misfit of 900 samples to a cycle, of which three lags of 150 are a half."""
+
+
+def test_white_noise_has_no_memory() -> None:
+    found = noise_of(WHITE + SLOW, SMOOTH, MOTION)
+    assert found.level == pytest.approx(1.0, rel=0.05)
+    assert found.averaged == pytest.approx(1.0, rel=0.05)
+
+
+@pytest.mark.parametrize("cut_off", [0.5, 0.2, 0.1])
+def test_filtered_noise_is_seen_beside_a_slower_misfit(cut_off: float) -> None:
+    """Long averages see the spectrum at the frequency zero: of a filter of the second order 1 / (1.11 cut-off)."""
+    filtered = lfilter(*butter(2, cut_off), WHITE)
+    filtered /= np.std(filtered)
+    found = noise_of(filtered + SLOW, SMOOTH, MOTION)
+    assert found.level == pytest.approx(1.0, rel=0.25)
+    # A memory is known as a power of two, so the variance of an average to a factor of two either way.
+    assert 0.5 < found.averaged**2 * 1.11 * cut_off < 2.0
+
+
+def test_a_white_part_does_not_hide_the_filtered_one() -> None:
+    filtered = lfilter(*butter(2, 0.1), WHITE)
+    beside = np.random.default_rng(6).normal(0.0, 0.1, WHITE.size)
+    found = noise_of(filtered / np.std(filtered) + beside, SMOOTH, MOTION)
+    assert found.level == pytest.approx(1.0, rel=0.25)
+
+
+def test_a_misfit_that_rises_with_the_lag_to_the_motions_own_length_is_no_noise() -> None:
+    found = noise_of(0.01 * WHITE + SLOW, SMOOTH, MOTION)
+    assert found.level == pytest.approx(0.01, rel=0.2)
+    assert found.averaged == pytest.approx(0.01, rel=0.2)
+
+
+def test_a_ripple_that_comes_again_at_the_same_deflection_is_no_noise() -> None:
+    ripple = np.sin(2.0 * np.pi * MOTION / 1e-3)
+    found = noise_of(0.1 * WHITE + ripple, SMOOTH, MOTION)
+    assert found.level < 0.2
+
+
+def test_filtered_noise_does_not_come_again() -> None:
+    """At the level of one in a hundred, of 100 drawn noises at most five are taken for a ripple (one in 300)."""
+    taken = 0
+    for seed in range(100):
+        noise = lfilter(*butter(2, 0.2), np.random.default_rng([7, seed]).normal(0.0, 1.0, MOTION.size))
+        taken += noise_of(noise / np.std(noise), SMOOTH, MOTION).level < 0.5
+    assert taken <= 5

@@ -101,7 +101,7 @@ def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) ->
 def test_in_other_noise_a_signature_explains_the_same_newtons(dataset: Dataset) -> None:
     signature = signature_of("viscous_damping", dataset)
     assert signature is not None
-    louder = dataset.with_noise([2.0 * e.noise for e in dataset.experiments])
+    louder = dataset.with_noise([2.0 * e.noise for e in dataset.experiments], [0.0])
     other = in_other_noise(signature, dataset, louder)
     np.testing.assert_allclose(
         other.curves * other.sizes[:, None] * 2.0, signature.curves * signature.sizes[:, None], rtol=1e-9
