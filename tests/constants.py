@@ -65,6 +65,7 @@ DERIVED = (
     "preprocessing/robust_scale.SPIKE_LIMIT",
     "preprocessing/robust_scale.TRIMMED",
     "regressors/noise_floor.AGAIN",
+    "regressors/noise_floor.FEWEST_CELLS",
     "regressors/noise_floor.SHARE_OF_STEP",
     "regressors/noise_floor.STAYS",
     "regressors/dataset.MEMORY_SPANS",

@@ -20,7 +20,7 @@ from ..regressors.excitation import Excitation, excitation_of
 from ..regressors.law import LAW, SHAPE, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.out_of_size import out_of_size
-from ..regressors.signature import in_other_noise, signatures_of
+from ..regressors.signature import Signature, in_other_noise, signatures_of
 from ..selection.discrepancy import discrepancy_of, usual_form_error
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import search
@@ -100,7 +100,10 @@ class Explanation:
         """Return the set fitted to the samples `kept` of each recording alone; their whole motion is known."""
         fit = self.model.fit
         fitted_on = [(r, k) for r, k in zip(self._recordings, kept, strict=True) if k.any()]
-        dataset = dataset_of([r for r, _ in fitted_on], self.model.baseline).only([k for _, k in fitted_on])
+        readings = {e.name: e.reading for e in fit.problem.dataset.experiments}
+        own = [r for r, _ in fitted_on]
+        dataset = dataset_of(own, self.model.baseline, [readings[r.name] for r in own])
+        dataset = dataset.only([k for _, k in fitted_on])
         dataset = _quiet(dataset)
         again = fitted(dataset, [fit.values], discrepancy_of(dataset.misfit, 0.0), fit.variance, -np.inf)
         return Refitted(again.tire, _residuals(again.tire, self._recordings))
@@ -138,8 +141,12 @@ def explain_misfit(
     hidden = excitation.reasons(allowed) | out_of_size((*allowed, SHAPE), dataset.scales)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
-    raw = (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
+    raw = _raw(dataset, shown, catalogue)
     quiet = with_saturated_noise(dataset, raw)
+    if any(e.reading.memory > e.size for e in quiet.experiments):
+        dataset = dataset_of(recordings, baseline, [e.reading for e in quiet.experiments])
+        raw = _raw(dataset, shown, catalogue)
+        quiet = with_saturated_noise(dataset, raw)
     signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
     rough = discrepancy_of(quiet.misfit, usual_form_error())
     equations = normal_equations(signatures, quiet.misfit)
@@ -147,6 +154,10 @@ def explain_misfit(
     progress("fitting the sets that can win")
     ranking = ranked(quiet, signatures, rough, starts, partial(_alike, excitation))
     return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()))
+
+
+def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
+    return (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
 
 
 def _explanation(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,14 +17,13 @@ def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> D
     """Return the dataset with the noise that all signatures together leave, block by block."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.misfit - _saturated(equations)
-    levels, samples, begin = [], [], 0
+    found, begin = [], 0
     for e in dataset.experiments:
         own = left[begin : begin + int(e.counts.sum())]
         begin += own.size
         noise = noise_of(own, e.smooth, e.deflection[e.counts])
-        samples.append(e.noise * noise.level)
-        levels.append(e.noise * max(noise.averaged, 1e-3))
-    return dataset.with_noise(levels, samples)
+        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
+    return dataset.with_noise(found)
 
 
 def _saturated(equations: NormalEquations) -> np.ndarray:

@@ -12,7 +12,7 @@ from scipy.ndimage import median_filter
 
 from ..recordings.description import surface_text
 from ..regressors.dataset import Experiment
-from ..regressors.noise_floor import NoiseFloor
+from ..regressors.noise_floor import Noise, NoiseFloor
 from ..simulation.simulate import simulate
 from .rig import Rig
 from .waveforms import MENU, sample_times
@@ -130,6 +130,7 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
         0.0,
         stride,
         1.0,
+        Noise(noise, 1),
         moved.measured,
     )
 

@@ -21,7 +21,7 @@ from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
-from .noise_floor import SHARE_OF_STEP, NoiseFloor, noise_floor, noise_of, white_level
+from .noise_floor import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, white_level
 from .scales import Scales
 
 FloatArray = NDArray[np.float64]
@@ -70,7 +70,7 @@ class Experiment:
     counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
     least_noise [N]: what the steps of the force's reading leave of it, however smooth they are
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
-    smooth: blocks over which a misfit of the motion is smooth
+    smooth: blocks over which a misfit of the motion is smooth; reading: noise of the samples [N]
     measured: the channels that were recorded, by their names, averaged over the blocks
     """
 
@@ -89,6 +89,7 @@ class Experiment:
     gauge: float
     size: int
     smooth: float
+    reading: Noise
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
@@ -135,14 +136,12 @@ class Dataset:
         """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
         return self.stacked([simulate(tire, e, e) - e.baseline for e in self.experiments])
 
-    def with_noise(self, levels: Sequence[float], samples: Sequence[float]) -> Dataset:
-        """Return the dataset with other noise levels [N] of the averaged misfits, and floors that hold the noise of
-        their samples [N].
-        """
+    def with_noise(self, noises: Sequence[Noise]) -> Dataset:
+        """Return the dataset with another noise [N] of each averaged misfit."""
         found = []
-        for e, level, sample in zip(self.experiments, levels, samples, strict=True):
-            floor = replace(e.floor, amplifier=max(e.floor.amplifier, float(sample)))
-            found.append(replace(e, noise=max(float(level), e.least_noise), floor=floor))
+        for e, noise in zip(self.experiments, noises, strict=True):
+            reading = Noise(noise.level, noise.memory * e.size) if noise.memory > 1 else e.reading
+            found.append(replace(e, noise=max(noise.level, e.least_noise), reading=reading))
         return replace(self, experiments=tuple(found))
 
     def only(self, kept: Sequence[BoolArray]) -> Dataset:
@@ -156,10 +155,17 @@ class Dataset:
         return replace(self, experiments=tuple(e for e in found if e.counts.any()))
 
 
-def dataset_of(recordings: Sequence[Recorded], tire: TireModel) -> Dataset:
-    """Return the recordings in blocks and what `tire`, the baseline, misses of them."""
+def dataset_of(
+    recordings: Sequence[Recorded], tire: TireModel, readings: Sequence[Noise] | None = None
+) -> Dataset:
+    """Return the recordings in blocks and what `tire`, the baseline, misses of them.
+
+    readings: noise of the samples of each recording, if it is known; blocks are as long at least as it remembers
+    """
     total = sum(r.time.size for r in recordings)
-    experiments = tuple(_experiment(r, tire, max(1, -(-total // ROWS))) for r in recordings)
+    size = max(1, -(-total // ROWS))
+    known: Sequence[Noise | None] = readings or [None] * len(recordings)
+    experiments = tuple(_experiment(r, tire, size, n) for r, n in zip(recordings, known, strict=True))
     gauge = float(np.median([e.gauge for e in experiments]))
     return Dataset(
         experiments, replace(tire, reading_noise=min(gauge, 0.01)), _scales(experiments, recordings)
@@ -174,7 +180,7 @@ def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) 
     return replace(tire, effects=tuple(order))
 
 
-def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
+def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise | None) -> Experiment:
     step = staircase_step(recording.deflection)
     read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
     motion = motion_of(recording.time, read)
@@ -192,14 +198,16 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     # Of a sine both are its frequency; of a triangle the second one is, and neither of steps, whose misfit may jump.
     phase = interval * max(quick / max(slow, 1e-300), np.pi * slow / max(float(np.ptp(read)), 1e-300))
     smooth = MEMORY_SPANS / max(phase, 1e-300)
-    read_noise = noise_of(misfit, smooth, read)
-    floor = noise_floor(read_noise.level, stiffness, gauge, step, force_step)
-    loudness = float(np.std(misfit)) / max(read_noise.level, 1e-300)
+    reading = reading or noise_of(misfit, smooth, read)
+    floor = noise_floor(reading.level, stiffness, gauge, step, force_step)
+    loudness = float(np.std(misfit)) / max(reading.level, 1e-300)
     blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
     turn = min(TURN, float(np.sqrt(12.0 * blur)))
     longest = turn * slow / max(quick * interval, 1e-300)
     least = size * ROWS // MOST_ROWS
-    size = int(max(1, least, min(size, longest, recording.time.size // FEWEST_ROWS)))
+    # Blocks within the memory of their noise would not be independent of each other.
+    remembered = min(reading.memory, TURN * slow / max(quick * interval, 1e-300))
+    size = int(max(1, least, remembered, min(size, longest, recording.time.size // FEWEST_ROWS)))
     whole = recording.time.size // size * size
     good = resolved[:whole].reshape(-1, size)
     counts: BoolArray = np.asarray(good.all(axis=1))
@@ -229,7 +237,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
     )
     # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
     of_blocks = noise_of(averaged, smooth / size, blocks.deflection)
-    noise = min(read_noise.averaged / np.sqrt(size), of_blocks.averaged)
+    noise = min(reading.level * np.sqrt(min(reading.memory / size, 1.0)), of_blocks.level)
     # A slow force rests on a step for many samples, and their average errs as each of them.
     moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
     least_noise = force_step * SHARE_OF_STEP / float(np.sqrt(max(size * moving, 1.0)))
@@ -249,6 +257,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int) -> Experiment:
         gauge,
         size,
         smooth / size,
+        reading,
         measured,
     )
 

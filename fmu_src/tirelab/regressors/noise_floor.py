@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 from scipy.signal import savgol_filter
 from scipy.stats import f
 
@@ -35,6 +36,9 @@ noise that has a memory."""
 
 FEWEST_SPANS = 20
 """Spans of a difference that a recording holds at least: their scale is then known to a sixth."""
+
+FEWEST_CELLS = 8
+"""Cells, and visits beyond the first of each, from which on visits are compared: two degrees of freedom."""
 
 AGAIN = 0.01
 """Level of the test that what is quick comes again at the same deflection."""
@@ -57,10 +61,10 @@ class NoiseFloor:
 
 @dataclass(frozen=True)
 class Noise:
-    """level: standard deviation of a sample; averaged: that of white noise which errs as much in long averages."""
+    """level: standard deviation of a sample; memory: samples from one to the next that errs independently."""
 
     level: float
-    averaged: float
+    memory: int
 
 
 def white_level(residual: FloatArray, lag: int = 1) -> float:
@@ -84,39 +88,44 @@ def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noi
     last = max((i for i, rose in enumerate(rises) if not rose), default=0)
     risen = [i for i in range(last) if rises[i]]
     if not risen or _comes_again(residual, deflection, 2 ** (risen[-1] + 1)):
-        return Noise(levels[0], levels[0])
-    # Of n samples with a memory of m, n / m are independent.
-    slow = (2 ** (i + 1) * (levels[i + 1] ** 2 - levels[i] ** 2) for i in risen)
-    return Noise(levels[last], float(np.sqrt(levels[0] ** 2 + sum(slow))))
+        return Noise(levels[0], 1)
+    return Noise(levels[last], 2 ** (risen[-1] + 1))
 
 
 def _comes_again(residual: FloatArray, deflection: FloatArray, memory: int) -> bool:
-    """Return whether what is quicker than a few memories is alike at every visit of the same deflection.
-
-    A visit is the way through half a memory's deflections; neighbours within two memories are not independent, so the
-    degrees of freedom are a quarter of their number.
+    """Return whether what is quicker than a few memories is alike at every visit of the same deflection, whatever the
+    direction or in each of them.
     """
     quick = residual - savgol_filter(residual, 6 * memory + 1, 3)
     way = float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
-    cell = (
-        (deflection - deflection.min()) / max(0.5 * way, 1e-6 * float(np.ptp(deflection)), 1e-300)
-    ).astype(int)
+    width = max(0.5 * way, 1e-6 * float(np.ptp(deflection)), 1e-300)
+    cell = 2 * ((deflection - deflection.min()) / width).astype(int)
+    inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
+    chances = (_chance_of_cells(quick, places, 4 * memory) for places in (cell, cell + inwards))
+    return min(chances) < 0.5 * AGAIN
+
+
+def _chance_of_cells(values: FloatArray, cell: NDArray[np.int_], apart: int) -> float:
+    """Return the chance that means of independent visits differ as much between cells; 1 for too few visits.
+
+    A visit is the way through one cell, half a memory; one that follows another within `apart` samples does not count.
+    Neighbours within two memories are not independent: the degrees of freedom are a quarter of their number.
+    """
     begin = np.flatnonzero(np.diff(cell, prepend=-1))
-    mean = np.add.reduceat(quick, begin) / np.diff(begin, append=quick.size)
-    where = cell[begin]
-    order = np.lexsort((begin, where))
-    where, begin, mean = where[order], begin[order], mean[order]
-    apart = (np.diff(where, prepend=-1) != 0) | (np.diff(begin, prepend=0) > 4 * memory)
-    _, number, visits = np.unique(where[apart], return_inverse=True, return_counts=True)
-    cells, within = int(np.sum(visits > 1)), int(np.sum(visits[visits > 1] - 1))
-    if cells < 8 or within < 8:
-        return False
-    middle = np.bincount(number, mean[apart]) / visits
+    mean = np.add.reduceat(values, begin) / np.diff(begin, append=values.size)
+    order = np.lexsort((begin, cell[begin]))
+    begin, mean = begin[order], mean[order]
+    counts = (np.diff(cell[begin], prepend=-1) != 0) | (np.diff(begin, prepend=0) > apart)
+    begin, mean = begin[counts], mean[counts]
+    _, number, visits = np.unique(cell[begin], return_inverse=True, return_counts=True)
     several = visits[number] > 1
-    left = float(np.sum((mean[apart] - middle[number])[several] ** 2)) / within
-    overall = float(np.mean(mean[apart][several]))
-    between = float(np.sum((visits * (middle - overall) ** 2)[visits > 1])) / (cells - 1)
-    return bool(f.sf(between / max(left, 1e-300), (cells - 1) / 4.0, within / 4.0) < AGAIN)
+    cells, within = int(np.sum(visits > 1)), int(np.sum(several)) - int(np.sum(visits > 1))
+    if min(cells, within) < FEWEST_CELLS:
+        return 1.0
+    middle = np.bincount(number, mean) / visits
+    left = float(np.sum((mean - middle[number])[several] ** 2)) / within
+    between = float(np.sum((middle[number] - mean[several].mean())[several] ** 2)) / (cells - 1)
+    return float(f.sf(between / max(left, 1e-300), (cells - 1) / 4.0, within / 4.0))
 
 
 def noise_floor(

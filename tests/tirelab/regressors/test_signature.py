@@ -10,6 +10,7 @@ from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of
 from tirelab.regressors.draws import at_reading, quantile
 from tirelab.regressors.law import EXPONENT, FACTOR, LAW, REFERENCE, SHAPE, candidates, law_signature
+from tirelab.regressors.noise_floor import Noise
 from tirelab.regressors.signature import in_other_noise, signature_of, signatures_of, size_of
 from tirelab.simulation.simulate import simulate
 
@@ -101,7 +102,7 @@ def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) ->
 def test_in_other_noise_a_signature_explains_the_same_newtons(dataset: Dataset) -> None:
     signature = signature_of("viscous_damping", dataset)
     assert signature is not None
-    louder = dataset.with_noise([2.0 * e.noise for e in dataset.experiments], [0.0])
+    louder = dataset.with_noise([Noise(2.0 * e.noise, 1) for e in dataset.experiments])
     other = in_other_noise(signature, dataset, louder)
     np.testing.assert_allclose(
         other.curves * other.sizes[:, None] * 2.0, signature.curves * signature.sizes[:, None], rtol=1e-9
