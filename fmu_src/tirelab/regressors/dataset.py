@@ -51,8 +51,8 @@ STEPS_LEFT = 0.3
 MEMORY_SPANS = float(np.pi / 3.0)
 """Phase [rad] of the motion over which its misfit is smooth: the three lags of a difference are half a cycle."""
 
-LONE = 8.0
-"""A sample this many noises off both its neighbours is a spike."""
+LONE, RARE = 8.0, 0.02
+"""A sample this many noises off both its neighbours is a spike, where less than this part of all samples is."""
 
 SECANTS = 40
 """Parts of the deflection's span over which the stiffness is taken."""
@@ -279,7 +279,8 @@ def _spikes(misfit: FloatArray) -> BoolArray:
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
     lone[1:-1] = (np.abs(before) > LONE * level) & (np.abs(after) > LONE * level) & (before * after > 0.0)
-    return lone
+    # What is frequent is noise that not all of the recording has: of a gauge's steps while the tire moves.
+    return lone & (lone.mean() < RARE)
 
 
 def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:

@@ -41,3 +41,19 @@ def test_samples_beside_a_turn_are_compared_where_nothing_is_averaged() -> None:
     side = samples // turns
     near = [*range(side - 10, side - 4), *range(side + 5, side + 11)]
     assert experiment.counts[near].all()
+
+
+def test_a_rare_spike_is_left_out_and_a_noisy_part_is_not() -> None:
+    """The noise's level is that of the quiet part; single samples of the noisy one stand out of it all the same."""
+    quiet = triangle(2000, 2)
+    noise = 0.01 * np.random.default_rng(4).normal(size=2000)
+    silent = replace(quiet, force=simulate(TireModel(), replace(quiet, force=np.zeros(2000))) + noise)
+    spiked = silent.force.copy()
+    spiked[[300, 1500]] += 50.0
+    noisy = silent.force + np.where(np.arange(2000) < 400, 100.0 * noise, 0.0)
+    counts = [
+        dataset_of([replace(silent, force=f)], TireModel()).experiments[0].counts for f in (spiked, noisy)
+    ]
+    assert not counts[0][[300, 1500]].any()
+    assert counts[0].mean() > 0.98
+    assert counts[1][:400].mean() > 0.98
