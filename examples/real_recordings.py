@@ -232,7 +232,7 @@ def of(recording: Recording, samples: slice) -> Recording:
     r = recording
     pressure = None if r.pressure is None else r.pressure[samples]
     channels = (r.time, r.deflection, r.surface_radius, r.force)
-    return Recording(r.name, *(c[samples] for c in channels), pressure=pressure)
+    return Recording(r.name, *(c[samples] for c in channels), pressure=pressure, timed=r.timed)
 
 
 def damper(folder: Path, name: str) -> Finding:
@@ -268,9 +268,14 @@ BARS = (1, 3, 5, 7)
 
 def piston_recordings(folder: Path) -> dict[int, Recording]:
     """The recordings of the piston by their pressure [bar]."""
+    return {bar: piston_recording(folder / f"O-ring_{bar}bar.csv") for bar in BARS}
+
+
+def piston_recording(path: Path) -> Recording:
+    """The recording of a piston, whatever its seal."""
     columns = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
     units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
-    return {bar: signed(folder / f"O-ring_{bar}bar.csv", columns, units) for bar in BARS}
+    return signed(path, columns, units)
 
 
 def preloaded(force: float) -> TireModel:

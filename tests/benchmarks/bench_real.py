@@ -1,16 +1,19 @@
 """The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT]
 
-REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static. Dampers, pistons and springs
-are read as they are; errors of indentations are printed in nanonewtons.
+REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static
+(github.com/harrislab-brown/CyberDiver, data/validation, CC BY-SA 4.0). More files of the same repositories may lie
+beside theirs; a folder that is not there is passed over. Dampers, pistons and springs are read as they are; errors of
+indentations are printed in nanonewtons.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +22,7 @@ from radialtire import PowerLaw, TireModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
 from indentations import indentation, power_law_fit, read_hysitron, recorded
-from real_recordings import of, piston_recordings, preloaded, signed
+from real_recordings import of, piston_recording, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.identification.part_laws import fit_laws, tire_of
 from tirelab.recordings.recording import Recording
@@ -39,7 +42,6 @@ class Real:
     tire: TireModel
     unit: float
     reference: str
-    timed: bool = True
 
 
 def law(coefficient: float, exponent: float) -> TireModel:
@@ -57,17 +59,20 @@ def damper(folder: Path, name: str, reference: str) -> Real:
     return Real(name, own, slice(0, half), slice(half, None), tire_of(line, [fitted], name), 1.0, reference)
 
 
-def piston(folder: Path, bar: int, reference: str) -> Real:
+def piston(path: Path, reference: str) -> Real:
     """A piston at constant pressure: its mean force is believed."""
-    own = piston_recordings(folder)[bar]
+    own = piston_recording(path)
     half = len(own) // 2
     tire = preloaded(float(own.force[:half].mean()))
     return Real(own.name, own, slice(0, half), slice(half, None), tire, 1.0, reference)
 
 
-def spring(folder: Path) -> Iterator[Real]:
-    """Three presses of a body that behaves like 15 N/mm; samples without times."""
-    path = next(folder.glob("*.csv"))
+def springs(path: Path) -> list[Real]:
+    """Presses of a body that an actuator makes a spring, side by side in one file, samples without times.
+
+    Believed is the stiffness in the file's name (`15npmm`: 15 N/mm), or where that is a limit of the force
+    (`10n_threshold`) the straight line through what the body does below seven tenths of its peak.
+    """
     rows = []
     for line in path.read_text(encoding="latin-1").splitlines():
         words = line.replace(";", ",").split(",")
@@ -77,22 +82,27 @@ def spring(folder: Path) -> Iterator[Real]:
             continue
     width = max(len(r) for r in rows)
     table = np.array([r + [np.nan] * (width - len(r)) for r in rows])
-    for trial in range(3):
+    given = re.search(r"_(\d+)npmm", path.stem)
+    found = []
+    for trial in range(width // 2):
         x, f = table[:, 2 * trial], table[:, 2 * trial + 1]
         good = np.isfinite(x) & np.isfinite(f)
         x, f = 1e-3 * x[good], f[good]
         x, f = x * np.sign(x[np.argmax(np.abs(x))]), f * np.sign(f[np.argmax(np.abs(f))])
-        r = recorded(f"spring_{trial}", np.arange(x.size, dtype=float), x, f)
-        yield Real(
-            r.name,
-            r,
-            slice(0, None),
-            slice(0, None),
-            law(150.0, 1.0),
-            1.0,
-            "gap + series spring 0.214 / 0.225",
-            timed=False,
-        )
+        name = f"{path.stem.removeprefix('static_force_test_')}, {trial + 1}"
+        stiffness = 10.0 * float(given[1]) if given else 0.01 * _rise(x, f)
+        own = replace(recorded(name, np.arange(x.size, dtype=float), x, f), timed=False)
+        whole = slice(0, None)
+        reference = "gap + series spring 0.214 / 0.225" if given and given[1] == "15" else ""
+        found.append(Real(name, own, whole, whole, law(stiffness, 1.0), 1.0, reference))
+    return found
+
+
+def _rise(x: FloatArray, f: FloatArray) -> float:
+    """Return the slope [N/m] of the straight line through the way in, between one and seven tenths of the peak."""
+    way_in = np.arange(x.size) < np.argmax(f > 0.9 * f.max())
+    rising = way_in & (f > 0.1 * f.max()) & (f < 0.7 * f.max())
+    return float(np.polyfit(x[rising], f[rising], 1)[0])
 
 
 def brain(folder: Path) -> Real:
@@ -157,21 +167,22 @@ def reals(root: Path) -> Iterator[Callable[[], Real]]:
         "ensaio.A.1": "preload + Coulomb + viscous 81 / 106",
         "ensaio1": "k, c, Dahl 6.5",
         "ensaio1.2": "k, c, Dahl 18.5",
+        "O-ring_1bar": "constant + Coulomb 0.96, + pressure 0.46",
+        "O-ring_5bar": "viscous 0.98 / 1.21; Dahl 1.6 / 1.9",
+        "O-ring_7bar": "Coulomb 1.83",
     }
     for path in sorted(mr.glob("*.mat")):
         yield lambda p=path: damper(mr, p.stem, references.get(p.stem, ""))  # type: ignore[misc]
-    for bar, reference in (
-        (1, "constant + Coulomb 0.96, + pressure 0.46"),
-        (3, ""),
-        (5, "viscous 0.98 / 1.21; Dahl 1.6 / 1.9"),
-        (7, "Coulomb 1.83"),
-    ):
-        yield lambda b=bar, t=reference: piston(air, b, t)  # type: ignore[misc]
-    for i in range(3):
-        yield lambda i=i: list(spring(root / "programmed_spring_static"))[i]  # type: ignore[misc]
-    yield lambda: brain(afm)
-    yield lambda: gel(afm)
-    yield lambda: indenter(root / "nanoindent_series_compliance_drift")
+    for path in sorted(air.glob("*bar.csv")):
+        yield lambda p=path: piston(p, references.get(p.stem, ""))  # type: ignore[misc]
+    for path in sorted((root / "programmed_spring_static").glob("*.csv")):
+        for i in range(3):
+            yield lambda p=path, i=i: springs(p)[i]  # type: ignore[misc]
+    if afm.exists():
+        yield lambda: brain(afm)
+        yield lambda: gel(afm)
+    if (nano := root / "nanoindent_series_compliance_drift").exists():
+        yield lambda: indenter(nano)
 
 
 def rms(values: FloatArray) -> float:

@@ -280,7 +280,7 @@ def _spikes(misfit: FloatArray) -> BoolArray:
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
     lone[1:-1] = (np.abs(before) > LONE * level) & (np.abs(after) > LONE * level) & (before * after > 0.0)
     # What is frequent is noise that not all of the recording has: of a gauge's steps while the tire moves.
-    return lone & (lone.mean() < RARE)
+    return lone if lone.mean() < RARE else np.zeros_like(lone)
 
 
 def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:
