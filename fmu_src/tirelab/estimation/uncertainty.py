@@ -43,7 +43,7 @@ def estimates_of(fit: Fit) -> tuple[Estimate, ...]:
     if not slopes.shape[1]:
         return ()
     whole = fit.slopes
-    covariance = np.linalg.inv(whole.T @ whole / fit.variance + np.eye(whole.shape[1]))
+    covariance = _covariance(whole / np.sqrt(fit.variance))
     spread = np.sqrt(np.diag(covariance))[: slopes.shape[1]]
     found = []
     for p, position, own in zip(fit.problem.parameters, fit.positions, spread, strict=True):
@@ -54,6 +54,15 @@ def estimates_of(fit: Fit) -> tuple[Estimate, ...]:
         determined = bool(own < DETERMINED or p.group > 0)
         found.append(Estimate(p.owner, p.label, p.unit, value, float(slope * own), determined))
     return (*_on_surfaces(fit, covariance), *found)
+
+
+def _covariance(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return (S^T S + 1)^-1 from the singular values of S: inverting the sum loses what is small beside the largest."""
+    triangle = np.linalg.qr(
+        np.concatenate([slopes, np.zeros_like(slopes, shape=(slopes.shape[1],) * 2)]), mode="r"
+    )
+    _, sizes, ways = np.linalg.svd(triangle)
+    return np.asarray(ways.T @ (ways / (1.0 + sizes**2)[:, None]))
 
 
 def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[Estimate]:
