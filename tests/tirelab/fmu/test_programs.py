@@ -1,11 +1,13 @@
-"""The FMUs in programs that have no Python in them, where these are on PATH: fmusim and the FMU Compliance Checker.
+"""The FMUs in programs that have no Python in them: fmusim, the FMU Compliance Checker, one with FMI4cpp.
 
-No registry has them: whoever has built them from their repositories runs these tests with them on PATH.
+No registry has them: whoever has built them from their repositories runs these tests with the programs on PATH, and
+with FMI4cpp where the compiler looks (CPLUS_INCLUDE_PATH and LIBRARY_PATH, where it is not installed for everybody).
 """
 
 from __future__ import annotations
 
 import csv
+import math
 import os
 import shutil
 import subprocess
@@ -26,6 +28,13 @@ NOT_A_NUMBER = """"time","deflection","surface_radius"
 0.5,nan,1e5
 1.0,nan,1e5
 """
+INPUTS = [(0.02, 1e5), (0.02, 0.254), (0.01, -0.381)]
+FORCES = [
+    550.9 * 2**1.422,
+    (550.9 - 337.8 * math.exp(-0.2519 * 25.4)) * 2 ** (1.422 - 0.2469 * math.exp(-0.1651 * 25.4)),
+    550.9 + 7822.0 * math.exp(-0.1398 * 38.1),
+]
+"""Equations 2, 5 and 6 of the article on flat, convex and concave ground."""
 LAST_STEP, END = 550.9 * 1.8**1.422, 550.9 * 2.0**1.422
 """The force at 1.8 cm, the input that is held over the last step of 0.1 s, and at 2 cm."""
 
@@ -47,14 +56,18 @@ def program(name: str) -> str:
     return found
 
 
-def run(command: Sequence[str | Path], folder: Path, *, python: bool) -> subprocess.CompletedProcess[str]:
+def run(
+    command: Sequence[str | Path], folder: Path, *, python: bool, said: str = ""
+) -> subprocess.CompletedProcess[str]:
     """Run a program in a folder; with a native FMU it finds on PATH nothing but `rm`, which both programs call."""
     environment = dict(os.environ)
     if not python:
         (folder / "bin").mkdir()
         (folder / "bin" / "rm").symlink_to(shutil.which("rm") or "/bin/rm")
         environment = {"PATH": str(folder / "bin"), "HOME": str(folder)}
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, env=environment)
+    return subprocess.run(
+        command, input=said, cwd=folder, capture_output=True, text=True, timeout=120, env=environment
+    )
 
 
 def forces(path: Path) -> dict[float, float]:
@@ -112,3 +125,43 @@ def test_the_compliance_checker_finds_nothing(
     assert "0 Warning(s)" in summary
     assert "0 Error(s)" in summary
     assert forces(tmp_path / "out.csv")[1.0] == pytest.approx(force, rel=1e-12)
+
+
+@pytest.fixture(scope="module")
+def with_fmi4cpp(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A program that runs FMUs with FMI4cpp, compiled against the FMI4cpp of this machine."""
+    compiler = shutil.which("g++")
+    if compiler is None:
+        pytest.skip("g++ is not on PATH")
+    host = tmp_path_factory.mktemp("fmi4cpp") / "host"
+    source = Path(__file__).parent / "hosts" / "with_fmi4cpp.cpp"
+    places = [f"-Wl,-rpath,{place}" for place in os.environ.get("LIBRARY_PATH", "").split(os.pathsep) if place]
+    command = [compiler, "-std=c++17", "-Wall", "-o", host, source, "-lfmi4cpp", *places]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if "fmi4cpp/fmi4cpp.hpp: No such file" in done.stderr:
+        pytest.skip("g++ finds no FMI4cpp; it is in no registry and has to be built from its repository")
+    assert done.returncode == 0, done.stderr
+    return host
+
+
+FMI4CPP = pytest.mark.parametrize(("fmu", "kind"), [("Python", "cs"), ("FMI 2", "cs"), ("FMI 2", "me")])
+
+
+@FMI4CPP
+def test_fmi4cpp(with_fmi4cpp: Path, fmus: dict[str, Path], tmp_path: Path, fmu: str, kind: str) -> None:
+    rows = "".join(f"{deflection!r} {radius!r}\n" for deflection, radius in INPUTS)
+    done = run([with_fmi4cpp, fmus[fmu], kind], tmp_path, python=fmu == "Python", said=rows)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("forces ")]
+    assert [float(word) for word in line.split()[1:]] == pytest.approx(FORCES, rel=1e-12)
+
+
+@FMI4CPP
+def test_fmi4cpp_is_told_of_an_input_that_no_tire_has(
+    with_fmi4cpp: Path, fmus: dict[str, Path], tmp_path: Path, fmu: str, kind: str
+) -> None:
+    done = run([with_fmi4cpp, fmus[fmu], kind], tmp_path, python=fmu == "Python", said="0.01 1e5\nnan 1e5\n")
+    assert done.returncode == 3
+    call = "step" if kind == "cs" else "completed_integrator_step"
+    assert f"\n{call}: Error\n" in done.stdout
+    assert done.stdout.count("deflection = nan m is not allowed") == 1
