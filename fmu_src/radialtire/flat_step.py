@@ -40,7 +40,7 @@ TANGENT_STEP = 1e-7
 """Half the distance [m] over which the tangent is taken."""
 
 AHEAD = 1e-6
-"""Half the time [s] over which the rate of the tire's deflection is taken where that of the reading is given."""
+"""Half the time [s] over which the rate of the tire's deflection is taken from rate and acceleration of the reading."""
 
 
 class Stage(NamedTuple):
@@ -128,16 +128,19 @@ def step(
     x = compressed(path, (deflection, rate, acceleration), moment, surface, p, s)
     v = rate
     if p[FOLLOWED] != 0.0:
-        if p[TRACKED] != 0.0:
+        if p[TRACKED] != 0.0 and p[NOISE] < tracking.FINEST:
             compression = tracked(s, path.compression, x, interval, p[NOISE])
             store(n, path.compression, compression)
             v = tracking.rate(compression)
         else:
+            # x holds rates: of noisy readings it is too noisy to be differentiated once more, as if it were a reading.
             h = AHEAD
             later = deflection + h * rate, rate + h * acceleration, acceleration
             sooner = deflection - h * rate, rate - h * acceleration, acceleration
             above = compressed(path, later, moment, surface, p, s)
             v = (above - compressed(path, sooner, moment, surface, p, s)) / (2.0 * h)
+            if p[TRACKED] != 0.0:
+                store(n, path.compression, tracking.begin(x))
 
     bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     at = Instant(

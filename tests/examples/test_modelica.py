@@ -1,4 +1,4 @@
-"""The Modelica wrapper: its syntax, and that it says of the FMU what the FMU says of itself."""
+"""The Modelica wrapper: its syntax, that it says of the FMU what the FMU says of itself, and that it compiles."""
 
 from __future__ import annotations
 
@@ -6,12 +6,57 @@ from pathlib import Path
 from typing import Any
 
 import fmpy
+import numpy as np
 import pytest
 from radialtire import TireModel
+from scipy.integrate import solve_ivp
 from tirelab.fmu.build import build_fmu
 from tirelab.fmu.native.pack import build_native_fmu
 
 parser = pytest.importorskip("pymoca.parser")
+
+IMPORTED = """
+block BicycleTire_fmu "What a tool makes of the FMU, on flat ground"
+  record Law
+    {parameters}
+  end Law;
+  Law law;
+  Modelica.Blocks.Interfaces.RealInput deflection;
+  Modelica.Blocks.Interfaces.RealInput surface_radius;
+  Modelica.Blocks.Interfaces.RealOutput radial_force;
+  Modelica.Blocks.Interfaces.RealOutput radial_stiffness;
+  Modelica.Blocks.Interfaces.BooleanOutput in_tested_range;
+protected
+  Real x = if deflection > 0 then 100 * deflection else 0;
+equation
+  radial_force = law.flat_coefficient * x ^ law.flat_exponent;
+  radial_stiffness = 100 * law.flat_coefficient * law.flat_exponent * x ^ (law.flat_exponent - 1);
+  in_tested_range = deflection < 0.03175;
+end BicycleTire_fmu;
+"""
+
+AROUND = """
+package Modelica
+  package Blocks
+    package Interfaces
+      connector RealInput = input Real;
+      connector RealOutput = output Real;
+      connector BooleanOutput = output Boolean;
+    end Interfaces;
+  end Blocks;
+end Modelica;
+
+model Ringing "A mass of 3 kg and a weight of 1000 N on a tire with another A"
+  BicycleTire tire(flat_coefficient = 600);
+  Real x(start = 0.02, fixed = true);
+  Real v(start = 0, fixed = true);
+equation
+  der(x) = v;
+  3 * der(v) = 1000 - tire.radial_force;
+  tire.deflection = x;
+  tire.surface_radius = 1e5;
+end Ringing;
+"""
 
 
 @pytest.fixture(scope="module")
@@ -87,3 +132,29 @@ def test_the_import_is_named(wrapper: Any, repository: Path) -> None:
     assert str(wrapper.symbols["fmu"].type) == "BicycleTire_fmu"
     text = (repository / "examples" / "modelica" / "BicycleTire.mo").read_text(encoding="utf-8")
     assert "dist/BicycleTire.fmu" in text
+
+
+def test_the_block_compiles_and_hands_its_parameters_on(
+    wrapper: Any, repository: Path, tmp_path: Path
+) -> None:
+    """In rumoca, with a class in place of the imported FMU and the interfaces of the standard library: it rings."""
+    rumoca = pytest.importorskip("rumoca")
+    block = (repository / "examples" / "modelica" / "BicycleTire.mo").read_text(encoding="utf-8")
+    parameters = [name for name, symbol in wrapper.symbols.items() if "parameter" in symbol.prefixes]
+    assert len(parameters) == 10
+    imported = IMPORTED.format(parameters="\n    ".join(f"parameter Real {name} = 1;" for name in parameters))
+    model = tmp_path / "Ringing.mo"
+    model.write_text(AROUND + imported + block.replace("within ;", ""), encoding="utf-8")
+    compiled = rumoca.Session().load(str(model), model="Ringing")
+    found = compiled.simulate(t=(0, 0.1), dt=0.001)
+    exact = solve_ivp(
+        lambda _, y: [y[1], (1000.0 - 600.0 * (100.0 * max(y[0], 0.0)) ** 1.422) / 3.0],
+        (0.0, 0.1),
+        [0.02, 0.0],
+        "DOP853",
+        t_eval=np.asarray(found.time),
+        rtol=1e-10,
+        atol=1e-13,
+    )
+    np.testing.assert_allclose(found["x"], exact.y[0], atol=2e-5)
+    assert np.ptp(found["x"]) > 0.005

@@ -24,6 +24,7 @@ from radialtire import (
     TireModel,
     check_inputs,
     power_law,
+    tracking,
 )
 from radialtire.flat_step import RATE
 from radialtire.model import check_measured
@@ -80,6 +81,38 @@ def test_the_rate_is_that_of_the_tire_and_not_of_the_reading() -> None:
     # a linear tire K with a spring 1/k in series moves at 1 / (1 + k K) of the rate read: half of it here
     damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0))
     tire = tire_with(("series_compliance", (1.0 / STIFFNESS, 0.0)), damped, law=LINEAR)
+    time = np.linspace(0.0, 0.1, 201)
+    force = drive(tire, time, 0.01 + 0.1 * time)
+    elastic = STIFFNESS * 0.5 * (0.01 + 0.1 * time[-1])
+    assert force[-1] == pytest.approx(elastic + 100.0 * 0.05, rel=1e-6)
+
+
+def test_behind_a_lag_the_rate_follows_from_rate_and_acceleration_of_noisy_readings() -> None:
+    # x = y + (tau + delta) v + delta (tau + delta / 2) a moves at v + (tau + delta) a; a spring K with a dashpot c
+    tau, delta, damping, noise = 0.005, 0.004, 300.0, 8e-6
+    tire = tire_with(
+        ("deflection_lag", (tau, delta)),
+        ("viscous_damping", (damping, 1.0, 0.0, 0.0, 1.0)),
+        reading_noise=noise,
+        law=LINEAR,
+    )
+    time = np.arange(0.0, 1.0, 0.0025)
+    read = 0.015 + 0.005 * np.sin(6.0 * time) + noise * np.random.default_rng(5).standard_normal(time.size)
+    track = tracking.begin(read[0])
+    rates, accelerations = np.zeros_like(time), np.zeros_like(time)
+    for i in range(1, time.size):
+        track = tracking.follow(track, time[i] - time[i - 1], read[i], noise)
+        rates[i], accelerations[i] = tracking.rate(track), tracking.acceleration(track)
+    deflection = read + (tau + delta) * rates + delta * (tau + 0.5 * delta) * accelerations
+    expected = STIFFNESS * deflection + damping * (rates + (tau + delta) * accelerations)
+    assert drive(tire, time, read) == pytest.approx(expected, abs=1e-6)
+
+
+def test_behind_a_spring_the_rate_of_noisy_readings_is_the_springs_part_of_it() -> None:
+    # as above, without a noise: half of the rate read, which the estimator knows to the noise over its memory
+    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0))
+    spring = ("series_compliance", (1.0 / STIFFNESS, 0.0))
+    tire = tire_with(spring, damped, reading_noise=8e-6, law=LINEAR)
     time = np.linspace(0.0, 0.1, 201)
     force = drive(tire, time, 0.01 + 0.1 * time)
     elastic = STIFFNESS * 0.5 * (0.01 + 0.1 * time[-1])

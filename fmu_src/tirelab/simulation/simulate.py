@@ -17,7 +17,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS, Effect, State, TireModel
+from radialtire.flat_step import AHEAD
 from radialtire.model import Law
+from radialtire.tracking import FINEST
 
 from . import compiled
 from .channels import channel_rows, measured_of
@@ -151,17 +153,17 @@ def elastic_stage(
     tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None
 ) -> tuple[History, FloatArray]:
     """Return the quantities for the effects after the elastic law, and the elastic force [N] with its factor."""
-    x = recording.deflection
     history = history_of(tire, recording, kinematics)
-    for place in UPSTREAM:
-        history = replace(history, deflection=x)
-        x = downstream(tire, history, x, (place,))
+    x = upstream(tire, history)
     rate = history.rate
     if any(effect.place in UPSTREAM for effect, _ in tire.effects) and tire.differentiates:
-        if kinematics is None:
-            rate, _ = track(history.time, x, tire.reading_noise)
-        else:
+        if kinematics is not None:
             rate = rate + np.gradient(x - recording.deflection, history.time)
+        elif tire.reading_noise < FINEST:
+            rate, _ = track(history.time, x, tire.reading_noise)
+        else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
+            later, sooner = (upstream(tire, moved(history, h)) for h in (AHEAD, -AHEAD))
+            rate = (later - sooner) / (2.0 * AHEAD)
     bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
     if tire.two_sided:
         bare += tire.preload
@@ -169,6 +171,19 @@ def elastic_stage(
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
     elastic = factor * bare
     return replace(history, elastic_force=elastic), elastic
+
+
+def upstream(tire: TireModel, history: History) -> FloatArray:
+    """Return the tire's own deflection [m] of every sample from the deflection that is read."""
+    for place in UPSTREAM:
+        history = replace(history, deflection=downstream(tire, history, history.deflection, (place,)))
+    return history.deflection
+
+
+def moved(history: History, ahead: float) -> History:
+    """Return the motion of every sample a time `ahead` [s] later, at the acceleration that it has."""
+    v, a = history.rate, history.acceleration
+    return replace(history, deflection=history.deflection + ahead * v, rate=v + ahead * a)
 
 
 def downstream(tire: TireModel, history: History, signal: FloatArray, places: tuple[str, ...]) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import platform
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -46,10 +48,29 @@ def run_fmpy() -> Callable[[list[Path], list[list[Any]]], list[Any]]:
     return run
 
 
+def _tbb_folder() -> str:
+    """The folder of the oneTBB that ecospy needs: where pip put it, and where the linker does not look."""
+    try:
+        files = metadata.files("tbb") or []
+    except metadata.PackageNotFoundError:
+        files = []
+    found = [Path(file.locate()).resolve().parent for file in files if file.name.startswith("libtbb.so")]
+    return str(found[0] if found else Path(sys.prefix) / "lib")
+
+
+@pytest.fixture(scope="session")
+def proxyfmu() -> Path:
+    """The program of ecospy that runs an FMU in a process of its own."""
+    spec = importlib.util.find_spec("ecospy")
+    program = Path(spec.origin).parent / "binaries" / "proxyfmu" if spec and spec.origin else None
+    if program is None or not program.is_file():
+        pytest.skip("ecospy has no proxyfmu here")
+    return program
+
+
 def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) -> str:
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    # The oneTBB that ecospy needs is installed beside the interpreter, where the linker does not look.
-    environment["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
+    environment["LD_LIBRARY_PATH"] = _tbb_folder()
     with tempfile.TemporaryDirectory() as folder:  # proxyfmu writes its logs where it stands
         result = subprocess.run(
             [sys.executable, "-I", str(HOSTS / script), *map(str, arguments)],

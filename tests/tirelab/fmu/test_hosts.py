@@ -7,7 +7,6 @@ import json
 import os
 import shutil
 import stat
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -50,13 +49,10 @@ def test_fmutool_finds_it_compliant(run_host: Run, article_fmu: Path) -> None:
 
 
 def test_proxyfmu_a_host_without_python(
-    run_host: Run, article_fmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run_host: Run, article_fmu: Path, proxyfmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """ecospy's proxyfmu is a compiled program of its own: the FMU has to bring its Python along."""
-    program = Path(sys.prefix) / "Scripts" / "proxyfmu"
-    if not program.is_file():
-        pytest.skip("ecospy has no proxyfmu here")
-    shutil.copy(program, tmp_path)
+    shutil.copy(proxyfmu, tmp_path)
     (tmp_path / "proxyfmu").chmod(stat.S_IRWXU)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     printed = run_host("with_ecospy.py", f"proxyfmu://localhost?file={article_fmu}", job=INPUTS)

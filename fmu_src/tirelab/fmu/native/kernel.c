@@ -1216,7 +1216,7 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
     double x = compressed((Vector3){{deflection, rate, acceleration}}, moment, surface, p, s);
     double v = rate;
     if (p[1] != 0.0) {
-        if (p[0] != 0.0) {
+        if (p[0] != 0.0 && p[2] < FINEST) {
             compression = tracked_compression(s, x, interval, p[2]);
             store_compression(n, compression);
             v = tracking_rate(compression);
@@ -1226,6 +1226,9 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
             sooner = (Vector3){{deflection - h * rate, rate - h * acceleration, acceleration}};
             above = compressed(later, moment, surface, p, s);
             v = (above - compressed(sooner, moment, surface, p, s)) / (2.0 * h);
+            if (p[0] != 0.0) {
+                store_compression(n, tracking_begin(x));
+            }
         }
     }
     double bare = held ? p[5] + power_law_two_sided(x, A, B) : tire_elastic(x, A, B);

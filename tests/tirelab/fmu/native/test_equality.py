@@ -87,6 +87,16 @@ def test_the_tires_have_every_optional_parameter() -> None:
         assert moved == declared
 
 
+def test_the_last_digit_of_a_reading_decides_nothing() -> None:
+    """So that a platform whose powers are rounded otherwise has the same force, with noisy readings too."""
+    noisy = [(name, tire) for name, tire in tires(10) if tire.differentiates and tire.reading_noise > 0.0]
+    assert any(
+        {"deflection_lag", "viscous_damping"} <= {e.name for e, _ in tire.effects} for _, tire in noisy
+    )
+    for number, (name, tire) in enumerate(noisy):
+        assert sensitivity(tire, drive(FEW, number)) < 1e-9, name
+
+
 def zig(target: str, destination: Path, *flags: str) -> None:
     """Compile the host for another platform."""
     pytest.importorskip("ziglang")
@@ -119,7 +129,7 @@ def test_the_same_bits_on_aarch64(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_close_on_windows(tmp_path: Path) -> None:
-    """Under Wine: another C library rounds powers otherwise, which the noise tracker enlarges."""
+    """Under Wine: another C library rounds powers otherwise, which the estimator of noisy rates enlarges."""
     emulator = shutil.which("wine")
     if emulator is None:
         pytest.skip("wine is not installed")
@@ -133,9 +143,6 @@ def test_close_on_windows(tmp_path: Path) -> None:
     chosen = [*tires(10), *options()]
     found = differing(run, tmp_path, FEW, chosen)
     print({name: f"{value:.1e}" for name, value in found.items()})
-    for number, (name, tire) in enumerate(chosen):
+    for name, tire in chosen:
         noisy = tire.differentiates and tire.reading_noise > 0.0
-        bound = 1e-9 if noisy else 1e-12
-        if noisy and found.get(name, 0.0) > bound:  # all effects at once are chaotic: in Python itself, too
-            bound = 10.0 * sensitivity(tire, drive(FEW, number))
-        assert found.get(name, 0.0) < bound, name
+        assert found.get(name, 0.0) < (1e-9 if noisy else 1e-12), name

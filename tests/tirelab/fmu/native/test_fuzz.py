@@ -58,6 +58,7 @@ def fuzz(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 def check(counts: list[int]) -> None:
     """Calls of both kinds were made, and each refused one told why."""
     calls, taken, refused, messages = counts
+    print(f"{calls} calls, {taken} taken, {refused} refused, {messages} messages")
     assert calls > 1000
     assert min(taken, refused) > calls // 10
     assert messages > refused // 2

@@ -8,7 +8,6 @@ import math
 import os
 import shutil
 import stat
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -61,13 +60,10 @@ def test_ecos_with_fmi_3(run_host: Run, fmus: dict[int, Path]) -> None:
 
 
 def test_proxyfmu_a_host_without_python(
-    run_host: Run, fmus: dict[int, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run_host: Run, fmus: dict[int, Path], proxyfmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """ecospy's proxyfmu is a program in C++ of its own, which has no Python in it."""
-    program = Path(sys.prefix) / "Scripts" / "proxyfmu"
-    if not program.is_file():
-        pytest.skip("ecospy has no proxyfmu here")
-    shutil.copy(program, tmp_path)
+    shutil.copy(proxyfmu, tmp_path)
     (tmp_path / "proxyfmu").chmod(stat.S_IRWXU)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     printed = run_host("with_ecospy.py", f"proxyfmu://localhost?file={fmus[2]}", job=INPUTS)
