@@ -162,6 +162,14 @@ class TireModel:
         return learned or any(effect.differentiates for effect, _ in self.effects)
 
     @property
+    def is_part(self) -> bool:
+        """Whether it is a spring, a damper or a bushing, not a tire: it is held at both ends, or has neither air nor a
+        law that knows its ground, as a spring with a gap.
+        """
+        law = getattr(self.law, "base", self.law)  # a refitted law knows no more of the ground than its base
+        return self.two_sided or (not self.inflated and isinstance(law, power_law.PowerLaw))
+
+    @property
     def bare(self) -> bool:
         """Whether it is an elastic law on the ground and nothing else, so that a step needs no state."""
         return not self.effects and not self.two_sided and self.remainder is None

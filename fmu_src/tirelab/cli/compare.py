@@ -33,7 +33,7 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
     if fmu is not None and tire is not None:
         raise TirelabError("--fmu and --tire both name a tire; give one of them")
     believed = fmu or (TireModel() if tire is None else read_tire(tire))
-    part = isinstance(believed, TireModel) and believed.two_sided
+    part = isinstance(believed, TireModel) and believed.is_part
     recorded = (reading.of_part() if part else reading)(recording)
     for note in recorded.notes:
         output.note(note)

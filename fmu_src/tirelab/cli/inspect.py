@@ -143,7 +143,7 @@ def _show_assumed(console: Console, file: Path, reading: Reading, error: Tirelab
     except TirelabError:
         return
     console.print(f"ASSUMED, and not written: {' '.join(error.words())}", soft_wrap=True)
-    _show(console, found)
+    _show(console, found, assumed=True)
 
 
 def _refusal(file: Path, error: TirelabError) -> str:
@@ -153,10 +153,12 @@ def _refusal(file: Path, error: TirelabError) -> str:
     return f"- {error}\n  {shlex.join(['tirelab', 'inspect', str(file), *words()])}"
 
 
-def _show(console: Console, one: Inspection) -> None:
+def _show(console: Console, one: Inspection, *, assumed: bool = False) -> None:
+    """Print one recording; assumed: whether what no column holds is a guess and not given."""
     from rich.table import Table
     from rich.text import Text
 
+    from ..recordings.inspection import GIVEN
     from ..report.recording_picture import terminal_picture
     from ..report.terminal import printable
 
@@ -164,14 +166,15 @@ def _show(console: Console, one: Inspection) -> None:
     for head in ("channel", "column", "read in", "values", "step", "sign"):
         table.add_column(head, overflow="fold")
     for row in one.channels:
-        cells = (row.channel, row.column, row.unit, row.span, row.step, row.remark)
+        column = "assumed" if assumed and row.column == GIVEN else row.column
+        cells = (row.channel, column, row.unit, row.span, row.step, row.remark)
         table.add_row(*(Text(printable(cell)) for cell in cells))
     console.print(table)
     for name, text in one.facts:
         console.print(f"{name + ':':<11}{printable(text)}", soft_wrap=True)
     for name, texts in (
         ("says", one.recording.provenance),
-        ("note", one.remarks),
+        ("note", [note.replace(" as given", " as assumed") if assumed else note for note in one.remarks]),
         ("DOUBTFUL", one.recording.doubts),
     ):
         for text in texts:

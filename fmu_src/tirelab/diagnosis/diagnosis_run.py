@@ -106,7 +106,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     report = progress or (lambda sentence: None)
     limits = None if asked.rig is None else read_rig(asked.rig, {}).test_limits
     baseline, model, said = _baseline(asked.tire)
-    asked = replace(asked, reading=asked.reading.of_part()) if baseline.two_sided else asked
+    asked = replace(asked, reading=asked.reading.of_part()) if baseline.is_part else asked
     files, skipped = recording_files(asked.recordings, asked.reading.columns)
     kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
     _check_once([*files, *kept_files])

@@ -43,7 +43,12 @@ LARGEST_OFFSET = 0.01
 """The deflection offset [m] that a tire file can hold."""
 
 GAPS = ("linear_gap", "power_gap")
-"""Laws that a tire file holds as a power law whose deflection is shifted: without contact there is no force."""
+"""Laws that a tire file holds as a power law whose deflection is shifted. The gap is a loss of contact, as a tire's in
+the air: a stop or a loose spring cannot pull through it, so the tire file is not one of a part held at both ends.
+"""
+
+IN_GAP = 0.1
+"""Share of the largest force that recordings may have inside the gap, where its law has none: friction and the zero."""
 
 TWO_SIDED = ("linear", "power", "power_preload")
 """Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
@@ -113,13 +118,14 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     """Return a tire with a fitted law: a power law, and a deflection offset for its gap, or a two-sided part with its
     preload.
 
-    Raises TirelabError where a tire file cannot hold the law.
+    Raises TirelabError where a tire file cannot hold the law, and where there is a force inside a law's gap.
     """
     if fit.name in TWO_SIDED:
         return _described(_two_sided(fit), recordings, name)
     if fit.name not in GAPS:
         known = ", ".join((*TWO_SIDED, *GAPS))
         raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
+    _refuse_pull(fit, recordings)
     x0 = 1e-3 * fit.value("x0")
     if abs(x0) > LARGEST_OFFSET:
         raise TirelabError(
@@ -155,6 +161,21 @@ def _two_sided(fit: LawFit) -> TireModel:
     preload = 0.0 if fit.name == "power" else fit.value("F0")
     law = PowerLaw(max(scale * value, LEAST_SPRING), min(max(exponent, 0.1), 10.0))
     return TireModel(law=law, two_sided=True, preload=preload)
+
+
+def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:
+    """Refuse a law with a gap for recordings that have a force where it has none: a part that is held at both ends."""
+    x0 = 1e-3 * fit.value("x0")
+    loose = [r for r in recordings if np.any(r.deflection < x0)]
+    if not loose:
+        return
+    squares = [r.force[r.deflection < x0] ** 2 for r in loose]
+    left = float(np.sqrt(np.mean(np.concatenate(squares))))
+    if left > IN_GAP * max(float(np.abs(r.force).max()) for r in recordings):
+        raise TirelabError(
+            f"the law {fit.name} has no force below {1e3 * x0:.3g} mm, and the recordings have {left:.3g} N there "
+            f"(root mean square); choose one of {', '.join(TWO_SIDED)} for a part that pulls too"
+        )
 
 
 def _described(tire: TireModel, recordings: Sequence[Recording], name: str) -> TireModel:

@@ -14,6 +14,9 @@ FloatArray = NDArray[np.float64]
 MOST_RADII = 3
 """With more surface radii than these, only their number and range are shown."""
 
+IN_METRES = 10.0
+"""Radii from this one on [m] are shown in metres, those of bumps in centimetres."""
+
 
 def facts(
     time: FloatArray, deflection: FloatArray, surface_radius: FloatArray, force: FloatArray
@@ -48,7 +51,11 @@ def surface_text(surface_radius: FloatArray) -> str:
     radii = np.unique(surface_radius)
     if len(radii) > MOST_RADII:
         return f"{len(radii)} surface radii"
-    return ", ".join("flat" if np.isinf(r) else f"radius {100.0 * r:.4g} cm" for r in radii)
+    return ", ".join("flat" if np.isinf(r) else f"radius {_length(r)}" for r in radii)
+
+
+def _length(radius: float) -> str:
+    return f"{100.0 * radius:.4g} cm" if abs(radius) < IN_METRES else f"{radius:.4g} m"
 
 
 def _range(low: float, high: float) -> str:

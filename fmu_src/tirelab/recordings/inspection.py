@@ -29,6 +29,9 @@ step of its multiples: of readings on no grid a fifth do."""
 SHOWN_IN = {"deflection": ("mm", 1e3), "radius": ("cm", 1e2), "pressure": ("kPa", 1e-3)}
 """Units in which channels are shown, where they are not SI."""
 
+GIVEN = "given"
+"""What stands for the column of a channel that the user gave as one value."""
+
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
@@ -179,7 +182,7 @@ def _channels(found: Understood) -> list[ChannelFound]:
         step = None if name in ("time", "radius") or not len(finite) else step_of(finite)
         header, made = (
             found.plan.headers.get(name),
-            "made up" if name == "time" and not found.recording.timed else "given",
+            "made up" if name == "time" and not found.recording.timed else GIVEN,
         )
         match = found.plan.matches.get(name)
         rows.append(

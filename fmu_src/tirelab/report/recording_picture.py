@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ..recordings.samples import find_gaps
 
 if TYPE_CHECKING:
     from ..recordings.recording import Recording
@@ -34,22 +37,28 @@ def terminal_picture(recording: Recording, width: int = WIDTH, height: int = HEI
     return text
 
 
+def broken(values: NDArray[np.float64], time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return values with a NaN in each gap of their times [s], at which a line that is drawn through them breaks."""
+    return np.insert(values, find_gaps(np.diff(time)) + 1, np.nan) if len(time) > 1 else values
+
+
 def draw_recordings(recordings: list[Recording], path: Path) -> None:
-    """Draw force over deflection and both over time, one row for each recording, into the PNG at `path`."""
+    """Draw force over deflection and both over time, one row for each recording, into the PNG at `path`.
+
+    A gap in time breaks the lines: nothing is drawn where nothing was recorded.
+    """
     figure = Figure(figsize=(10, 2.8 * len(recordings) + 0.6), layout="constrained")
     rows = figure.subplots(len(recordings), 2, squeeze=False)
     for (loop, course), recording in zip(rows, recordings, strict=True):
         step = max(1, len(recording) // (10 * DRAWN))
-        mm, force, time = (
-            1e3 * recording.deflection[::step],
-            recording.force[::step],
-            recording.time[::step],
-        )
+        channels = (1e3 * recording.deflection, recording.force, recording.time)
+        mm, force, time = (broken(values[::step], recording.time[::step]) for values in channels)
         loop.plot(mm, force, lw=0.8, color="tab:blue", rasterized=True)
         loop.set(xlabel="deflection [mm]", ylabel="force [N]", title=recording.name)
         at = time if recording.timed else np.arange(len(time)) * step + 1
         course.plot(at, force, lw=0.8, color="tab:blue", rasterized=True)
-        course.set(xlabel="time [s]" if recording.timed else "sample", ylabel="force [N]")
+        course.set(xlabel="time [s]" if recording.timed else "sample")
+        course.set_ylabel("force [N]", color="tab:blue")
         beside = course.twinx()
         beside.plot(at, mm, lw=0.8, color="tab:orange", rasterized=True)
         beside.set_ylabel("deflection [mm]", color="tab:orange")

@@ -4,8 +4,10 @@ Run: python -m tirelab.validation.plans --seed SEED --trials N
 
 The independent rig hides something in a tire. On its surfaces and within its depth a plan is made from the baseline
 tire and the noise alone; the rig drives it, and it drives slow triangles of the same number, lengths and surfaces. Both
-sets are diagnosed. A verdict is right where it is the hidden set, wrong where it is another one, and undecided where
-its confidence is below a half.
+sets are diagnosed. A verdict is right where it is the hidden set or one that the independent rig cannot tell from it
+with all motions of both sets together (`concealed.derived_right`), wrong where it is another one, and undecided where
+its confidence is below a half. What no motion of both sets shows at all, such as a stop beyond the stroke, is no
+question that a plan can answer: another trial is drawn.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ import math
 import tempfile
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,13 +25,14 @@ import click
 import concealed
 import numpy as np
 from concealed.__main__ import trial_seed
+from concealed.motion import Motion
 from radialtire import TireModel
 
 from ..computing.workers import Cores, work
 from ..diagnosis.diagnose import diagnose
 from ..names import UNKNOWN
 from ..planning.menu import Drive
-from ..planning.plan import plan_recordings
+from ..planning.plan import RecordingPlan, plan_recordings
 from ..planning.rig import Rig
 from ..planning.waveforms import slow_triangles
 from ..recordings.recording import Recording
@@ -39,6 +42,9 @@ from .folders import read_json
 SPEED, SAMPLING, TIME = 0.2, 0.005, 120.0
 """Fastest motion [m/s], sampling step [s] and time [s] of the rig: a servo-hydraulic one for two minutes."""
 
+DRAWS, APART = 8, 100_000
+"""Draws of one trial at most, until what is hidden shows within the limits of the rig, and how far apart in number."""
+
 MOST_SURFACES = 2
 """Surfaces of a trial that are mounted."""
 
@@ -47,23 +53,63 @@ DECIDED = 0.5
 
 Outcome = Literal["right", "wrong", "undecided"]
 
+Names = frozenset[str]
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A trial with the baseline tire, the plan for it, as much time of slow triangles, and the sets that are right."""
+
+    trial: concealed.Trial
+    tire: TireModel
+    plan: RecordingPlan
+    slow: tuple[Drive, ...]
+    right: tuple[Names, ...]
+    draw: int
+
 
 def compare_plan(seed: int, number: int, kind: str | None) -> dict[str, Any]:
-    """Return what was hidden in one trial, and verdict, confidence and outcome after each set of recordings."""
-    trial = concealed.draw(trial_seed(seed, number), kind=kind)
-    truth = frozenset(trial.answer.right[0]) - {"none"}
-    tire = _baseline(trial)
-    rig = rig_of(trial)
-    plan = plan_recordings(tire, rig)
-    slow = [slow_instead(drive, rig) for drive in plan.drives]
-    first, second = (_verdict(trial, drives, tire, truth) for drives in (plan.drives, slow))
+    """Return what was hidden in one trial, and verdict, confidence and outcome after each set of recordings.
+
+    Raises RuntimeError where no draw of the trial shows within the limits of its rig.
+    """
+    asked = _asked(seed, number, kind)
+    first, second = (_verdict(asked, drives) for drives in (asked.plan.drives, asked.slow))
     return {
-        "truth": sorted(truth),
+        "truth": sorted(asked.right[0]),
+        "right": [sorted(names) for names in asked.right],
+        "draw": asked.draw,
         "planned": first,
         "triangles": second,
-        "seconds": plan.seconds,
-        "motions": [drive.name for drive in plan.drives],
+        "seconds": asked.plan.seconds,
+        "motions": [drive.name for drive in asked.plan.drives],
     }
+
+
+def _asked(seed: int, number: int, kind: str | None) -> Compared:
+    for draw in range(DRAWS):
+        trial = concealed.draw(trial_seed(seed, number + draw * APART), kind=kind)
+        tire, rig = _baseline(trial), rig_of(trial)
+        plan = plan_recordings(tire, rig)
+        slow = tuple(slow_instead(drive, rig) for drive in plan.drives)
+        right = right_sets(trial, (*plan.drives, *slow))
+        hidden = trial.answer.kind != "none"
+        if not (hidden and frozenset() in right):
+            return Compared(trial, tire, plan, slow, right, draw)
+    raise RuntimeError(f"trial {number}: nothing of {DRAWS} draws shows within the limits of its rig")
+
+
+def right_sets(trial: concealed.Trial, drives: Sequence[Drive]) -> tuple[Names, ...]:
+    """Return the sets of names that the rig of a trial cannot tell from the hidden one by these drives, that one first;
+    the empty set stands among them where the drives do not show it at all.
+    """
+    driven = replace(trial, motions=tuple(_motion(drive) for drive in drives))
+    return tuple(frozenset(names) - {"none"} for names in concealed.derived_right(driven))
+
+
+def _motion(drive: Drive) -> Motion:
+    """Return a drive as the rig of a trial makes it, which takes steps no finer than these."""
+    return Motion(drive.name, drive.time, drive.deflection, drive.surface_radius)
 
 
 def _baseline(trial: concealed.Trial) -> TireModel:
@@ -88,18 +134,16 @@ def slow_instead(drive: Drive, rig: Rig) -> Drive:
     return replace(drive, name="slow triangles", deflection=np.resize(path, drive.time.size))
 
 
-def _verdict(
-    trial: concealed.Trial, drives: Sequence[Drive], tire: TireModel, truth: frozenset[str]
-) -> tuple[list[str], float, Outcome]:
-    recordings = []
+def _verdict(asked: Compared, drives: Sequence[Drive]) -> tuple[list[str], float, Outcome]:
+    trial, recordings = asked.trial, []
     for number, drive in enumerate(drives):
         record = concealed.rerun(
             trial, drive.time, drive.deflection, drive.surface_radius, seed=number + 1, name=f"test_{number}"
         )
         recordings.append(Recording(record.name, record.time, record.deflection, record.radius, record.force))
-    verdict = diagnose(recordings, tire)
+    verdict = diagnose(recordings, asked.tire)
     names = {effect.name for effect in verdict.effects} | ({UNKNOWN} if verdict.unexplained_by else set())
-    outcome: Outcome = "right" if names == truth else "wrong"
+    outcome: Outcome = "right" if names in asked.right else "wrong"
     if verdict.confidence < DECIDED:
         outcome = "undecided"
     return sorted(names), verdict.confidence, outcome

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from radialtire import read_tire
+from radialtire import PowerLaw, Recalibrated, TireModel, read_tire
 from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise, tire_of
@@ -132,6 +132,62 @@ def test_a_force_that_falls_as_the_deflection_grows_is_no_spring() -> None:
     (linear,) = [fit for fit in fit_laws([turned]) if fit.name == "linear"]
     with pytest.raises(TirelabError, match=r"k = -40, a force that falls .* check the signs"):
         tire_of(linear, [turned], "")
+
+
+def slack(tmp_path: Path) -> list[str]:
+    """Write a spring that is loose below 4 mm and pulled out of contact, with 10 % friction, and return the words."""
+    time = np.arange(1200) / 50.0
+    x = 0.002 + 0.01 * np.sin(2.0 * np.pi * time / 12.0)
+    spring = 90e3 * np.maximum(x - 0.004, 0.0)
+    force = spring * (1.0 + 0.1 * np.sign(np.cos(2.0 * np.pi * time / 12.0)))
+    force += np.random.default_rng(8).standard_normal(1200)
+    rows = np.column_stack([time, 1e3 * x, force])
+    header = "time [s],deflection [mm],force [N]"
+    np.savetxt(tmp_path / "slack.csv", rows, delimiter=",", header=header, comments="", fmt="%.6f")
+    return [str(tmp_path / "slack.csv")]
+
+
+def test_a_spring_with_a_gap_cannot_pull_and_is_read_as_a_part(tmp_path: Path) -> None:
+    """The gap is a loss of contact, so its tire is one-sided; no ground is asked for all the same."""
+    words = slack(tmp_path)
+    out = tmp_path / "part.json"
+    done = CliRunner().invoke(main, ["identify", *words, "--part", "linear_gap", "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    tire = read_tire(out)
+    assert not tire.two_sided
+    assert tire.is_part
+    deep, pulled = np.array([0.0141, 0.002, -0.02]), np.arange(3) / 10.0
+    alone = Recording("alone", pulled, deep, np.full(3, np.inf), np.zeros(3))
+    np.testing.assert_allclose(simulate(tire, alone), [90.0 * 10.1, 0.0, 0.0], rtol=0.02)
+    compared = CliRunner().invoke(main, ["compare", *words, "--tire", str(out), "--out", str(tmp_path)])
+    assert compared.exit_code == 0, compared.output
+    # as printed, but for the surface, which a part has not
+    run = ["diagnose", *words, "--tire", str(out), "--out", str(tmp_path / "d"), "--quiet"]
+    diagnosed = CliRunner().invoke(main, run)
+    assert diagnosed.exit_code == 0, diagnosed.output
+    assert "friction" in diagnosed.output or "hysteresis" in diagnosed.output
+    assert read_tire(tmp_path / "d" / "tire.json").is_part
+
+
+def test_a_tire_is_no_part() -> None:
+    assert not TireModel().is_part
+    assert not TireModel(PowerLaw()).is_part
+    assert not TireModel(inflated=False).is_part  # an airless tire still stands on a ground
+    assert TireModel(PowerLaw(), two_sided=True).is_part
+    assert TireModel(Recalibrated(PowerLaw()), inflated=False).is_part
+
+
+def test_a_part_that_pulls_inside_the_gap_is_not_written_with_one() -> None:
+    bushing = recording(BOTH, 90e3 * np.sign(BOTH) * np.maximum(np.abs(BOTH) - 0.003, 0.0))
+    fits = {fit.name: fit for fit in fit_laws([bushing])}
+    for law in ("linear_gap", "power_gap"):
+        with pytest.raises(TirelabError, match=f"the law {law} has no force below .* choose one of linear"):
+            tire_of(fits[law], [bushing], "")
+    # pulled through the gap without a force: the gap's law is the right one, whichever its sign
+    loose = recording(BOTH, 90e3 * np.maximum(BOTH - 0.003, 0.0))
+    fits = {fit.name: fit for fit in fit_laws([loose])}
+    assert next(iter(fits)) == "linear_gap"
+    assert tire_of(fits["linear_gap"], [loose], "").effects[0][1] == pytest.approx((-0.003,), abs=5e-5)
 
 
 def test_a_damper_without_a_spring_has_its_preload_alone() -> None:

@@ -9,6 +9,7 @@ from click.testing import CliRunner
 from house_form import loading, write_rows
 from tirelab.cli import main
 from tirelab.recordings.choices import Choices
+from tirelab.recordings.description import surface_text
 from tirelab.recordings.inspection import Inspection, inspect_recording
 from tirelab.recordings.recording import RecordingError, read_recording
 from tirelab.recordings.settings_file import settings_text
@@ -51,6 +52,11 @@ def test_a_radius_that_was_given_goes_over_the_column_in_the_file_of_settings_to
     assert np.all(np.isinf(found.recording.surface_radius))
     assert np.all(np.isinf(again.surface_radius))
     assert inspect_recording(path, Choices()).settings == found.settings
+
+
+def test_a_radius_that_is_as_good_as_flat_is_shown_in_metres() -> None:
+    assert surface_text(np.array([127.0])) == "radius 127 m"
+    assert surface_text(np.array([-0.127, np.inf])) == "radius -12.7 cm, flat"
 
 
 def test_the_facts_are_those_of_the_file(press: Path) -> None:
@@ -151,4 +157,6 @@ class TestCommand:
         done = CliRunner().invoke(main, ["inspect", str(bad)])
         assert done.exit_code == 2
         assert "ASSUMED, and not written: --units time=s,deflection=cm,force=N --radius flat" in done.stdout
+        assert "surface radius flat as assumed" in done.stdout
+        assert "given" not in done.stdout
         assert not (tmp_path / "recording.toml").exists()

@@ -158,6 +158,16 @@ class TestNothingIsLostWithoutAWord:
         assert_the_motion(recording, m)
         assert "rows below the table left out: row 402 ('Mean')" in recording.notes
 
+    @pytest.mark.parametrize("cell", ["39.9x", "3q.9", "~400"])
+    def test_a_damaged_last_row_is_no_row_of_statistics(self, tmp_path: Path, cell: str) -> None:
+        m = pressed()
+        path = tmp_path / "a.csv"
+        rows = table((np.arange(1.0, 401.0), mm(m), m.force)).splitlines()
+        rows[-1] = cell + rows[-1][rows[-1].index(",") :]
+        path.write_text("\n".join(["Sample,Displacement (mm),Force (N)", *rows]))
+        with pytest.raises(RecordingError, match=r"row 401, column 'Sample'"):
+            read_recording(path, radius="flat", sampling="10Hz")
+
     def test_tests_one_below_the_other_are_named(self, tmp_path: Path) -> None:
         m = pressed()
         path = tmp_path / "a.csv"

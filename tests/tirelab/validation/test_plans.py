@@ -6,7 +6,7 @@ import pytest
 from concealed.__main__ import trial_seed
 from tirelab.planning.menu import drive_of
 from tirelab.planning.rig import Rig
-from tirelab.validation.plans import TIME, rig_of, slow_instead, summary
+from tirelab.validation.plans import TIME, rig_of, right_sets, slow_instead, summary
 
 
 def test_slow_triangles_take_the_same_time_on_the_same_surface() -> None:
@@ -27,6 +27,21 @@ def test_the_rig_is_that_of_the_trial() -> None:
     assert set(rig.surfaces) <= set(radii.tolist())
     assert rig.stroke <= max(float(r.deflection.max()) for r in trial.train)
     assert (rig.noise, rig.time) == (trial.noise, TIME)
+
+
+def test_a_stop_beyond_the_stroke_counts_as_nothing_hidden() -> None:
+    """Slow triangles from half of the depth at which the stop begins, and from the whole depth."""
+    trial = concealed.draw(trial_seed(40112358, 7), kind="single")
+    assert trial.answer.right[0] == ("bottoming",)
+    radius = float(trial.train[0].radius[0])
+    (begin, *_) = (where["from"] for where in trial.answer.where if where["effect"] == "bottoming")
+    assert isinstance(begin, float)
+    depth = max(float(r.deflection.max()) for r in trial.train)
+    for stroke, hidden in ((0.5 * begin, False), (depth, True)):
+        rig = Rig(stroke=stroke, surfaces=(radius,), time=60.0, noise=trial.noise)
+        sets = right_sets(trial, [drive_of("slow triangles", 0.125, radius, rig)])
+        assert sets[0] == {"bottoming"}
+        assert (frozenset() not in sets) is hidden
 
 
 def test_the_summary_counts() -> None:

@@ -134,9 +134,7 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
             if quotes % 2:
                 return False
             frame = _parsed(block, layout, wanted)
-            if frame is not None and (
-                not quotes or frame.height == block.count(b"\n") + (block[-1:] != b"\n")
-            ):
+            if frame is not None and frame.height == block.count(b"\n") + (block[-1:] != b"\n"):
                 pieces.add_frame(frame, reader, line)
                 line += frame.height
                 comma = layout.style.decimal_comma
@@ -168,7 +166,8 @@ def _parsed(block: bytes, layout: Layout, wanted: Sequence[int]) -> pl.DataFrame
     kinds = {i: pl.String if i in clocks else numbers for i in range(len(layout.headers))}
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("error")
+            # polars prints what is raised in its threads; rows that it lost are counted by who called
+            warnings.simplefilter("ignore")
             frame = pl.read_csv(
                 block if layout.encoding not in EAST_ASIAN else block.decode(layout.encoding).encode(),
                 has_header=False,
@@ -184,7 +183,7 @@ def _parsed(block: bytes, layout: Layout, wanted: Sequence[int]) -> pl.DataFrame
                     for i in wanted
                     if i not in clocks
                 )
-    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, UserWarning):
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException):
         return None
     return None if any(frame[_named(i)].null_count() for i in wanted) else frame
 

@@ -2,7 +2,8 @@
 
 Machines name the steps of a test between its rows, begin each block of an acquisition with the header again, and put
 statistics below. Such rows are left out, and it is said which. A row is left out only where no number is lost by it: a
-row with numbers in it has to stand above a repeated header or below the table. Anything else is refused as it was.
+row with numbers in it has to stand above a repeated header or below the table, and its label must not be a number that
+was damaged. Anything else is refused as it was.
 """
 
 from __future__ import annotations
@@ -28,6 +29,11 @@ class _Aside:
 
     def __str__(self) -> str:
         return f"{self.line} ({quoted(self.text)})"
+
+
+def _mostly_digits(cell: str) -> bool:
+    """Whether a cell is rather a damaged number, 39.9x, than the label of a row of statistics, Mean or Peak 1."""
+    return 2 * sum(character.isdigit() for character in cell) >= len(cell)
 
 
 class TextRows:
@@ -68,7 +74,10 @@ class TextRows:
             raise fault
         if len(self._aside) >= MOST_ASIDE:
             raise self._aside[0].fault
-        numbers = any(is_value(cell, self.separator) for cell in filled)
+        values = [is_value(cell, self.separator) for cell in filled]
+        if len(filled) == len(self.headers) > 1 and all(values[1:]) and _mostly_digits(filled[0]):
+            raise fault
+        numbers = any(values)
         if len(filled) > 1 and not numbers and len(row) == len(self.headers):
             self._another = self._another or line
         alone = sum(map(bool, map(str.strip, row))) == 1

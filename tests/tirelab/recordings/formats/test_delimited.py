@@ -1,8 +1,11 @@
 """The recording comes the same from text of any separator, decimal mark and encoding, and what is none is refused."""
 
+import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 from one_recording import COLUMNS, HEADERS, assert_the_recording, refusal
 from tirelab.recordings.recording import read_recording
@@ -122,3 +125,23 @@ class TestText:
         recording = read_recording(path, radius="flat")
         assert recording.force[-1] == 3.25
         assert "commas read as decimal commas" in recording.notes
+
+
+def test_rows_that_the_parser_loses_are_read_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recwarn: pytest.WarningsRecorder
+) -> None:
+    """A parser that joins rows warns and goes on: no row is lost, and its own words are not shown."""
+    path = tmp_path / "a.csv"
+    path.write_text(text_table(","), encoding="utf-8")
+    parse, lost = pl.read_csv, []
+
+    def losing(*given: Any, **more: Any) -> pl.DataFrame:
+        warnings.warn("CSV malformed", UserWarning, stacklevel=1)
+        frame = parse(*given, **more)
+        lost.append(frame.height - 2)
+        return frame.head(2)
+
+    monkeypatch.setattr(pl, "read_csv", losing)
+    assert_the_recording(read_recording(path, radius="flat"))
+    assert sum(lost) > 0
+    assert not [w for w in recwarn if "malformed" in str(w.message)]
