@@ -260,13 +260,14 @@ def guessed_units(columns: Mapping[str, FloatArray], part: bool = False) -> dict
         else 0.0
     )
     if stroke > 0.0:
+        stroke = min(max(stroke, 1e-12), 1e12)  # a damaged number is no length, and its powers are no numbers
         sized = [(abs(float(np.log(stroke * f / 0.02))), name) for name, f in LENGTHS if name != "in"]
         guesses["deflection"] = min(sized)[1]
     if "force" in columns and part:
         guesses["force"] = "N"
     elif "force" in columns and stroke > 0.0:
         usual = USUAL[0] * (100.0 * stroke * dict(LENGTHS)[guesses["deflection"]]) ** USUAL[1]
-        load = max(float(np.nanmax(np.abs(columns["force"]))), 1e-300)
+        load = min(max(float(np.nanmax(np.abs(columns["force"]))), 1e-300), 1e300)
         guesses["force"] = min(
             (abs(float(np.log(load * f / usual))), u) for u, f in (("N", 1.0), ("kN", 1e3))
         )[1]

@@ -1,12 +1,14 @@
 """What has not the size of a tire is doubted, with the unit that would fit; what has it never is."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tirelab.recordings.inspection import step_of
 from tirelab.recordings.plausibility import force_begins
-from tirelab.recordings.recording import Recording
+from tirelab.recordings.recording import Recording, RecordingError, read_recording
 
 X = 0.022 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
 T = np.arange(401) / 10.0
@@ -72,3 +74,13 @@ def test_the_step_of_a_gauge(step: float) -> None:
     wave = 40.0 * step * np.sin(np.linspace(0.0, 20.0, 3000))
     assert step_of(np.round(wave / step) * step) == pytest.approx(step)
     assert step_of(wave + 1e-3 * np.random.default_rng(0).standard_normal(3000)) is None
+
+
+@pytest.mark.parametrize("value", ["1e-320", "1e308", "-1e308"])
+def test_a_damaged_number_ends_in_a_question_and_no_traceback(tmp_path: Path, value: str) -> None:
+    path = tmp_path / "a.csv"
+    rows = [f"{i / 10},{0.0 if value == '1e-320' else i},{i * i}" for i in range(40)]
+    rows[7] = f"0.7,{value},49"
+    path.write_text("\n".join(["time,deflection,force", *rows]), encoding="utf-8")
+    with pytest.raises(RecordingError):
+        read_recording(path, radius="flat")
