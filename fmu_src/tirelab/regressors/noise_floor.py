@@ -85,7 +85,8 @@ def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noi
     while 2 ** len(levels) <= smooth and residual.size >= FEWEST_SPANS * 3 * 2 ** len(levels):
         levels.append(white_level(residual, 2 ** len(levels)))
     rises = [after >= STAYS * before for before, after in itertools.pairwise(levels)]
-    last = max((i for i, rose in enumerate(rises) if not rose), default=0)
+    # One doubling without a rise may be chance between two rises: a level holds over a factor of four.
+    last = max((i + 1 for i, pair in enumerate(itertools.pairwise(rises)) if not any(pair)), default=0)
     risen = [i for i in range(last) if rises[i]]
     if not risen or _comes_again(residual, deflection, 2 ** (risen[-1] + 1)):
         return Noise(levels[0], 1)
