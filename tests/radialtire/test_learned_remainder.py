@@ -31,6 +31,13 @@ def test_it_is_its_curve_inside_and_fades_to_nothing_outside() -> None:
     assert [learned.over(x) for x in (-1.0, 0.01 - 1.01 * width, 0.04 + 1.01 * width, 1.0)] == [0.0] * 4
 
 
+def test_it_is_called_what_it_is_with_the_range_in_which_it_was_learned() -> None:
+    learned = LearnedRemainder("deflection", AT, FORCE)
+    said = str(learned)
+    assert "no physics" in said
+    assert f"from {learned.at[0]:.4g} to {learned.at[-1]:.4g}" in said
+
+
 def test_it_is_added_to_the_force_of_law_and_effects() -> None:
     damping = CATALOGUE["viscous_damping"]
     xs = [0.008, 0.012, 0.02, 0.03, 0.05]

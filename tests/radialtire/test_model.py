@@ -21,6 +21,7 @@ from radialtire import (
     Hull1996,
     InputError,
     ParameterError,
+    PowerLaw,
     TireModel,
     check_inputs,
     power_law,
@@ -248,3 +249,10 @@ def test_a_channel_outside_its_bounds_is_refused_with_them() -> None:
     check_measured(pressure, pressure.maximum)
     with pytest.raises(InputError, match=r"inflation_pressure = .* is not allowed; it must lie between"):
         check_measured(pressure, 2.0 * pressure.maximum)
+
+
+def test_a_part_is_held_at_both_ends_or_has_neither_air_nor_a_ground() -> None:
+    assert TireModel(PowerLaw(), two_sided=True).is_part
+    assert TireModel(PowerLaw(), inflated=False).is_part
+    assert not TireModel(PowerLaw()).is_part
+    assert not TireModel(inflated=False).is_part
