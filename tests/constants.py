@@ -69,6 +69,7 @@ DERIVED = (
     "regressors/noise_floor.SHARE_OF_STEP",
     "regressors/noise_floor.STAYS",
     "regressors/dataset.MEMORY_SPANS",
+    "regressors/turns.SAME",
     "estimation/uncertainty.SHAPE_INDICES",
     "diagnosis/acceptance.LIKELY",
     "preprocessing/smoothing.PADDING",

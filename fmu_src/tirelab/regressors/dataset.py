@@ -1,8 +1,9 @@
 """Recordings brought to the form in which every set of effects is compared with them.
 
 A recording is averaged over blocks of neighbouring samples, as long as the motion allows. What is averaged is the
-misfit of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. Blocks
-whose motion turns within a sample do not count. All comparisons are made in units of the noise of the averaged misfit.
+misfit of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. A block
+whose motion turns within a sample counts only where the misfit is the same before and after the turn (`turns`). All
+comparisons are made in units of the noise of the averaged misfit.
 """
 
 from __future__ import annotations
@@ -15,14 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
+from scipy.stats import binom
 
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import motion_of
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
-from .noise_floor import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, white_level
+from .noise_floor import AGAIN, SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, white_level
 from .scales import Scales
+from .turns import followed_turns, through_turns
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -190,7 +193,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
     force_step = staircase_step(recording.force)
-    resolved = motion.resolved & ~_spikes(misfit)
+    lone = _spikes(misfit)
+    resolved = motion.resolved & ~lone
     followed = ~beyond_travel(recording.deflection, recording.force)
     interval = float(np.median(np.diff(recording.time)))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
@@ -199,6 +203,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     phase = interval * max(quick / max(slow, 1e-300), np.pi * slow / max(float(np.ptp(read)), 1e-300))
     smooth = MEMORY_SPANS / max(phase, 1e-300)
     reading = reading or noise_of(misfit, smooth, read)
+    turns = followed_turns(misfit, motion.resolved, reading.level)
+    turns &= ~(lone & _rare(lone[turns]))
     floor = noise_floor(reading.level, stiffness, gauge, step, force_step)
     loudness = float(np.std(misfit)) / max(reading.level, 1e-300)
     blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
@@ -209,7 +215,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     remembered = min(reading.memory, TURN * slow / max(quick * interval, 1e-300))
     size = int(max(1, least, remembered, min(size, longest, recording.time.size // FEWEST_ROWS)))
     whole = recording.time.size // size * size
-    good = resolved[:whole].reshape(-1, size)
+    good = (resolved | turns if size == 1 else resolved)[:whole].reshape(-1, size)
     counts: BoolArray = np.asarray(good.all(axis=1))
     if size > 1:
         # Blocks cut a turn short: what depends on the turning point errs in the next one.
@@ -219,6 +225,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     counts &= followed[:whole].reshape(-1, size).all(axis=1)
     averaged = misfit[:whole].reshape(-1, size).mean(axis=1)
     before, after = np.arange((size - 1) // 2, whole, size), np.arange(size // 2, whole, size)
+
+    rate, acceleration = through_turns(recording.time, motion.rate, motion.acceleration, turns)
 
     def middle(values: FloatArray) -> FloatArray:
         # That of an even block lies between two samples: either of them would be a lag of half a sample.
@@ -231,8 +239,8 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
         middle(recording.time),
         middle(motion.deflection),
         recording.surface_radius[after],
-        middle(motion.rate),
-        middle(motion.acceleration),
+        middle(rate),
+        middle(acceleration),
         measured,
     )
     # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
@@ -281,6 +289,11 @@ def _spikes(misfit: FloatArray) -> BoolArray:
     lone[1:-1] = (np.abs(before) > LONE * level) & (np.abs(after) > LONE * level) & (before * after > 0.0)
     # What is frequent is noise that not all of the recording has: of a gauge's steps while the tire moves.
     return lone if lone.mean() < RARE else np.zeros_like(lone)
+
+
+def _rare(lone: BoolArray) -> bool:
+    """Whether so many single samples stand out by chance where the part RARE does."""
+    return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > AGAIN)
 
 
 def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:

@@ -17,7 +17,7 @@ from tirelab.fmu.loader import Compiler
 from tirelab.fmu.native.pack import build_native_fmu
 
 HOST = Path(__file__).parents[1] / "drive.c"
-MOMENTS, FEW = 10_000, 2000
+MOMENTS, FEW, FEWEST = 10_000, 2000, 500
 RANDOM_SETS = 20
 
 Run = Callable[[TireModel, list[tuple[float, float, float]], Path], list[float]]
@@ -57,11 +57,23 @@ def differing(
     return found
 
 
+def host_in_c(compiler: Compiler, folder: Path) -> Run:
+    """A host without Python, compiled for this machine."""
+    host = folder / "drive"
+    subprocess.run([*compiler.command, "-std=c11", "-O2", "-o", host, HOST, "-ldl"], check=True)
+    return runner([str(host)], "binaries/linux64/BicycleTire.so")
+
+
 def test_the_same_bits_in_a_host_in_c(compiler: Compiler, tmp_path: Path) -> None:
     """Every law and effect, plain and with options, and random sets; state saved and restored in mid-run."""
-    host = tmp_path / "drive"
-    subprocess.run([*compiler.command, "-std=c11", "-O2", "-o", host, HOST, "-ldl"], check=True)
-    run = runner([str(host)], "binaries/linux64/BicycleTire.so")
+    run = host_in_c(compiler, tmp_path)
+    assert differing(run, tmp_path, FEWEST, [*tires(RANDOM_SETS), *options()]) == {}
+
+
+@pytest.mark.slow
+def test_the_same_bits_at_ten_thousand_moments(compiler: Compiler, tmp_path: Path) -> None:
+    """As above, long enough for wear, warmth and leaks to go their whole way."""
+    run = host_in_c(compiler, tmp_path)
     assert differing(run, tmp_path, MOMENTS, tires(RANDOM_SETS)) == {}
     assert differing(run, tmp_path, FEW, options()) == {}
 
