@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import TirelabError
 from .dataset import Dataset, Recorded
+from .kinematics import FloatArray
 
 FEWEST_SAMPLES = 100
 """Fewer samples cannot tell fifteen effects and the noise apart."""
@@ -67,9 +68,19 @@ def check_signal(
             continue
         # The force of a part that is held at both ends may follow the rate alone, as a damper's does.
         elastic = record.force if record.two_sided else record.elastic(motion.deflection)
-        related = float(np.corrcoef(record.force, elastic)[0, 1])
+        related = _related(record.force, elastic, np.abs(np.gradient(motion.deflection)))
         if not np.isfinite(related) or abs(related) < 0.2 or level > 0.9 * float(np.std(record.force)):
             raise PoorRecording(
                 f"the force of recording {name} does not follow its deflection (correlation {related:.2f}); "
                 "check channels and units"
             )
+
+
+def _related(force: FloatArray, elastic: FloatArray, path: FloatArray) -> float:
+    """Return the correlation of two forces [N] along the way, by the `path` [m] of each sample: in a hold the tire goes
+    none, and its force relaxes whatever the deflection is.
+    """
+    weights = path / max(float(path.sum()), 1e-300)
+    a, b = force - weights @ force, elastic - weights @ elastic
+    power = float(weights @ a**2) * float(weights @ b**2)
+    return float(weights @ (a * b)) / float(np.sqrt(power)) if power > 0.0 else float("nan")

@@ -96,3 +96,13 @@ def test_a_force_that_is_noise_for_the_most_part_is_refused() -> None:
         PoorRecording, match=r"the force of recording bad\.csv does not follow its deflection"
     ):
         checked(float(np.std(FORCE)))
+
+
+def test_a_force_that_relaxes_in_a_hold_is_not_refused() -> None:
+    """A ramp of 1 s and 200 s of rest: over all samples the force falls while the sensor creeps on."""
+    time = np.linspace(0.0, 201.0, 4000)
+    deflection = np.where(time < 1.0, 0.03 * time, 0.03 + 1e-6 * (time - 1.0))
+    force = 4e4 * deflection * np.where(time < 1.0, 1.0, 0.3 + 0.7 * np.exp(-(time - 1.0) / 20.0))
+    assert np.corrcoef(force, deflection)[0, 1] < 0.2
+    held = Recording("held.csv", time, deflection, np.full(4000, np.inf), force)
+    check_signal(dataset_of([held], TireModel()), [held.name], [0.0])
