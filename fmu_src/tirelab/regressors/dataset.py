@@ -215,7 +215,10 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     remembered = min(reading.memory, TURN * slow / max(quick * interval, 1e-300))
     size = int(max(1, least, remembered, min(size, longest, recording.time.size // FEWEST_ROWS)))
     whole = recording.time.size // size * size
-    good = (resolved | turns if size == 1 else resolved)[:whole].reshape(-1, size)
+    if size > 1:
+        # A block that holds a turn has no motion of its own.
+        turns = np.zeros_like(turns)
+    good = (resolved | turns)[:whole].reshape(-1, size)
     counts: BoolArray = np.asarray(good.all(axis=1))
     if size > 1:
         # Blocks cut a turn short: what depends on the turning point errs in the next one.
