@@ -76,6 +76,9 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
     names = [effect["name"] for effect in _by_size(verdict["effects"])]
     physics = [words.sentence(CATALOGUE[name].statement) for name in names if name in CATALOGUE]
     if undecided(verdict):
+        sure = [words.sentence(CATALOGUE[name].statement) for name in _sure(verdict) if name in CATALOGUE]
+        if sure:
+            return f"{sure[0]} What else acts, these recordings cannot tell; the likeliest is shown."
         return "These recordings cannot tell the explanations apart; the likeliest one is shown."
     if physics:
         both = " ".join(physics[:2])
@@ -183,6 +186,13 @@ def _by_size(effects: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     return sorted(effects, key=lambda e: -(e.get("size") or 0.0))
 
 
+def _sure(verdict: Mapping[str, Any]) -> list[str]:
+    """Return the effects that are as good as certain by themselves, whatever acts beside them."""
+    return [
+        e["name"] for e in _by_size(verdict["effects"]) if words.told(e.get("probability") or 0.0) >= SURE
+    ]
+
+
 def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     own = [e["name"] for e in verdict["effects"]] + ([UNKNOWN] if verdict["unexplained"] else [])
     sets = [titles.short_set(own)]
@@ -191,6 +201,9 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     if len(details) == len(alternatives):
         pairs = [{**d, "names": names} for d, names in zip(details, alternatives, strict=True)]
         alternatives = [pair["names"] for pair in words.likeliest(pairs)]
+    if sure := _sure(verdict):
+        yield from _beside(sure, [own, *(names for names in alternatives if set(sure) <= set(names))])
+        return
     for names in alternatives:
         added = [name for name in names if name not in own]
         beside = bool(own) and set(own) < set(names)
@@ -201,6 +214,17 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
         more = f"{others} other{'s' if others > 1 else ''}"
         yield f"Undecided: {titles.listed([*sets[:shown], more], 'or')}"
     yield f"Undecided between {len(sets)} explanations"
+
+
+def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Yield what is sure and what may act beside it, from the fullest line to the shortest."""
+    found = _capital(titles.listed([titles.short_title(name) for name in sure]))
+    also = list(dict.fromkeys(titles.short_title(n) for names in sets for n in names if n not in sure))
+    for shown in range(len(also), 0, -1):
+        others = len(also) - shown
+        more = [f"{others} other{'s' if others > 1 else ''}"] if others else []
+        yield f"{found}; undecided whether also {titles.listed([*also[:shown], *more], 'or')}"
+    yield f"{found}; undecided what else acts"
 
 
 def _left(after: float | None, noise: float) -> str:

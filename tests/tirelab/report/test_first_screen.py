@@ -84,6 +84,25 @@ def test_where_the_recordings_cannot_decide_that_is_the_headline() -> None:
     assert "cannot tell" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful))
 
 
+def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
+    told = diagnosis(
+        {"viscoelastic_relaxation": 20.0, "recalibration": 5.0},
+        0.1,
+        alternatives=[
+            ["viscoelastic_relaxation"],
+            ["viscoelastic_relaxation", "inertia"],
+            ["mullins_softening"],
+        ],
+    )
+    first = told["verdict"]["effects"][0]
+    first["probability"] = 0.97
+    assert first_screen.headline(told) == "Relaxation; undecided whether also refitted law or inertia"
+    assert first_screen.lead(told).startswith("The force relaxes")
+    assert "What else acts" in first_screen.lead(told)
+    first["probability"] = 0.6
+    assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
+
+
 def test_alarm_is_where_something_is_wrong() -> None:
     def alarms(**errors: float | None) -> dict[str, str]:
         shown = first_screen.figures(diagnosis({"inertia": 9.0}, **errors))
