@@ -1,7 +1,8 @@
 """The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT]
 
-REAL holds the folders told in examples/real_recordings.py, and programmed_spring_static
-(github.com/harrislab-brown/CyberDiver, data/validation, CC BY-SA 4.0). More files of the same repositories may lie
+REAL holds the folders told in examples/real_recordings.py, programmed_spring_static
+(github.com/harrislab-brown/CyberDiver, data/validation, CC BY-SA 4.0) and vhb4910, an acrylic elastomer that is pulled
+(github.com/Chongran-Zhao/VHB4910_data, to be cited, no licence told). More files of the same repositories may lie
 beside theirs; a folder that is not there is passed over. Dampers, pistons and springs are read as they are; errors of
 indentations are printed in nanonewtons.
 """
@@ -25,7 +26,7 @@ from indentations import indentation, power_law_fit, read_hysitron, recorded
 from real_recordings import of, piston_recording, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.identification.part_laws import fit_laws, tire_of
-from tirelab.recordings.recording import Recording
+from tirelab.recordings.recording import Recording, read_recording
 from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
@@ -105,6 +106,15 @@ def _rise(x: FloatArray, f: FloatArray) -> float:
     return float(np.polyfit(x[rising], f[rising], 1)[0])
 
 
+def elastomer(path: Path, slow: Path) -> Real:
+    """An elastomer, pulled; the straight line through its slowest loop to the same stretch is believed."""
+    own, slowest = (read_recording(p, radius="flat") for p in (path, slow))
+    line = next(fit for fit in fit_laws([slowest]) if fit.name == "linear")
+    name = f"{'hold' if 'relaxation' in str(path) else 'loop'} {path.stem}"
+    whole = slice(0, None)
+    return Real(name, own, whole, whole, tire_of(line, [slowest], name), 1.0, "relaxation")
+
+
 def brain(folder: Path) -> Real:
     """Approach, hold and half the withdrawal."""
     found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
@@ -178,6 +188,14 @@ def reals(root: Path) -> Iterator[Callable[[], Real]]:
     for path in sorted((root / "programmed_spring_static").glob("*.csv")):
         for i in range(3):
             yield lambda p=path, i=i: springs(p)[i]  # type: ignore[misc]
+    acrylic = root / "vhb4910"
+    loops = acrylic / "uniaxial-loading-unloading" / "original_data"
+    holds = acrylic / "single-step-relaxation" / "original_data"
+    for path in (*sorted(loops.glob("*.csv")), *sorted(holds.glob("*.csv"))):
+        # Files are named 0d03_1d5_1: strain rate, stretch, repetition; holds by their stretch alone.
+        stretch = path.stem if path.parent == holds else path.stem.split("_")[1]
+        if (slow := loops / f"0d01_{stretch}.csv") != path and slow.exists():
+            yield lambda p=path, slow=slow: elastomer(p, slow)  # type: ignore[misc]
     if afm.exists():
         yield lambda: brain(afm)
         yield lambda: gel(afm)
