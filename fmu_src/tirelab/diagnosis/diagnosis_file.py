@@ -13,7 +13,7 @@ from radialtire import TireFileError, TireModel, read_tire
 from radialtire.learned_remainder import COORDINATES, LearnedRemainder
 from radialtire.tirefile import from_text
 
-from ..errors import TirelabError
+from ..errors import TirelabError, what_is_wrong
 from ..fmu.build import Correction
 from ..names import UNKNOWN
 
@@ -82,7 +82,7 @@ def read_stated(folder: Path) -> Stated:
         raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DiagnosisFileError(
-            f"{path}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
+            f"{path}: is no diagnosis ({what_is_wrong(error)}); diagnose again"
         ) from None
 
 
@@ -117,7 +117,7 @@ def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | C
         raise DiagnosisFileError(f"{path}: the corrected tire cannot be read: {error}") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DiagnosisFileError(
-            f"{path}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
+            f"{path}: is no diagnosis ({what_is_wrong(error)}); diagnose again"
         ) from None
 
 

@@ -17,7 +17,7 @@ import polars as pl
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..errors import TirelabError
+from ..errors import TirelabError, what_is_wrong
 from ..names import UNKNOWN
 from ..regressors.law import LAW
 from .menu import FEWEST, Drive
@@ -69,9 +69,7 @@ def read_diagnosed(path: Path) -> Diagnosed:
     except OSError as error:
         raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise TirelabError(
-            f"{file}: is no diagnosis ({type(error).__name__}: {error}); diagnose again"
-        ) from None
+        raise TirelabError(f"{file}: is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
     table = None if data is None else file.parent / str(data)
     return Diagnosed(
         names,

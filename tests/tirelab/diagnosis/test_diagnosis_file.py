@@ -108,9 +108,9 @@ def test_the_file_of_the_next_test_is_found(tmp_path: Path) -> None:
         ({"schema": 3}, "schema 3 is none of 1, 2"),
         ({"verdict_effects": [{"name": "inertia", "probability": 1.5}]}, "probability 1.5 does not lie"),
         ({"verdict_confidence": 1.5}, "confidence 1.5 does not lie between 0 and 1"),
-        ({"verdict_effects": [{}]}, "KeyError: 'name'"),
+        ({"verdict_effects": [{}]}, "it has no entry 'name'"),
         ({"where": [{"by": "time", "from": True, "to": 1.0, "unit": "s", "share": 1.0}]}, "True is no end"),
-        ({"fit": None}, "AttributeError"),
+        ({"fit": None}, "an entry is of another kind"),
     ],
 )
 def test_what_is_no_diagnosis_is_refused_in_a_sentence(
