@@ -102,7 +102,7 @@ BUDGET = (
     "preprocessing/dataset.ROWS",
     "regressors/dataset.ROWS",
     "regressors/dataset.MOST_ROWS",
-    "regressors/noise_floor.FEWEST_SPANS",
+    "regressors/noise_floor.FEWEST_LAGS",
     "regressors/dataset.FEWEST_ROWS",
     "regressors/signature.DRAWS",
     "regressors/signature.COLUMNS",

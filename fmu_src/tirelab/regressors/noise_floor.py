@@ -34,8 +34,8 @@ STAYS = float(np.sqrt(2.0) ** 0.5)
 """Growth of the differences for a doubled lag below which they stay: half the exponent of a random walk, the roughest
 noise that has a memory."""
 
-FEWEST_SPANS = 20
-"""Spans of a difference that a recording holds at least: their scale is then known to a sixth."""
+FEWEST_LAGS = 20
+"""Lags that a recording holds at least: noise that is independent a lag apart has its scale known to a sixth then."""
 
 FEWEST_CELLS = 8
 """Cells, and visits beyond the first of each, from which on visits are compared: two degrees of freedom."""
@@ -82,7 +82,8 @@ def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noi
     smooth: samples over which what is no noise is smooth, so that its differences rise on; deflection [m]: beside them
     """
     levels = [white_level(residual)]
-    while 2 ** len(levels) <= smooth and residual.size >= FEWEST_SPANS * 3 * 2 ** len(levels):
+    # Twice as far a smooth misfit still rises: a level that does not is a noise's.
+    while 2 ** len(levels) <= 2.0 * smooth and residual.size >= FEWEST_LAGS * 2 ** len(levels):
         levels.append(white_level(residual, 2 ** len(levels)))
     rises = [after >= STAYS * before for before, after in itertools.pairwise(levels)]
     # One doubling without a rise may be chance between two rises: a level holds over a factor of four.

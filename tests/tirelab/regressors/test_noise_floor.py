@@ -97,3 +97,13 @@ def test_filtered_noise_does_not_come_again() -> None:
         noise = lfilter(*butter(2, 0.2), np.random.default_rng([7, seed]).normal(0.0, 1.0, MOTION.size))
         taken += noise_of(noise / np.std(noise), SMOOTH, MOTION).level < 0.5
     assert taken <= 5
+
+
+def test_a_memory_is_seen_where_the_motion_is_hardly_slower() -> None:
+    """At lags beyond the motion's own a misfit rises and a noise does not: one of them confirms the level."""
+    noise = lfilter(*butter(2, 0.13), WHITE[:1800])
+    noise /= np.std(noise)
+    cycle = 2.0 * np.pi * np.arange(1800) / 110.0
+    assert noise_of(noise, 110.0 / 6.0, 0.02 * np.sin(cycle)).memory > 1
+    loop = np.sign(np.cos(cycle)) * (1.0 - np.exp(-40.0 * np.abs(np.sin(cycle))))
+    assert noise_of(10.0 * loop + 0.1 * WHITE[:1800], 110.0 / 6.0, 0.02 * np.sin(cycle)).memory == 1
