@@ -22,6 +22,7 @@ import numpy as np
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW
+from ..regressors.excitation import of_deflection
 from .held_out import HeldOut, rmse
 
 Grounds = Mapping[str, float]
@@ -96,7 +97,8 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     """Return what the probability of one named effect rests on, see `grounds_of_verdict`.
 
     odds: log odds of all sets with it against all without; share: ln of its share of the misfit
-    alike: ln(1 + effects that this motion cannot tell from it)
+    alike: ln(1 + effects that this motion cannot tell from it); imitated: whether it depends on the deflection alone
+    and stands beside a refitted law, which may have another form than the catalogue's on several surfaces too
     """
     with_it = [e.log_evidence for e in explanation.evidence if effect.name in e.names]
     without = [e.log_evidence for e in explanation.evidence if effect.name not in e.names]
@@ -111,7 +113,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
         "share": _share(effect),
         **_of_fit(explanation, validation),
         "alike": math.log1p(alike),
-        "imitated": float(_imitated(effect.name, names, explanation)),
+        "imitated": float(not law and REFITTED_LAW in names and of_deflection(effect.name)),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
     }

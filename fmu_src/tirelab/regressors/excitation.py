@@ -80,8 +80,12 @@ class Excitation:
         """Whether a law of another shape could be all that an effect of this name is: it depends on the deflection
         alone, which on one surface is all that a law can be; not on a channel that was read beside it.
         """
-        effect = CATALOGUE[name]
-        return self.surfaces == 1 and "static" in effect.traits and effect.reads is None
+        return self.surfaces == 1 and of_deflection(name)
+
+
+def of_deflection(name: str) -> bool:
+    """Whether an effect depends on deflection and surface alone, as a law does, and on no channel beside them."""
+    return "static" in CATALOGUE[name].traits and CATALOGUE[name].reads is None
 
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
