@@ -10,6 +10,7 @@ A filter before the converter smooths the noise of a force: neighbours err alike
 over growing lags, which rise until the lag is the noise's memory and then stay, where a smooth misfit rises on
 (variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). What comes
 again at the same deflection is no noise, however quick it is: a ripple of the tread (analysis of variance of visits).
+Nor is what comes again on the same way from a turn: the knee of a loop, which a linear model follows in part.
 """
 
 from __future__ import annotations
@@ -96,15 +97,18 @@ def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noi
 
 def _comes_again(residual: FloatArray, deflection: FloatArray, memory: int) -> bool:
     """Return whether what is quicker than a few memories is alike at every visit of the same deflection, whatever the
-    direction or in each of them.
+    direction or in each of them, or as far from the last turn.
     """
     quick = residual - savgol_filter(residual, 6 * memory + 1, 3)
     way = float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
     width = max(0.5 * way, 1e-6 * float(np.ptp(deflection)), 1e-300)
     cell = 2 * ((deflection - deflection.min()) / width).astype(int)
     inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
-    chances = (_chance_of_cells(quick, places, 4 * memory) for places in (cell, cell + inwards))
-    return min(chances) < 0.5 * AGAIN
+    begin = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
+    turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
+    gone = 2 * (np.abs(deflection - deflection[turn]) / width).astype(int)
+    places = cell, cell + inwards, gone + inwards
+    return min(_chance_of_cells(quick, place, 4 * memory) for place in places) < AGAIN / len(places)
 
 
 def _chance_of_cells(values: FloatArray, cell: NDArray[np.int_], apart: int) -> float:

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
 from tirelab.regressors.noise_floor import noise_floor, noise_of, white_level
+
+FloatArray = NDArray[np.float64]
 
 TIME = np.linspace(0.0, 10.0, 4001)
 RAMP = 2e-3 * TIME
@@ -90,12 +93,31 @@ def test_what_comes_again_with_the_other_sign_on_the_way_back_is_no_noise() -> N
     assert found.level < 0.2
 
 
-def test_filtered_noise_does_not_come_again() -> None:
+ROUGH = 4e-3 * sum(
+    np.sin(2.0 * np.pi * np.arange(8000) / p + 0.7 * p) for p in (40.0, 61.0, 97.0, 210.0, 890.0)
+)
+"""A motion that never turns twice at the same deflection."""
+
+
+def test_the_knee_of_a_loop_that_comes_again_after_each_turn_is_no_noise() -> None:
+    """What a model of another knee leaves of it: it rises and falls within 0.1 mm from each turn."""
+    inwards = np.gradient(ROUGH) > 0.0
+    turns = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
+    last = ROUGH[turns[np.searchsorted(turns, np.arange(8000), side="right") - 1]]
+    gone = np.abs(ROUGH - last) / 1e-4
+    knee = np.where(inwards, 1.0, -1.0) * (1.0 - 2.0 * gone) * gone * np.exp(1.0 - gone)
+    found = noise_of(knee + 0.3 * WHITE, 40.0 / 6.0, ROUGH)
+    assert found.memory == 1
+    assert found.level < 0.4
+
+
+@pytest.mark.parametrize("motion", [MOTION, ROUGH], ids=["cycles", "ride"])
+def test_filtered_noise_does_not_come_again(motion: FloatArray) -> None:
     """At the level of one in a hundred, of 100 drawn noises at most five are taken for a ripple (one in 300)."""
     taken = 0
     for seed in range(100):
-        noise = lfilter(*butter(2, 0.2), np.random.default_rng([7, seed]).normal(0.0, 1.0, MOTION.size))
-        taken += noise_of(noise / np.std(noise), SMOOTH, MOTION).level < 0.5
+        noise = lfilter(*butter(2, 0.2), np.random.default_rng([7, seed]).normal(0.0, 1.0, motion.size))
+        taken += noise_of(noise / np.std(noise), SMOOTH, motion).level < 0.5
     assert taken <= 5
 
 

@@ -125,10 +125,18 @@ def _where() -> list[dict[str, Any]]:
     ]
 
 
-def effect(name: str, share: float, **parameters: tuple[float, float | None, str]) -> dict[str, Any]:
+def effect(
+    name: str, share: float, probability: float = 0.97, **parameters: tuple[float, float | None, str]
+) -> dict[str, Any]:
     """An entry of the verdict's effects."""
     told = {p: {"value": v, "std": s, "unit": u} for p, (v, s, u) in parameters.items()}
-    return {"name": name, "parameters": told, "share": share, "probability": 0.97, "size": 40.0 * share}
+    return {
+        "name": name,
+        "parameters": told,
+        "share": share,
+        "probability": probability,
+        "size": 40.0 * share,
+    }
 
 
 def nothing_missing() -> Diagnosed:
@@ -200,7 +208,15 @@ def alternatives() -> Diagnosed:
     return diagnosed(
         found,
         found,
-        [effect("rate_independent_hysteresis", 0.98, slip_force=(25.0, 0.4, "N"), reach=(1e-3, 6e-5, "m"))],
+        [
+            effect(
+                "rate_independent_hysteresis",
+                0.98,
+                0.56,
+                slip_force=(25.0, 0.4, "N"),
+                reach=(1e-3, 6e-5, "m"),
+            )
+        ],
         confidence=0.46,
         alternatives=[["viscous_damping"], ["viscoelastic_relaxation", "recalibration"]],
         alternative_details=[
