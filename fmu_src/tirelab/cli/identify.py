@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..identification.result import Identification
     from ..recordings.recording import Recording
 
-PART_LAWS = ("linear", "power", "power_preload", "linear_gap", "power_gap")
+PART_LAWS = ("constant", "linear", "power", "power_preload", "linear_gap", "power_gap")
 """Laws of `--part` that a tire file holds."""
 
 WIDTH_LEAST = 100
@@ -91,8 +91,8 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
     if found is None:
-        words = ["tirelab", "diagnose", *map(str, recordings), "--tire", str(out), *reading.words()]
-        _part(output, console, read, (part, options["name"]), shlex.join(words))
+        given = [*map(str, recordings), *reading.words()]
+        _part(output, console, read, (part, options["name"]), given)
         return
     beside = out.parent / f"{out.stem}.identification.json"
     with staged(out.parent) as folder:
@@ -112,16 +112,17 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
 
 
 def _part(
-    output: Output, console: Console, recordings: list[Recording], chosen: tuple[str, str], command: str
+    output: Output, console: Console, recordings: list[Recording], chosen: tuple[str, str], given: list[str]
 ) -> None:
     """Print what the laws leave of recordings of a part; write the tire file of the law that is chosen.
 
-    chosen: the law, or "compare", and the tire's name; command: that looks for what the law leaves out
+    chosen: the law, or "compare", and the tire's name; given: the recordings and how they are read, as words of a
+    command
     """
     part, name = chosen
     from ..computing.staging import staged
     from ..identification.misfit import misfit_sentence
-    from ..identification.part_laws import fit_laws, reading_noise, tire_of
+    from ..identification.part_laws import best_writable, fit_laws, reading_noise, tire_of
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
@@ -137,9 +138,13 @@ def _part(
         return
     console.print(law_table(fits))
     if tire is not None:
+        command = shlex.join(["tirelab", "diagnose", *given, "--tire", str(tire)])
         if misfit := misfit_sentence(law.rmse, reading_noise(recordings), command):
             console.print(f"- {misfit}", markup=False, soft_wrap=True)
         console.print(f"tire: {tire}", soft_wrap=True)
+    elif best := best_writable(fits, recordings):
+        command = shlex.join(["tirelab", "identify", *given, "--part", best])
+        console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
 
 
 def _bars(quiet: bool) -> Progress:

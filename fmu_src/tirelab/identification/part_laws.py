@@ -2,6 +2,7 @@
 
 Deflection x and force F may have both signs. All samples count alike.
 
+    constant      F = F0                                 a damper or a seal under a preload, without a spring
     linear        F = F0 + k x
     linear_gap    F = k max(x - x0, 0)                   x0: where the force begins (a gap > 0, a preload < 0)
     power         F = A sign(x) |x|^B                    x in cm, as the tire's law
@@ -50,7 +51,7 @@ the air: a stop or a loose spring cannot pull through it, so the tire file is no
 IN_GAP = 0.1
 """Share of the largest force that recordings may have inside the gap, where its law has none: friction and the zero."""
 
-TWO_SIDED = ("linear", "power", "power_preload")
+TWO_SIDED = ("constant", "linear", "power", "power_preload")
 """Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
 
 LEAST_SPRING = 1e-3
@@ -102,6 +103,7 @@ def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
     """
     samples = _samples(recordings)
     fits = (
+        _constant(samples),
         _linear(samples),
         _shifted(samples, "linear_gap"),
         _power(samples),
@@ -139,6 +141,17 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     return _described(TireModel(law=law, effects=effects), recordings, name)
 
 
+def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> str:
+    """Return the first of the laws that a tire file holds, "" where it holds none."""
+    for fit in fits:
+        try:
+            tire_of(fit, recordings, "")
+        except TirelabError:
+            continue
+        return fit.name
+    return ""
+
+
 def reading_noise(recordings: Sequence[Recording]) -> float:
     """Return the noise of the forces [N], root mean square over the recordings; NaN where they are too short.
 
@@ -150,12 +163,15 @@ def reading_noise(recordings: Sequence[Recording]) -> float:
 
 
 def _two_sided(fit: LawFit) -> TireModel:
+    if fit.name == "constant":
+        return TireModel(law=PowerLaw(LEAST_SPRING, 1.0), two_sided=True, preload=fit.value("F0"))
     symbol, scale = ("k", 10.0) if fit.name == "linear" else ("A", 1.0)  # N/mm to N/cm
     value, deviation = next((v, d) for s, v, d, _ in fit.constants if s == symbol)
     if value + SURE * deviation < 0.0:
         raise TirelabError(
             f"the law {fit.name} has {symbol} = {value:.3g}, a force that falls as the deflection grows, which a tire "
-            "file cannot hold; check the signs of force and deflection"
+            "file cannot hold; check the signs of force and deflection, or for a part without a spring, such as a "
+            "damper, give --part constant"
         )
     exponent = 1.0 if fit.name == "linear" else fit.value("B")
     preload = 0.0 if fit.name == "power" else fit.value("F0")
@@ -239,6 +255,11 @@ def _lstsq(columns: Sequence[Array], samples: _Samples) -> tuple[Array, _Fitted]
     matrix = np.stack(columns, axis=1)
     values = np.asarray(np.linalg.lstsq(matrix, samples.force, rcond=None)[0], dtype=np.float64)
     return values, (samples.force - matrix @ values, matrix)
+
+
+def _constant(s: _Samples) -> LawFit:
+    values, fitted = _lstsq([np.ones_like(s.x)], s)
+    return _fit("constant", (("F0", 1.0, "N"),), values, fitted)
 
 
 def _linear(s: _Samples) -> LawFit:

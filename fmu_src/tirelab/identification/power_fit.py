@@ -91,7 +91,8 @@ def fit_power(surface: Surface) -> tuple[float, float]:
         return float(coefficient), float(exponent)
     raise TirelabError(
         f"{surface.where}: the force does not grow as a power of the deflection between {EXPONENT_BOUNDS[0]:g} and "
-        f"{EXPONENT_BOUNDS[1]:g}; check which columns are deflection and force, and their zeros"
+        f"{EXPONENT_BOUNDS[1]:g}; check which columns are deflection and force, and their zeros; for a spring, a "
+        "damper or a bush, --part compare finds its law"
     )
 
 

@@ -81,8 +81,8 @@ def with_uncertainty(value: float, uncertainty: float) -> str:
         return f"{digits(value, 4)} ± ?"
     if uncertainty == 0.0:
         return f"{digits(value, 4)} ± 0"
-    if uncertainty < 1e-9 * abs(value):
-        return f"{digits(value, 9)} ± {uncertainty:.0e}"
+    if uncertainty < 1e-6 * abs(value):
+        return f"{digits(value, 6)} ± {uncertainty:.0e}"
     places = 1 - math.floor(math.log10(uncertainty))
     if places <= 0:
         return f"{round(value, places):.0f} ± {round(uncertainty, places):.0f}"

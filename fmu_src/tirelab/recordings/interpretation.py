@@ -247,7 +247,7 @@ def interpret(
         column = f"column {quoted(header.text)}"
         return column if sample is None else f"{rows.place(sample + first)}, {column}"
 
-    doubts = doubts_of(plan.origin, values, units, where) if not (doubt or plan.part) else ()
+    doubts = () if doubt else doubts_of(plan.origin, values, units, where, plan.part)
     notes += [f"doubtful: {sentence}" for sentence in doubts]
     return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first, plan.part)
 

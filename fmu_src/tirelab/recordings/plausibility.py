@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
+from .sign_convention import CLEAR, work_share
 
 FloatArray = NDArray[np.float64]
 
@@ -73,15 +74,21 @@ def doubts_of(
     values: Mapping[str, FloatArray],
     units: Mapping[str, str],
     where: Callable[[str, int | None], str],
+    part: bool = False,
 ) -> tuple[str, ...]:
     """Return what is doubtful of the channels in SI, each in one sentence with its row and column.
 
     units: of each channel as it was read; where: returns the place of a sample of a channel, of None its column alone
+    part: of which nothing is known but that it gives out no energy
     """
     for name in ("deflection", "force"):
         largest = max(abs(float(values[name].min())), abs(float(values[name].max())))
         if not largest <= LARGEST_PLAUSIBLE[name]:
             return ()  # the recording refuses it
+    backwards = _loop_doubt(origin, values["deflection"], values["force"])
+    loops = (_placed(where("force", None), backwards),) if backwards else ()
+    if part:
+        return loops
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]
@@ -99,7 +106,7 @@ def doubts_of(
             "before the export, or let the diagnosis find the offset"
         )
         found.append(_placed(where("deflection", None), sentence))
-    return tuple(found)
+    return (*found, *loops)
 
 
 def _placed(place: str, sentence: str) -> str:
@@ -212,6 +219,18 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
         f"{what}: {guess[1]}? Then {origin.units(**{guess[0]: guess[1]})}{other}"
         if guess
         else f"{what}: check both units{other}"
+    )
+
+
+def _loop_doubt(origin: Origin, x: FloatArray, f: FloatArray) -> str:
+    """Return a sentence where the part gives out energy in every cycle, "" where it does not."""
+    share = work_share(x, f)
+    if not share < -CLEAR:
+        return ""
+    naming = origin.columns(deflection="+NAME", force="-NAME")
+    return (
+        f"the loops of force over deflection run backwards: {-share:.0%} of the work comes out of the part, and "
+        f"nothing passive gives out energy; is one of the two counted the other way? Then {naming} turns the force"
     )
 
 

@@ -72,3 +72,22 @@ def _evidence(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tu
         pushing / ff if ff > 0.0 else 0.0,
         compressed / reached if reached > 0.0 else 0.0,
     )
+
+
+def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
+    """Return the work that whole cycles bring into a part over the largest that they could, -1 to 1.
+
+        sum F dx / sum |F - mean F| |dx|,    from the first to the last passage of the median deflection inwards
+
+    1 of friction or a damper alone, 0 of a spring; nothing passive is below 0 but for a force that is read late: by
+    phi of a cycle, a spring has -pi/2 sin phi. NaN where no cycle is whole. `deflection`, `force`: (samples,).
+    """
+    above = deflection > np.median(deflection)
+    inwards = np.flatnonzero(above[1:] & ~above[:-1])
+    if inwards.size < 2:
+        return float("nan")
+    whole = slice(int(inwards[0]), int(inwards[-1]) + 1)
+    way, read = np.diff(deflection[whole]), force[whole]
+    middle = 0.5 * (read[1:] + read[:-1])
+    with np.errstate(all="ignore"):
+        return float((middle @ way) / np.sum(np.abs(middle - middle.mean()) * np.abs(way)))

@@ -26,6 +26,7 @@ def recording(x: np.ndarray, force: np.ndarray, noise: float = 2.0, **more: np.n
 
 
 MADE = {
+    "constant": (BOTH, np.full(BOTH.size, 85.0), {"F0": 85.0}),
     "linear": (BOTH, 15.0 + 40e3 * BOTH, {"F0": 15.0, "k": 40.0}),
     "linear_gap": (X, 90e3 * np.maximum(X - 0.004, 0.0), {"k": 90.0, "x0": 4.0}),
     "power": (BOTH, 700.0 * np.sign(BOTH) * np.abs(100.0 * BOTH) ** 1.45, {"A": 700.0, "B": 1.45}),
@@ -181,7 +182,9 @@ def test_a_part_that_pulls_inside_the_gap_is_not_written_with_one() -> None:
     bushing = recording(BOTH, 90e3 * np.sign(BOTH) * np.maximum(np.abs(BOTH) - 0.003, 0.0))
     fits = {fit.name: fit for fit in fit_laws([bushing])}
     for law in ("linear_gap", "power_gap"):
-        with pytest.raises(TirelabError, match=f"the law {law} has no force below .* choose one of linear"):
+        with pytest.raises(
+            TirelabError, match=f"the law {law} has no force below .* choose one of constant, linear"
+        ):
             tire_of(fits[law], [bushing], "")
     # pulled through the gap without a force: the gap's law is the right one, whichever its sign
     loose = recording(BOTH, 90e3 * np.maximum(BOTH - 0.003, 0.0))
@@ -204,6 +207,30 @@ def test_a_damper_without_a_spring_has_its_preload_alone() -> None:
     assert tire.law.coefficient < 10.0  # type: ignore[attr-defined]
     # third differences leave the noise of 1 N, and of a sine of 6.3 rad/s in steps of 10 ms its part of 2.5e-4
     assert reading_noise([damper]) == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_damper_whose_force_falls_is_written_as_a_constant(tmp_path: Path) -> None:
+    """Its gas or its mass may pull against the stroke: no tire file holds the line, and the command says what does."""
+    time = np.arange(2000) / 100.0
+    x = 5.0 + np.sin(2.0 * np.pi * time)
+    force = 120.0 + 30.0 * np.gradient(x, time) - 30.0 * x
+    rows = np.column_stack([time, x, force + np.random.default_rng(8).standard_normal(2000)])
+    file = tmp_path / "damper.csv"
+    np.savetxt(file, rows, delimiter=",", header="time [s],deflection [cm],force [N]", comments="")
+    words = ["identify", str(file), "--columns", "deflection=+deflection [cm],force=+force [N]"]
+    alone = CliRunner().invoke(main, [*words, "--radius", "flat"])
+    assert alone.exit_code != 0
+    assert "for a spring, a damper or a bush, --part compare" in alone.output
+    line = CliRunner().invoke(main, [*words, "--part", "linear"])
+    assert line.exit_code != 0
+    assert "for a part without a spring, such as a damper, give --part constant" in line.output
+    compared = CliRunner().invoke(main, [*words, "--part", "compare"])
+    (said,) = [row for row in compared.output.splitlines() if "a tire file holds" in row]
+    command = shlex.split(said.split("`")[1])
+    assert command[-2:] == ["--part", "constant"]
+    done = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "part.json")])
+    assert done.exit_code == 0, done.output
+    assert read_tire(tmp_path / "part.json").preload == pytest.approx(float(np.mean(force)), abs=1.0)
 
 
 def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: Path) -> None:
