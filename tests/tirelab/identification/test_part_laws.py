@@ -213,7 +213,7 @@ def test_a_damper_whose_force_falls_is_written_as_a_constant(tmp_path: Path) -> 
     """Its gas or its mass may pull against the stroke: no tire file holds the line, and the command says what does."""
     time = np.arange(2000) / 100.0
     x = 5.0 + np.sin(2.0 * np.pi * time)
-    force = 120.0 + 30.0 * np.gradient(x, time) - 30.0 * x
+    force = 400.0 + 30.0 * np.gradient(x, time) - 30.0 * x
     rows = np.column_stack([time, x, force + np.random.default_rng(8).standard_normal(2000)])
     file = tmp_path / "damper.csv"
     np.savetxt(file, rows, delimiter=",", header="time [s],deflection [cm],force [N]", comments="")
