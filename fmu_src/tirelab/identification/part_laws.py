@@ -31,6 +31,7 @@ from ..preprocessing.robust_scale import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
 from .misfit import SAMPLES_LEAST, THIRD
+from .power_fit import EXPONENT_BOUNDS
 from .surfaces import CM_PER_M
 
 Array = NDArray[np.float64]
@@ -123,7 +124,7 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     Raises TirelabError where a tire file cannot hold the law, and where there is a force inside a law's gap.
     """
     if fit.name in TWO_SIDED:
-        return _described(_two_sided(fit), recordings, name)
+        return _described(_two_sided(fit, recordings), recordings, name)
     if fit.name not in GAPS:
         known = ", ".join((*TWO_SIDED, *GAPS))
         raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
@@ -142,13 +143,17 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
 
 
 def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> str:
-    """Return the first of the laws that a tire file holds, "" where it holds none."""
+    """Return the first of the laws that a tire file holds, "" where it holds none.
+
+    One whose spring is none is left to the constant.
+    """
     for fit in fits:
         try:
-            tire_of(fit, recordings, "")
+            law = tire_of(fit, recordings, "").law
         except TirelabError:
             continue
-        return fit.name
+        if fit.name == "constant" or law != PowerLaw(LEAST_SPRING, 1.0):
+            return fit.name
     return ""
 
 
@@ -162,9 +167,9 @@ def reading_noise(recordings: Sequence[Recording]) -> float:
     return float(np.sqrt(sum(squares) / sum(len(r) for r in long))) if long else float("nan")
 
 
-def _two_sided(fit: LawFit) -> TireModel:
+def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
     if fit.name == "constant":
-        return TireModel(law=PowerLaw(LEAST_SPRING, 1.0), two_sided=True, preload=fit.value("F0"))
+        return _without_spring(fit.value("F0"))
     symbol, scale = ("k", 10.0) if fit.name == "linear" else ("A", 1.0)  # N/mm to N/cm
     value, deviation = next((v, d) for s, v, d, _ in fit.constants if s == symbol)
     if value + SURE * deviation < 0.0:
@@ -173,10 +178,21 @@ def _two_sided(fit: LawFit) -> TireModel:
             "file cannot hold; check the signs of force and deflection, or for a part without a spring, such as a "
             "damper, give --part constant"
         )
+    if scale * value <= LEAST_SPRING:
+        return _without_spring(_constant(_samples(recordings)).value("F0"))
     exponent = 1.0 if fit.name == "linear" else fit.value("B")
+    least, most = EXPONENT_BOUNDS
+    if not least <= exponent <= most:
+        raise TirelabError(
+            f"the law {fit.name} has B = {exponent:.3g}, and a tire file holds {least:g} to {most:g}; for a part "
+            "without a spring, such as a damper, give --part constant"
+        )
     preload = 0.0 if fit.name == "power" else fit.value("F0")
-    law = PowerLaw(max(scale * value, LEAST_SPRING), min(max(exponent, 0.1), 10.0))
-    return TireModel(law=law, two_sided=True, preload=preload)
+    return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
+
+
+def _without_spring(preload: float) -> TireModel:
+    return TireModel(law=PowerLaw(LEAST_SPRING, 1.0), two_sided=True, preload=preload)
 
 
 def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:

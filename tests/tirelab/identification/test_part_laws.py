@@ -225,6 +225,7 @@ def test_a_damper_whose_force_falls_is_written_as_a_constant(tmp_path: Path) -> 
     assert line.exit_code != 0
     assert "for a part without a spring, such as a damper, give --part constant" in line.output
     compared = CliRunner().invoke(main, [*words, "--part", "compare"])
+    assert compared.exit_code == 0, compared.output
     (said,) = [row for row in compared.output.splitlines() if "a tire file holds" in row]
     command = shlex.split(said.split("`")[1])
     assert command[-2:] == ["--part", "constant"]
