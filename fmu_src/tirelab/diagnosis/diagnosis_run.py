@@ -195,7 +195,7 @@ def _delivered(
             **content,
             **verdict.page_content(),
             **origin,
-            "warnings": [*more, *warnings],
+            "warnings": [*_doubts((*fitted, *kept)), *more, *warnings],
             "delivered": of_correction.get("correction"),
         },
         fitted,
@@ -309,6 +309,11 @@ def _check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None
                 f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit and its zero, or diagnose a "
                 "part: FILE@10s:20s (times), FILE@100:2000 (rows)"
             )
+
+
+def _doubts(recordings: Sequence[Recording]) -> list[str]:
+    """Return what is doubtful of the recordings as they were read; the terminal has it among the notes."""
+    return [f"{r.name}: doubtful: {doubt}" for r in recordings for doubt in r.doubts]
 
 
 def _without_time(recordings: Sequence[Recording]) -> list[str]:

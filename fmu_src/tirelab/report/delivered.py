@@ -10,6 +10,7 @@ from typing import Any
 @dataclass(frozen=True)
 class Delivered:
     """this: what is corrected, in a sentence ("the tire", "model.fmu"); kind: what is tested, "tire" or "part"
+    beside: whether it is a correction beside a simulation
     use, leave: what to do where the correction, or what was there before, is all that is needed
     files: the files that are to be used, each with its title
     """
@@ -19,11 +20,7 @@ class Delivered:
     use: str
     leave: str
     files: tuple[tuple[str, str | None], ...]
-
-    @property
-    def beside(self) -> bool:
-        """Whether it is a correction beside a simulation."""
-        return self.kind == "part"
+    beside: bool = False
 
 
 def delivered_of(diagnosis: Mapping[str, Any]) -> Delivered:
@@ -33,8 +30,9 @@ def delivered_of(diagnosis: Mapping[str, Any]) -> Delivered:
     found = diagnosis.get("delivered") or diagnosis.get("correction")
     if not (isinstance(found, Mapping) and "simulation" in found):
         files = (("Tire", diagnosis.get("tire")), ("FMU", diagnosis.get("corrected_fmu")))
+        kind = "part" if (diagnosis.get("baseline_tire") or {}).get("two_sided") else "tire"
         return Delivered(
-            "the tire", "tire", "Nothing: use this tire.", "Nothing: use the baseline tire.", files
+            "the tire", kind, "Nothing: use this tire.", "Nothing: use the baseline tire.", files
         )
     name = found["simulation"] or "your simulation"
     if found["system"] is None:
@@ -42,4 +40,4 @@ def delivered_of(diagnosis: Mapping[str, Any]) -> Delivered:
     else:
         use = f"Nothing: use {found['system']}, which couples {name} with {found['fmu']}."
     files = (("Correction FMU", found["fmu"]), ("Coupled system (SSP)", found["system"]))
-    return Delivered(name, "part", use, f"Nothing: use {name} as it is.", files)
+    return Delivered(name, "part", use, f"Nothing: use {name} as it is.", files, beside=True)

@@ -299,6 +299,20 @@ def test_changes_made_while_reading_are_reported(known: None, rides: Path, tmp_p
     assert result.stdout.startswith("note: turned: ")
 
 
+def test_what_is_doubtful_stands_on_the_page_too(known: None, rides: Path, tmp_path: Path) -> None:
+    large = tmp_path / "large.csv"
+    rows = (rides / "ride.csv").read_text().splitlines()
+    pairs = [row.rsplit(",", 1) for row in rows[1:]]
+    large.write_text(
+        "\n".join([rows[0], *(f"{left},{1000.0 * float(force)!r}" for left, force in pairs)]) + "\n"
+    )
+    result = run(large, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "large: doubtful: row" in page
+    assert "1000 times too large for a tire" in page
+
+
 def test_bad_input_ends_with_one_sentence(rides: Path, tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()

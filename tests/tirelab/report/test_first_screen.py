@@ -247,3 +247,8 @@ def test_beside_a_simulation_it_is_told_what_to_do_with_that(
     assert "simulation" in first_screen.lead(
         diagnosis({"recalibration": 9.0}) | {"delivered": given["correction"]}
     )
+
+
+def test_a_part_held_at_both_ends_is_no_tire() -> None:
+    unknown = diagnosis({}, 0.95, unexplained=True) | {"baseline_tire": {"two_sided": True}}
+    assert first_screen.next_step(unknown).action == "Repeat one recording with another part."
