@@ -20,6 +20,7 @@ from scipy.stats import binom
 
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import motion_of
+from ..simulation.kept_stages import KeptStages
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
@@ -135,9 +136,14 @@ class Dataset:
         """Return any values (n,) of each experiment at the counted blocks in a row."""
         return np.concatenate([v[e.counts] for e, v in zip(self.experiments, values, strict=True)])
 
+    @cached_property
+    def _stages(self) -> tuple[KeptStages, ...]:
+        return tuple(KeptStages(e) for e in self.experiments)
+
     def response(self, tire: TireModel) -> FloatArray:
         """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
-        return self.stacked([simulate(tire, e, e) - e.baseline for e in self.experiments])
+        pairs = zip(self._stages, self.experiments, strict=True)
+        return self.stacked([stages.simulate(tire) - e.baseline for stages, e in pairs])
 
     def with_noise(self, noises: Sequence[Noise]) -> Dataset:
         """Return the dataset with another noise [N] of each averaged misfit."""

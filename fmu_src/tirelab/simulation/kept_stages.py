@@ -1,0 +1,76 @@
+"""Simulations of one motion that keep what their stages gave: a tire that differs from one before in one effect runs
+that effect and what follows it, not what lies upstream. The forces are those of `simulate`, to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import Effect, State, TireModel
+
+from .simulate import UPSTREAM, History, Kinematics, Sampled, elastic_stage, respond_series
+
+FloatArray = NDArray[np.float64]
+T = TypeVar("T")
+
+KEPT = 64
+"""Results that are kept, the last used ones: a Jacobian of six effects with ten parameters each."""
+
+
+class Motion(Sampled, Kinematics, Protocol):
+    """What is simulated, with its rate and acceleration."""
+
+
+class KeptStages:
+    """The stages of simulations of one motion, of tires without a learned remainder."""
+
+    def __init__(self, motion: Motion) -> None:
+        self._motion = motion
+        self._kept: dict[Hashable, tuple[tuple[Any, ...], Any]] = {}
+
+    def simulate(self, tire: TireModel) -> FloatArray:
+        """Return the radial force [N] of `tire` at every sample; it may be given out again, so it is not to be changed.
+
+        Raises ValueError for a tire with a learned remainder.
+        """
+        if tire.remainder is not None:
+            raise ValueError("the stages of a tire with a learned remainder are not kept")
+        before = tuple((e.name, v) for e, v in tire.effects if e.place in (*UPSTREAM, "scale"))
+        law = (tire.law, tire.two_sided, tire.preload, tire.reading_noise, tire.differentiates)
+        history, force = self._once(
+            (law, before), (), lambda: elastic_stage(tire, self._motion, self._motion)
+        )
+        force = self._downstream(tire, history, force, ("parallel",))
+        if not tire.two_sided:
+            pushed = force
+            force = self._once("pushed", (pushed,), lambda: np.maximum(pushed, 0.0))
+        return self._downstream(tire, history, force, ("inertia", "reading"))
+
+    def _downstream(
+        self, tire: TireModel, history: History, signal: FloatArray, places: tuple[str, ...]
+    ) -> FloatArray:
+        for effect, values in tire.effects:
+            if effect.place in places:
+                signal = self._response(effect, values, signal, history)
+        return signal
+
+    def _response(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
+        return self._once(
+            (effect.name, values),
+            (signal, history),
+            lambda: respond_series(effect, values, signal, history),
+        )
+
+    def _once(self, what: Hashable, of: tuple[Any, ...], make: Callable[[], T]) -> T:
+        """Return what `make` gives, made anew only where it was not kept for the same values `of` the same objects."""
+        key = (what, *map(id, of))
+        # The objects are kept too, or another one could have their identity.
+        kept = self._kept.pop(key, None) or (of, make())
+        self._kept[key] = kept
+        if len(self._kept) > KEPT:
+            del self._kept[next(iter(self._kept))]
+        found: T = kept[1]
+        return found
