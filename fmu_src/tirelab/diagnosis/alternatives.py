@@ -51,12 +51,13 @@ def alternatives_of(
 
     First those in which an effect that this motion cannot tell from one of the verdict's stands in its place: they have
     equal parts of what the verdict gave them (`confidence.shared`). Then the likeliest others until all together hold
-    the probability CREDIBLE: what else the confidence leaves is shared by evidence.
+    the probability CREDIBLE: what else the confidence leaves is shared by evidence. A set is not told as likelier beside
+    the verdict than its evidence is: what is left then belongs to sets that nobody has compared.
 
     An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
     """
     best = explanation.model.names
-    own = next(e.log_evidence for e in explanation.evidence if set(e.names) == set(best))
+    own = next(e for e in explanation.evidence if set(e.names) == set(best))
     others = [e for e in explanation.evidence if set(e.names) != set(best)]
     whole = max(sum(e.probability for e in others), 1e-300)
     count = len(explanation.confounded)
@@ -66,10 +67,12 @@ def alternatives_of(
         confounded = e.names in explanation.confounded
         if covered >= CREDIBLE and not confounded:
             continue
-        share = (1.0 - alone) * e.probability / whole + ((alone - confidence) / count if confounded else 0.0)
-        covered += share
+        equal = (alone - confidence) / count if confounded else 0.0
+        left = (1.0 - alone) * e.probability / whole
+        covered += equal + left
+        told = equal + min(left, confidence * e.probability / max(own.probability, 1e-300))
         reason = reason_of(best, e.names, explanation, dataset, limits)
-        found.append(Alternative(e.names, own - e.log_evidence, reason, share))
+        found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, told))
     found.sort(key=lambda a: a.names not in explanation.confounded)
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden

@@ -47,14 +47,23 @@ SETS = (("inertia", 0.0, 0.6), ("force_lag", -1.4, 0.3), ("saturation", -4.0, 0.
 def test_verdict_and_alternatives_hold_the_promised_probability_and_no_more_sets_are_listed() -> None:
     explanation = explained(*SETS)
     found = alternatives_of(explanation, RIDE, 0.6)
-    assert [a.names for a in found] == [("force_lag",), ("saturation",)]
+    assert [a.names for a in found] == [
+        ("force_lag",),
+        ("saturation",),
+    ]  # of 0.4, what the evidence gives them
     assert 0.6 + sum(a.probability for a in found) >= CREDIBLE
 
 
 def test_what_the_confidence_leaves_is_shared_by_the_others_as_their_evidence_is() -> None:
-    """The ranking gives the others 0.3, 0.08 and 0.02; a confidence of 0.2 leaves them twice as much."""
+    """The ranking gives the others 0.3, 0.08 and 0.02; a confidence of 0.8 leaves them half as much."""
+    found = alternatives_of(explained(*SETS), RIDE, 0.8)
+    assert [a.probability for a in found] == pytest.approx([0.15, 0.04])
+
+
+def test_no_set_is_told_as_likelier_beside_the_verdict_than_its_evidence_is() -> None:
+    """The next set has half of the verdict's evidence; what is left of a doubted verdict belongs to none of them."""
     found = alternatives_of(explained(*SETS), RIDE, 0.2)
-    assert [a.probability for a in found] == pytest.approx([0.6, 0.16, 0.04])
+    assert [a.probability for a in found] == pytest.approx([0.1, 0.2 * 0.08 / 0.6, 0.2 * 0.02 / 0.6])
 
 
 def test_a_sure_verdict_has_no_alternatives() -> None:
