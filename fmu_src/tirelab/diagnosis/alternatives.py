@@ -51,8 +51,8 @@ def alternatives_of(
 
     First those in which an effect that this motion cannot tell from one of the verdict's stands in its place: they have
     equal parts of what the verdict gave them (`confidence.shared`). Then the likeliest others until all together hold
-    the probability CREDIBLE: what else the confidence leaves is shared by evidence. A set is not told as likelier beside
-    the verdict than its evidence is: what is left then belongs to sets that nobody has compared.
+    the probability CREDIBLE: what else the confidence leaves is shared by evidence. A set is not told as likelier
+    beside the verdict than its evidence is: what is left then belongs to sets that nobody has compared.
 
     An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
     """

@@ -105,7 +105,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.globals |= {"words": words, "titles": titles}
-    environment.filters |= {"number": words.number, "percent": words.percent}
+    environment.filters |= {"number": words.number, "percent": words.percent, "unbroken": words.unbroken}
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
     return page.render(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -60,6 +61,11 @@ def scaled(unit: str) -> tuple[float, str]:
 def with_unit(text: str, unit: str) -> str:
     """Return a number with its unit, if it has one."""
     return f"{text} {unit}" if unit else text
+
+
+def unbroken(sentence: str) -> str:
+    """Return a sentence in which no line ends between a number and its unit."""
+    return re.sub(r"(?<=\d) (?=%|[µmk]?[mNsW]\b|mm/s)", "\N{NO-BREAK SPACE}", sentence)
 
 
 def number(value: Any, digits: int = 3) -> str:

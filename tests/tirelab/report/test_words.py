@@ -162,3 +162,13 @@ def test_intervals_hold_95_percent_inside_the_bounds(
 def test_bounds_are_those_of_the_catalogue() -> None:
     assert words.bounds("inertia", "mass")[0] == 0.0
     assert words.bounds("phlogiston", "mass") == (-float("inf"), float("inf"))
+
+
+def test_no_line_ends_between_a_number_and_its_unit() -> None:
+    said = words.unbroken(
+        "It falls from 103 N to 13.2 N in 8 of 10 meters: 33 %, at 8.4 mm/s, 10 s at 32 mm."
+    )
+    assert (
+        said.replace("\N{NO-BREAK SPACE}", "_")
+        == "It falls from 103_N to 13.2_N in 8 of 10 meters: 33_%, at 8.4_mm/s, 10_s at 32_mm."
+    )
