@@ -47,6 +47,11 @@ def skill(trials: Sequence[Sequence[Pair]]) -> Mean:
     return Mean(float(value), (float(low), float(high)), count)
 
 
+def reliability(scores: Sequence[Score]) -> list[Point]:
+    """How often verdicts are right in the sense of their kind, by classes of their stated confidence."""
+    return curve([pair for pairs in confidence_pairs(scores) for pair in pairs], CONFIDENCE_EDGES)
+
+
 def effect_reliability(scores: Sequence[Score]) -> list[Point]:
     """How often named effects are there, by classes of their stated probability."""
     return curve([pair for pairs in effect_pairs(scores) for pair in pairs], CONFIDENCE_EDGES)

@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .acceptance_criteria import NOISE_FLOOR_MARGIN
-from .metrics import ANY_EFFECT, NO_NAME, Point, naming, reliability
+from .calibration import reliability
+from .metrics import ANY_EFFECT, NO_NAME, Point, naming
 from .score import Score
 
 BLUE, LIGHT_BLUE, ORANGE, GREY = "#1f6f9f", "#93c4e0", "#d9731a", "#777777"
@@ -128,7 +129,7 @@ def _reliability(axes: Axes, points: Sequence[Point]) -> None:
         )
     axes.set(
         xlabel="stated confidence",
-        ylabel="part of the verdicts that was exact",
+        ylabel="part of the verdicts that was right",
         xlim=(0, 1.03),
         ylim=(0, 1.03),
     )

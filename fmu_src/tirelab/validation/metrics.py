@@ -138,12 +138,6 @@ def brier(scores: Sequence[Score]) -> Mean:
     return Mean.of((s.confidence - float(s.exact)) ** 2 for s in scores if s.confidence is not None)
 
 
-def reliability(scores: Sequence[Score]) -> list[Point]:
-    """How often verdicts are exact, by classes of their stated confidence."""
-    pairs = [(s.confidence, s.exact) for s in scores if s.confidence is not None]
-    return curve(pairs, CONFIDENCE_EDGES)
-
-
 def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:
     """How often each hidden effect, and any of them, was named, by classes of its size over the noise.
 

@@ -14,7 +14,7 @@ from markupsafe import Markup, escape
 from . import figures
 from . import metrics as summary
 from .acceptance_criteria import Criterion, criteria
-from .calibration import Answers, answers, effect_reliability, skills
+from .calibration import Answers, answers, effect_reliability, reliability, skills
 from .metrics import Mean, Point, Rate
 from .score import Score
 from .wide_kinds import (
@@ -132,7 +132,7 @@ def numbers(proof: Proof) -> dict[str, Any]:
         "alternatives_per_verdict": _measured(proof.answers.alternatives),
         "confusion": summary.confusion(scores),
         "naming": {effect: [_point(p) for p in points] for effect, points in summary.naming(scores).items()},
-        "reliability": [_point(p) for p in summary.reliability(proof.drawn)],
+        "reliability": [_point(p) for p in reliability(scores)],
         "regions": [
             {"effect": r.effect, "by": r.by, "median_overlap": r.median, "at_least_half": _measured(r.half)}
             for r in summary.regions(scores)
@@ -182,9 +182,9 @@ def page(proof: Proof) -> str:
                 "For each effect, how often it was named over its size in noises, with 95 % intervals.",
             ),
             "reliability": _picture(
-                figures.reliability_diagram(summary.reliability(proof.drawn)),
+                figures.reliability_diagram(reliability(scores)),
                 "reliability",
-                "How often verdicts were exact over their stated confidence, with 95 % intervals.",
+                "How often verdicts were right over their stated confidence, with 95 % intervals.",
             ),
             "effects": _picture(
                 figures.effect_reliability_diagram(effect_reliability(scores)),

@@ -11,6 +11,7 @@ from tirelab.validation.calibration import (
     confidence_pairs,
     effect_pairs,
     effect_reliability,
+    reliability,
     skill,
     skills,
 )
@@ -46,6 +47,19 @@ def test_an_effect_is_there_where_it_was_hidden_not_where_it_is_arguable(score: 
     arguable = score("pair", "friction", "friction lag", also_right=["lag"], **stated)
     assert effect_pairs([arguable]) == [[(0.6, True), (0.3, False)]]
     assert confidence_pairs([score("single", "friction", "lag", also_right=["lag"])]) == [[(0.9, True)]]
+
+
+def test_reliability_has_every_verdict_in_one_class(score: Make) -> None:
+    stated = (0.0, 0.5, 0.95, 1.0)
+    points = reliability([score("single", "lag", "lag", confidence=c) for c in stated])
+    assert [p.rate.trials for p in points] == [2, 1, 1]
+
+
+def test_a_verdict_is_right_in_the_sense_of_its_kind(score: Make) -> None:
+    """Outside the catalogue a verdict that names nothing is right, though not exact."""
+    silent = score("outside", "unknown", "none", confidence=0.9)
+    assert not silent.exact
+    assert [(p.rate, p.at) for p in reliability([silent])] == [(Rate(1, 1), 0.9)]
 
 
 def test_the_reliability_of_effects_counts_every_name_once(score: Make) -> None:

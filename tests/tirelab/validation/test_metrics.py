@@ -111,12 +111,6 @@ def test_naming_counts_by_size_and_leaves_out_what_cannot_be_seen(score: Make) -
     assert first.at == pytest.approx(1.65)
 
 
-def test_reliability_has_every_verdict_in_one_class(score: Make) -> None:
-    stated = (0.0, 0.5, 0.95, 1.0)
-    points = summary.reliability([score("single", "lag", "lag", confidence=c) for c in stated])
-    assert [p.rate.trials for p in points] == [2, 1, 1]
-
-
 def test_regions_and_recommended_tests_are_counted(score: Make) -> None:
     scores = [
         score(
