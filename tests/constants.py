@@ -280,6 +280,7 @@ def _told(count: int, moved: list[Constant]) -> list[str]:
     run = json.loads(SENSITIVITY.read_text(encoding="utf-8"))
     tried = len({row["number"] for row in run["numbers"]})
     only = "".join(f" --only {name}" for name in run["only"])
+    only += f" --kind {run['kind']}" if run.get("kind") else ""
     return [
         f"Of the {count} that are not derived, {tried} were halved and doubled, and {run['each']} of {run['trials']}",
         f"blind trials were diagnosed again each time: {len(moved)} of the numbers changed a verdict at all. The",

@@ -1,6 +1,6 @@
 """What happens to verdicts when a number of constants.md is halved or doubled.
 
-Run: python tests/sensitivity.py --seed S --trials N --each M [--only NAME ...] --out sensitivity.json
+Run: python tests/sensitivity.py --seed S --trials N --each M [--kind KIND] [--only NAME ...] --out sensitivity.json
 
 N blind trials of all kinds are drawn and diagnosed as the numbers stand. Then each number that is not derived is halved
 and doubled, one at a time, and M of the trials are diagnosed again: which ones goes round, so that all numbers together
@@ -172,18 +172,24 @@ def _counts(place: str, before: dict[str, list[str]], after: dict[str, list[str]
 @click.option(
     "--only", multiple=True, help="Numbers by the ends of their places; all that are not derived if left out."
 )
+@click.option("--kind", default="", help="Numbers of this kind alone: chosen or budget.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("sensitivity.json"))
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True)
 @click.option("--child", is_flag=True, hidden=True)
-def main(seed: int, trials: int, each: int, only: tuple[str, ...], out: Path, jobs: int, child: bool) -> None:
+def main(
+    seed: int, trials: int, each: int, only: tuple[str, ...], kind: str, out: Path, jobs: int, child: bool
+) -> None:
     """Halve and double every number that is not derived."""
     if child:
         _child()
         return
     numbers = [
-        c for c in constants() if c.kind != "derived" and not c.beside and c.place.endswith(only or "")
+        c
+        for c in constants()
+        if c.kind != "derived" and kind in c.kind and not c.beside and c.place.endswith(only or "")
     ]
-    content: dict[str, Any] = {"seed": seed, "trials": trials, "each": each, "only": only, "numbers": []}
+    content: dict[str, Any] = {"seed": seed, "trials": trials, "each": each, "only": only, "kind": kind}
+    content["numbers"] = []
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(jobs) as workers:
         folder = Path(name)
         keys = _drawn(folder, seed, trials)
