@@ -9,7 +9,7 @@ from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW
-from ..report.titles import dependence, headline, listed, newtons, set_title, sure
+from ..report.titles import dependence, headline, listed, more_than_noise, newtons, set_title, sure
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -32,7 +32,8 @@ def summarise(
     regressions: of something unknown, none where nothing is; test: the best one against the alternatives
     """
     names = [e.name for e in effects]
-    said = [headline(names, bool(regressions), bool(alternatives))]
+    left = more_than_noise(fit.after, fit.noise)
+    said = [headline(names, bool(regressions), bool(alternatives), left)]
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit)
     if regressions:

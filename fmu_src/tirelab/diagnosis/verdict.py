@@ -18,7 +18,7 @@ from ..names import REFITTED_LAW, UNKNOWN
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..recordings.recording import Recording
-from ..report.titles import headline
+from ..report.titles import headline, more_than_noise
 from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .alternatives import Alternative
@@ -104,7 +104,8 @@ class Verdict:
 
     def __repr__(self) -> str:
         fit = self.fit
-        said = headline([e.name for e in self.effects], self.unexplained, False).removesuffix(".")
+        left = more_than_noise(fit.after, fit.noise)
+        said = headline([e.name for e in self.effects], self.unexplained, False, left).removesuffix(".")
         alternatives = f", {len(self.alternatives)} alternative" if self.alternatives else ""
         return (
             f"Verdict({said!r}, {100.0 * self.confidence:.0f} % sure, {fit.before:.3g} -> {fit.after:.3g} N, "

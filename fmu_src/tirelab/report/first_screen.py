@@ -21,10 +21,6 @@ DECIDED = 0.5
 SURE = 0.9
 """From this confidence on a tire whose error is noise can be used as it is."""
 
-AT_THE_FLOOR = 1.5
-"""An error of more than this many noises is more than the noise."""
-
-
 LONGEST_LEAD = 100
 """Characters of the sentences on two effects; more is told of the larger one alone."""
 
@@ -85,6 +81,8 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
         return both if len(both) <= LONGEST_LEAD else physics[0]
     if verdict["unexplained"]:
         return "No known effect explains the difference."
+    if names and _left_over(diagnosis):
+        return "Other coefficients of the elastic law explain part of the error; what is left is more than the noise."
     if names:
         if delivered_of(diagnosis).beside:
             return "The part is as elastic as the simulation's law with other coefficients: no physics is missing."
@@ -120,7 +118,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     verdict, fit, given = diagnosis["verdict"], diagnosis["fit"], delivered_of(diagnosis)
     test = verdict["separating_test"]
     errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
-    clean = not verdict["unexplained"] and max(errors) <= AT_THE_FLOOR * max(fit["noise"], 1e-12)
+    clean = not verdict["unexplained"] and not titles.more_than_noise(max(errors), fit["noise"])
     if words.told(verdict["confidence"]) >= SURE and clean:
         return NextStep(given.use if verdict["effects"] else given.leave)
     if test is not None:
@@ -165,6 +163,8 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
         rms = verdict.get("remainder", {}).get("rms")
         parts.append((titles.effect_title(UNKNOWN), words.of_load(rms, diagnosis["fit"].get("load"))))
     if not parts:
+        if refitted and _left_over(diagnosis):
+            yield "The law is refitted, and more than the noise is left"
         yield "No physics is missing: the law is refitted" if refitted else "Nothing is missing"
         return
     law = "; law refitted" if refitted else ""
@@ -180,6 +180,11 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
         others = len(parts) - shown
         more = f"{others} more effect{'s' if others > 1 else ''}"
         yield _capital(f"{titles.listed([*(name for name, _ in parts[:shown]), more])}{law}")
+
+
+def _left_over(diagnosis: Mapping[str, Any]) -> bool:
+    fit = diagnosis["fit"]
+    return titles.more_than_noise(fit["after"], fit["noise"])
 
 
 def _by_size(effects: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -228,7 +233,7 @@ def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]
 
 
 def _left(after: float | None, noise: float) -> str:
-    if after is None or noise <= 0.0 or after <= AT_THE_FLOOR * noise:
+    if after is None or noise <= 0.0 or not titles.more_than_noise(after, noise):
         return ""
     return f"{words.number(after / noise, 2)} × the noise"
 

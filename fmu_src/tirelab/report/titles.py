@@ -75,13 +75,25 @@ def listed(words: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
-def headline(names: Sequence[str], unexplained: bool, alternatives: bool) -> str:
+AT_THE_FLOOR = 1.5
+"""An error of more than this many noises is more than the noise."""
+
+
+def more_than_noise(error: float, noise: float) -> bool:
+    """Return whether an error [N] is more than the noise [N]."""
+    return error > AT_THE_FLOOR * max(noise, 1e-12)
+
+
+def headline(names: Sequence[str], unexplained: bool, alternatives: bool, left: bool = False) -> str:
     """Return the verdict in one line.
 
-    names: of its effects; unexplained: whether something unknown acts; alternatives: whether there are any
+    names: of its effects; unexplained: whether something unknown acts; alternatives: whether there are any; left:
+    whether the correction leaves more than the noise
     """
     physics = [name for name in names if name != REFITTED_LAW]
-    if not physics and not unexplained:
+    if names and left and not physics and not unexplained:
+        text = "The elastic law has other coefficients, and more than the noise is left"
+    elif not physics and not unexplained:
         text = (
             "No physics is missing: the elastic law has other coefficients" if names else "Nothing is missing"
         )

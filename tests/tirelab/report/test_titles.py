@@ -81,6 +81,13 @@ def test_first_sentences(
     assert titles.headline(names, unexplained, bool(alternatives)) == told
 
 
+def test_a_refitted_law_that_leaves_more_than_the_noise_does_not_say_that_nothing_is_missing() -> None:
+    assert titles.headline(["recalibration"], False, False, left=True) == (
+        "The elastic law has other coefficients, and more than the noise is left."
+    )
+    assert titles.headline([], False, False, left=True) == "Nothing is missing."
+
+
 @pytest.mark.parametrize(
     ("names", "other", "told"),
     [
