@@ -181,6 +181,8 @@ def _delivered(
         write_corrected(folder, believed, on_kept)
         of_correction = {"corrected_fmu": CORRECTION, "correction": corrected.to_dict()}
     warnings += _without_time((*fitted, *kept))
+    # The terminal has them among the notes.
+    doubts = [f"{r.name}: doubtful: {doubt}" for r in (*fitted, *kept) for doubt in r.doubts]
     report("writing the report")
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
     content |= of_correction
@@ -195,7 +197,7 @@ def _delivered(
             **content,
             **verdict.page_content(),
             **origin,
-            "warnings": [*_doubts((*fitted, *kept)), *more, *warnings],
+            "warnings": [*doubts, *more, *warnings],
             "delivered": of_correction.get("correction"),
         },
         fitted,
@@ -309,11 +311,6 @@ def _check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None
                 f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit and its zero, or diagnose a "
                 "part: FILE@10s:20s (times), FILE@100:2000 (rows)"
             )
-
-
-def _doubts(recordings: Sequence[Recording]) -> list[str]:
-    """Return what is doubtful of the recordings as they were read; the terminal has it among the notes."""
-    return [f"{r.name}: doubtful: {doubt}" for r in recordings for doubt in r.doubts]
 
 
 def _without_time(recordings: Sequence[Recording]) -> list[str]:

@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import Effect, State, TireModel
 
-from .simulate import UPSTREAM, History, Kinematics, Sampled, elastic_stage, respond_series
+from .simulate import (
+    UPSTREAM,
+    Behind,
+    History,
+    Kinematics,
+    Sampled,
+    behind_law,
+    elastic_stage,
+    learned_force,
+    respond_series,
+)
 
 FloatArray = NDArray[np.float64]
 T = TypeVar("T")
@@ -24,45 +34,31 @@ class Motion(Sampled, Kinematics, Protocol):
     """What is simulated, with its rate and acceleration."""
 
 
-class KeptStages:
-    """The stages of simulations of one motion, of tires without a learned remainder."""
+class KeptStages(Behind):
+    """The stages of simulations of one motion."""
 
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
         self._kept: dict[Hashable, tuple[tuple[Any, ...], Any]] = {}
 
     def simulate(self, tire: TireModel) -> FloatArray:
-        """Return the radial force [N] of `tire` at every sample; it may be given out again, so it is not to be changed.
-
-        Raises ValueError for a tire with a learned remainder.
-        """
-        if tire.remainder is not None:
-            raise ValueError("the stages of a tire with a learned remainder are not kept")
+        """Return the radial force [N] of `tire` at every sample; it may be given out again: do not change it."""
         before = tuple((e.name, v) for e, v in tire.effects if e.place in (*UPSTREAM, "scale"))
         law = (tire.law, tire.two_sided, tire.preload, tire.reading_noise, tire.differentiates)
         history, force = self._once(
             (law, before), (), lambda: elastic_stage(tire, self._motion, self._motion)
         )
-        force = self._downstream(tire, history, force, ("parallel",))
-        if not tire.two_sided:
-            pushed = force
-            force = self._once("pushed", (pushed,), lambda: np.maximum(pushed, 0.0))
-        return self._downstream(tire, history, force, ("inertia", "reading"))
+        force = behind_law(tire, history, force, self)
+        return force if tire.remainder is None else force + learned_force(tire, self._motion, self._motion)
 
-    def _downstream(
-        self, tire: TireModel, history: History, signal: FloatArray, places: tuple[str, ...]
-    ) -> FloatArray:
-        for effect, values in tire.effects:
-            if effect.place in places:
-                signal = self._response(effect, values, signal, history)
-        return signal
+    def respond(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
+        """Return the signal after an effect."""
+        given = (signal, history)
+        return self._once((effect.name, values), given, lambda: respond_series(effect, values, *given))
 
-    def _response(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
-        return self._once(
-            (effect.name, values),
-            (signal, history),
-            lambda: respond_series(effect, values, signal, history),
-        )
+    def pushed(self, force: FloatArray) -> FloatArray:
+        """Return a force [N] that only pushes."""
+        return self._once("pushed", (force,), lambda: super(KeptStages, self).pushed(force))
 
     def _once(self, what: Hashable, of: tuple[Any, ...], make: Callable[[], T]) -> T:
         """Return what `make` gives, made anew only where it was not kept for the same values `of` the same objects."""

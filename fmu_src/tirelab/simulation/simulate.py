@@ -127,11 +127,28 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
     kinematics: rate and acceleration where they are known better than the tire can track them (see `tracking`)
     """
     history, force = elastic_stage(tire, recording, kinematics)
-    force = downstream(tire, history, force, ("parallel",))
-    if not tire.two_sided:
-        force = np.maximum(force, 0.0)
-    force = downstream(tire, history, force, ("inertia", "reading"))
+    force = behind_law(tire, history, force, Behind())
     return force if tire.remainder is None else force + learned_force(tire, recording, kinematics)
+
+
+class Behind:
+    """What is run behind the elastic law: the effects, and a ground that cannot pull."""
+
+    def respond(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
+        """Return the signal after an effect."""
+        return respond_series(effect, values, signal, history)
+
+    def pushed(self, force: FloatArray) -> FloatArray:
+        """Return a force [N] that only pushes."""
+        return np.asarray(np.maximum(force, 0.0))
+
+
+def behind_law(tire: TireModel, history: History, force: FloatArray, run: Behind) -> FloatArray:
+    """Return the radial force [N] from the elastic one, without a learned remainder."""
+    force = downstream(tire, history, force, ("parallel",), run)
+    if not tire.two_sided:
+        force = run.pushed(force)
+    return downstream(tire, history, force, ("inertia", "reading"), run)
 
 
 def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -186,11 +203,17 @@ def moved(history: History, ahead: float) -> History:
     return replace(history, deflection=history.deflection + ahead * v, rate=v + ahead * a)
 
 
-def downstream(tire: TireModel, history: History, signal: FloatArray, places: tuple[str, ...]) -> FloatArray:
+def downstream(
+    tire: TireModel,
+    history: History,
+    signal: FloatArray,
+    places: tuple[str, ...],
+    run: Behind = Behind(),  # noqa: B008 - it holds nothing
+) -> FloatArray:
     """Return `signal` after the effects of `tire` at `places`."""
     for effect, values in tire.effects:
         if effect.place in places:
-            signal = respond_series(effect, values, signal, history)
+            signal = run.respond(effect, values, signal, history)
     return signal
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from drives import ride
 from radialtire import CATALOGUE, Effect, PowerLaw, TireModel
+from radialtire.learned_remainder import LearnedRemainder
 from tirelab.simulation import kept_stages
 from tirelab.simulation.kept_stages import KeptStages
 from tirelab.simulation.simulate import SmoothedMotion, simulate
@@ -65,3 +66,9 @@ def test_what_lies_upstream_is_not_run_again(monkeypatch: pytest.MonkeyPatch) ->
     for values in ((20.0, 0.5), (20.0, 0.6), (21.0, 0.6), (20.0, 0.5)):
         stages.simulate(tire(*values))
     assert run == [friction.name, inertia.name, inertia.name, friction.name, inertia.name]
+
+
+def test_a_learned_remainder_is_added_as_the_simulation_adds_it() -> None:
+    learned = LearnedRemainder("deflection", (0.0, 0.01, 0.02), (0.0, 30.0, -10.0))
+    tire = TireModel(remainder=learned)
+    np.testing.assert_array_equal(KeptStages(MOTION).simulate(tire), simulate(tire, MOTION, MOTION))
