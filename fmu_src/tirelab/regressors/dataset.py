@@ -24,7 +24,7 @@ from ..simulation.kept_stages import KeptStages
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .end_of_travel import beyond_travel
 from .gauge import destepped, staircase_step
-from .noise_floor import AGAIN, SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, white_level
+from .noise_floor import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, white_level
 from .scales import Scales
 from .turns import followed_turns, through_turns
 
@@ -54,6 +54,9 @@ STEPS_LEFT = 0.3
 
 MEMORY_SPANS = float(np.pi / 3.0)
 """Phase [rad] of the motion over which its misfit is smooth: the three lags of a difference are half a cycle."""
+
+BY_CHANCE = 0.01
+"""Level of the test that more single samples stand out than the part of all that may."""
 
 LONE, RARE = 8.0, 0.02
 """A sample this many noises off both its neighbours is a spike, where less than this part of all samples is."""
@@ -302,7 +305,7 @@ def _spikes(misfit: FloatArray) -> BoolArray:
 
 def _rare(lone: BoolArray) -> bool:
     """Whether so many single samples stand out by chance where the part RARE does."""
-    return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > AGAIN)
+    return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > BY_CHANCE)
 
 
 def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:

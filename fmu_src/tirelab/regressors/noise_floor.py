@@ -9,24 +9,26 @@ What is left by the best tire cannot be less than all of them together, counted 
 A filter before the converter smooths the noise of a force: neighbours err alike. How many do so shows in differences
 over growing lags, which rise until the lag is the noise's memory and then stay, where a smooth misfit rises on
 (variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). What comes
-again at the same deflection is no noise, however quick it is: a ripple of the tread (analysis of variance of visits).
-Nor is what comes again on the same way from a turn: the knee of a loop, which a linear model follows in part.
+again at the same deflection is no noise, however quick it is: a ripple of the tread. Nor is what comes again on the
+same way from a turn: the knee of a loop, which a linear model follows in part. So the lags are looked at once more in
+what differs between visits of one place (pure error of replicates: N. R. Draper, H. Smith, Applied Regression
+Analysis, 1998, 2.1), and the least of these levels is the noise's.
 """
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
-from scipy.signal import savgol_filter
-from scipy.stats import f
 
 from ..preprocessing.robust_scale import trimmed_sigma
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
 SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
 """Root mean square error of a reading that is rounded to steps, in steps."""
@@ -38,11 +40,8 @@ noise that has a memory."""
 FEWEST_LAGS = 20
 """Lags that a recording holds at least: noise that is independent a lag apart has its scale known to a sixth then."""
 
-FEWEST_CELLS = 8
-"""Cells, and visits beyond the first of each, from which on visits are compared: two degrees of freedom."""
-
-AGAIN = 0.01
-"""Level of the test that what is quick comes again at the same deflection."""
+OF_THIRD = float(np.sqrt(20.0))
+"""Standard deviation of third differences of white noise of one: 1 + 9 + 9 + 1 squared weights."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +71,7 @@ def white_level(residual: FloatArray, lag: int = 1) -> float:
     """Return the standard deviation of what differs between samples `lag` apart, from third differences."""
     if residual.size < 3 * lag + 5:
         return float(np.std(residual))
-    ends = residual[3 * lag :] - residual[: -3 * lag]
-    inner = residual[2 * lag : -lag] - residual[lag : -2 * lag]
-    return trimmed_sigma(ends - 3.0 * inner) / float(np.sqrt(20.0))
+    return trimmed_sigma(_third_differences(residual, lag)) / OF_THIRD
 
 
 def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noise:
@@ -82,56 +79,58 @@ def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noi
 
     smooth: samples over which what is no noise is smooth, so that its differences rise on; deflection [m]: beside them
     """
-    levels = [white_level(residual)]
+    lags = [1]
     # Twice as far a smooth misfit still rises: a level that does not is a noise's.
-    while 2 ** len(levels) <= 2.0 * smooth and residual.size >= FEWEST_LAGS * 2 ** len(levels):
-        levels.append(white_level(residual, 2 ** len(levels)))
+    while 2 * lags[-1] <= 2.0 * smooth and residual.size >= FEWEST_LAGS * 2 * lags[-1]:
+        lags.append(2 * lags[-1])
+    found = _resting([white_level(residual, lag) for lag in lags])
+    if found.memory == 1:
+        return found
+    for visits in _visits(deflection, found.memory):
+        if visits[0].size >= FEWEST_LAGS * found.memory:
+            own = _resting([_level_between(residual, lag, *visits) for lag in lags])
+            found = min(found, own, key=lambda noise: noise.level)
+    return found
+
+
+def _resting(levels: list[float]) -> Noise:
+    """Return the noise that levels over doubled lags show: where they rise and then stay, else that of the first."""
     rises = [after >= STAYS * before for before, after in itertools.pairwise(levels)]
     # One doubling without a rise may be chance between two rises: a level holds over a factor of four.
     last = max((i + 1 for i, pair in enumerate(itertools.pairwise(rises)) if not any(pair)), default=0)
     risen = [i for i in range(last) if rises[i]]
-    if not risen or _comes_again(residual, deflection, 2 ** (risen[-1] + 1)):
-        return Noise(levels[0], 1)
-    return Noise(levels[last], 2 ** (risen[-1] + 1))
+    return Noise(levels[last], 2 ** (risen[-1] + 1)) if risen else Noise(levels[0], 1)
 
 
-def _comes_again(residual: FloatArray, deflection: FloatArray, memory: int) -> bool:
-    """Return whether what is quicker than a few memories is alike at every visit of the same deflection, whatever the
-    direction or in each of them, or as far from the last turn.
+def _visits(deflection: FloatArray, memory: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """Return pairs of samples of two visits: at one deflection, at one on the same way, as far on it from its turn.
+
+    Two are of different visits if they are four memories apart, and at one place within half a memory's way.
     """
-    quick = residual - savgol_filter(residual, 6 * memory + 1, 3)
-    way = float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
-    width = max(0.5 * way, 1e-6 * float(np.ptp(deflection)), 1e-300)
-    cell = 2 * ((deflection - deflection.min()) / width).astype(int)
+    near = 0.5 * float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
     inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
     begin = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
     turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
-    gone = 2 * (np.abs(deflection - deflection[turn]) / width).astype(int)
-    places = cell, cell + inwards, gone + inwards
-    return min(_chance_of_cells(quick, place, 4 * memory) for place in places) < AGAIN / len(places)
+    way = 2.0 * float(np.ptp(deflection)) * inwards
+    for place in (deflection, deflection + way, np.abs(deflection - deflection[turn]) + way):
+        order = np.argsort(place, kind="stable")
+        one, other = order[:-1], order[1:]
+        pairs = (np.abs(one - other) > 4 * memory) & (place[other] - place[one] <= near)
+        yield one[pairs], other[pairs]
 
 
-def _chance_of_cells(values: FloatArray, cell: NDArray[np.int_], apart: int) -> float:
-    """Return the chance that means of independent visits differ as much between cells; 1 for too few visits.
+def _level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArray) -> float:
+    """Return the level as of `white_level`, of what differs between visits."""
+    differences = np.full(residual.size, np.nan)
+    differences[(3 * lag) // 2 :][: residual.size - 3 * lag] = _third_differences(residual, lag)
+    between = differences[one] - differences[other]
+    return trimmed_sigma(between[np.isfinite(between)]) / (OF_THIRD * float(np.sqrt(2.0)))
 
-    A visit is the way through one cell, half a memory; one that follows another within `apart` samples does not count.
-    Neighbours within two memories are not independent: the degrees of freedom are a quarter of their number.
-    """
-    begin = np.flatnonzero(np.diff(cell, prepend=-1))
-    mean = np.add.reduceat(values, begin) / np.diff(begin, append=values.size)
-    order = np.lexsort((begin, cell[begin]))
-    begin, mean = begin[order], mean[order]
-    counts = (np.diff(cell[begin], prepend=-1) != 0) | (np.diff(begin, prepend=0) > apart)
-    begin, mean = begin[counts], mean[counts]
-    _, number, visits = np.unique(cell[begin], return_inverse=True, return_counts=True)
-    several = visits[number] > 1
-    cells, within = int(np.sum(visits > 1)), int(np.sum(several)) - int(np.sum(visits > 1))
-    if min(cells, within) < FEWEST_CELLS:
-        return 1.0
-    middle = np.bincount(number, mean) / visits
-    left = float(np.sum((mean - middle[number])[several] ** 2)) / within
-    between = float(np.sum((middle[number] - mean[several].mean())[several] ** 2)) / (cells - 1)
-    return float(f.sf(between / max(left, 1e-300), (cells - 1) / 4.0, within / 4.0))
+
+def _third_differences(values: FloatArray, lag: int) -> FloatArray:
+    """Return v(i + 3 lag) - 3 v(i + 2 lag) + 3 v(i + lag) - v(i)."""
+    ends = values[3 * lag :] - values[: -3 * lag]
+    return ends - 3.0 * (values[2 * lag : -lag] - values[lag : -2 * lag])
 
 
 def noise_floor(

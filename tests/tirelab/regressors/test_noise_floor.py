@@ -111,9 +111,18 @@ def test_the_knee_of_a_loop_that_comes_again_after_each_turn_is_no_noise() -> No
     assert found.level < 0.4
 
 
+def test_a_ripple_beside_filtered_noise_is_taken_off_and_the_noise_stays() -> None:
+    """Something comes again, with a third of the noise's power; what does not is the noise."""
+    noise = lfilter(*butter(2, 0.2), WHITE)
+    ripple = np.sqrt(2.0 / 3.0) * np.sin(2.0 * np.pi * MOTION / 1e-3)
+    found = noise_of(noise / np.std(noise) + ripple, SMOOTH, MOTION)
+    assert found.level == pytest.approx(1.0, rel=0.1)
+    assert found.memory > 1
+
+
 @pytest.mark.parametrize("motion", [MOTION, ROUGH], ids=["cycles", "ride"])
 def test_filtered_noise_does_not_come_again(motion: FloatArray) -> None:
-    """At the level of one in a hundred, of 100 drawn noises at most five are taken for a ripple (one in 300)."""
+    """Of 100 drawn noises at most five are taken for a ripple."""
     taken = 0
     for seed in range(100):
         noise = lfilter(*butter(2, 0.2), np.random.default_rng([7, seed]).normal(0.0, 1.0, motion.size))
