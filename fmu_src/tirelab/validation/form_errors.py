@@ -3,10 +3,10 @@
 Run: python -m tirelab.validation.form_errors --seed SEED --draws N
 
 The independent rig hides one effect alone, 30 to 1000 times the noise, its parameters drawn over their ranges; the
-catalogue's form is fitted to it. Its form error is the root mean square of what it leaves beyond the noise, over the
-size of the effect:
+catalogue's form is fitted to it. Its form error is the root mean square of what it leaves beyond what the true tire
+leaves on the same readings, over the size of the effect:
 
-    f = 1.4826 median over draws of sqrt(left^2 - 1) / size,   in units of the noise
+    f = 1.4826 median over draws of sqrt((left^2 - floor^2) / (before^2 - floor^2)),
 
 which is the root mean square of normal errors, and is not moved by a fit that stopped far off. It is what
 `Effect.form_error` states, rounded to two digits.
@@ -21,13 +21,15 @@ from typing import Any
 
 import click
 import numpy as np
-from radialtire import read_tire
+from radialtire import TireModel, read_tire
 
 from ..computing.workers import Cores, work
+from ..diagnosis.held_out import noise_free_residual
 from ..estimation.explanation import explain_misfit
 from ..names import REFITTED_LAW
+from ..preprocessing.kinematics import motion_of
 from ..preprocessing.robust_scale import MEDIAN_TO_SIGMA
-from ..recordings.recording import read_recording
+from ..recordings.recording import Recording, read_recording
 from .commitment import draw_and_commit
 from .folders import Folders, read_json
 
@@ -44,9 +46,22 @@ def form_error_of(folder: Path, seed: int, number: int, only: str | None) -> dic
         return {}
     recordings = [read_recording(path) for path in folders.recordings(key, "train")]
     found = explain_misfit(recordings, read_tire(folders.tire(key)), [name], lambda stage: None).of([name])
-    fit = found.model.fit
-    beyond = max(fit.power / fit.residual.size - 1.0, 0.0)
-    return {"name": name, "error": float(np.sqrt(beyond)) / fit.sizes[name]}
+    files = [answer["files"][f"{r.name}.csv"] for r in recordings]
+    samples = np.array([f["samples"] for f in files])
+    left, floor, before, true_floor = (
+        float(samples @ np.square(errors))
+        for errors in (
+            [_left(found.model.tire, recording) for recording in recordings],
+            *([f[key] for f in files] for key in ("read_floor_rmse", "baseline_rmse", "floor_rmse")),
+        )
+    )
+    return {"name": name, "error": float(np.sqrt(max(left - floor, 0.0) / (before - true_floor)))}
+
+
+def _left(tire: TireModel, recording: Recording) -> float:
+    """Return what a tire leaves of a recording whose whole motion is known [N]: a tracker's errors are not a form's."""
+    residual = noise_free_residual(tire, recording, motion_of(recording.time, recording.deflection))
+    return float(np.sqrt(np.mean(residual**2)))
 
 
 def form_errors_of(errors: Mapping[str, Sequence[float]]) -> dict[str, float]:
