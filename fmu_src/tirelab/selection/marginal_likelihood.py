@@ -57,7 +57,7 @@ class Evidence:
 
 def normal_equations(signatures: Sequence[Signature], misfit: FloatArray) -> NormalEquations:
     """Return the products of the signatures' columns."""
-    columns = np.concatenate([s.columns for s in signatures], axis=1)
+    columns = np.concatenate([np.empty((misfit.size, 0)), *(s.columns for s in signatures)], axis=1)
     places, begin = {}, 0
     for s in signatures:
         width = 1 + s.basis.shape[1]

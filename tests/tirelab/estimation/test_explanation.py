@@ -110,3 +110,10 @@ def test_nothing_of_a_pressure_is_looked_for_where_there_is_no_air() -> None:
 
     assert "pressure_leak" in compared(TireModel())
     assert compared(TireModel(inflated=False)) == {"viscous_damping"}
+
+
+def test_where_the_motion_shows_no_candidate_no_effect_is_named() -> None:
+    """Only the inflation pressure may be named, and no recording has that channel."""
+    found = explain_misfit(RIDES[:1], TireModel(), ["inflation_pressure"], lambda stage: None)
+    assert found.effects == ()
+    assert found.remainder.unexplained
