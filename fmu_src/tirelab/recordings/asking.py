@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import UNIT_OF, Match, assignments_text, columns_listed, unit_of_column
+from .channels import UNIT_OF, assignments_text, unit_of_column
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import quoted
+from .matching import Match, columns_listed
 from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import TirelabError
-from .channels import SeveralTrials, match_channels, recognised
 from .formats import LOADERS, TEXT_SUFFIXES, Header, RecordingError, open_table
 from .formats.excel import ExcelTable
+from .matching import SeveralTrials, match_channels, recognised
 from .metadata import read_sidecar
 from .origin import Origin
 from .pieces import split_piece

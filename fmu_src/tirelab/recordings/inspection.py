@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import UNIT_OF, recognised
+from .channels import UNIT_OF
 from .choices import Choices
 from .description import surface_text
 from .formats.delimited import DelimitedTable
+from .matching import recognised
 from .plausibility import force_begins
 from .recording import Recording, Understood, understand
 

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .asking import Lacking, asked, rises
-from .channels import UNIT_OF, Match, known_channel, match_channels, recognised, says_absolute, unit_of_column
+from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column
 from .formats import Columns, Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
+from .matching import Match, match_channels, recognised
 from .metadata import Settings
 from .origin import Origin
 from .pieces import Piece, samples_within
