@@ -1,0 +1,118 @@
+"""Which column of a table is which channel."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from house_form import loading, refusal, write_rows
+from tirelab.recordings.recording import read_recording
+
+
+class TestColumns:
+    def test_a_column_is_found_whatever_its_case(self, tmp_path: Path) -> None:
+        path = write_rows(tmp_path / "a.csv", "TIME [s],Actuator [cm],Cell 2 [N]", *loading())
+        columns = {"deflection": "ACTUATOR", "force": "cell 2 [n]"}
+        assert len(read_recording(path, columns=columns, radius="flat")) == 101
+
+    def test_two_columns_that_may_be_the_deflection_are_not_chosen_between(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],stroke [cm],displacement [cm],force [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, deflection * 2.0, force)
+        said = refusal(path, radius="flat")
+        assert "'stroke [cm]' (#2) and 'displacement [cm]' (#3)" in said
+        assert "--columns deflection=#2" in said
+        chosen = read_recording(path, radius="flat", columns={"deflection": "#3"})
+        assert chosen.deflection.max() == pytest.approx(0.05)
+
+    def test_volts_beside_the_reading_they_stand_for_are_not_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],force (V),force (N),stroke (V),stroke (mm),temp (V),temp (C)"
+        values = (time, force / 200.0, force, deflection / 9.0, 10.0 * deflection, time / 50.0, time)
+        found = read_recording(write_rows(tmp_path / "a.csv", header, *values), radius="flat")
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+        assert found.temperature is not None
+        np.testing.assert_allclose(found.temperature, time + 273.15)
+
+    @pytest.mark.parametrize(
+        ("stroke", "cell"),
+        [
+            ("Position(Actuator (0,1):Position) (cm)", "Load(Actuator (0,1):Load) (N)"),
+            ("Lead Actuator Displacement [cm]", "Lead Actuator Force [N]"),
+            ("actuator_stroke_cm", "upper load cell (N)"),
+        ],
+    )
+    def test_a_channel_with_its_source_in_its_name(self, tmp_path: Path, stroke: str, cell: str) -> None:
+        time, deflection, force = loading()
+        header = f'time [s],"{stroke}","{cell}","Mean force so far"'
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, time)
+        found = read_recording(path, radius="flat")
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+
+    def test_our_own_names_go_before_foreign_ones_with_a_source_too(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],Position(A:Position) (mm),Displacement(A:Digital position) (cm),Load(A:Load) (N)"
+        path = write_rows(tmp_path / "a.csv", header, time, time, deflection, force)
+        np.testing.assert_allclose(
+            read_recording(path, radius="flat").deflection, deflection / 100.0, rtol=1e-5
+        )
+
+    def test_of_two_sources_none_is_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],stroke [cm],left cell load [N],right cell load [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, force)
+        assert "'left cell load [N]' (#3) and 'right cell load [N]' (#4)" in refusal(path, radius="flat")
+
+    def test_what_is_proposed_goes_by_the_units_before_the_sizes(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],Cell 1 [kN],Displacment [mm],"
+        path = write_rows(tmp_path / "a.csv", header, time, force / 1e3, 10.0 * deflection)
+        lines = path.read_text(encoding="utf-8").splitlines()
+        path.write_text("\n".join([lines[0], *(f"{line}," for line in lines[1:])]), encoding="utf-8")
+        said = refusal(path, radius="flat")
+        assert "--columns deflection=#3,force=#2" in said
+        # a column without a number, as a comma at the end of each row leaves it, is none to propose
+        assert "NAME" not in said
+
+    def test_what_is_proposed_can_be_copied(self, tmp_path: Path) -> None:
+        """By the beginnings of names, and of trials side by side the columns of the first one."""
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "Tout,forc,dist,x_F:1", time, force, deflection, force)
+        assert "--columns time=#1,deflection=#3,force=#2" in refusal(path, radius="flat")
+        names = "Trial 1_x,Trial 1_y,Trial 2_x,Trial 2_y"
+        path = write_rows(tmp_path / "b.csv", names, deflection, force, deflection, force)
+        assert "--columns deflection=#1,force=#2" in refusal(path, radius="flat")
+
+    def test_a_doubtful_optional_channel_can_be_left_out(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],deflection [cm],force [N],temp [degC],temperature [degC]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, time, time)
+        assert "leave it out with --columns temperature=" in refusal(path, radius="flat")
+        assert read_recording(path, radius="flat", columns={"temperature": ""}).temperature is None
+
+    def test_a_symbol_needs_its_own_case_or_a_fitting_unit(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "T [s],X [cm],f [N],F [Hz]", time, deflection, force, time)
+        np.testing.assert_allclose(read_recording(path, radius="flat").force, force, rtol=1e-5)
+        path = write_rows(tmp_path / "b.csv", "time [s],deflection [cm],f", time, deflection, force)
+        assert "no column for force" in refusal(path, radius="flat", units={"force": "N"})
+
+    def test_a_missing_column_is_told_with_those_there_are(self, tmp_path: Path) -> None:
+        path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],cell [N]", *loading())
+        said = refusal(path, radius="flat")
+        assert "no column for force" in said
+        assert "'cell [N]'" in said
+        assert "--columns force=#3" in said
+
+    def test_a_column_named_and_not_there_is_told(self, rig: Path) -> None:
+        assert "has no column 'Stroke'" in refusal(rig, columns={"deflection": "Stroke"})
+        assert "has no column '#9'" in refusal(rig, columns={"deflection": "#9"})
+        assert "one column is given for two" in refusal(rig, columns={"deflection": "#2", "force": "#2"})
+
+    def test_columns_of_the_same_name_are_told_apart_by_number(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(
+            tmp_path / "a.csv", "time [s],x [cm],cell [N],cell [N]", time, deflection, force, force
+        )
+        assert "force=#3" in refusal(path, radius="flat", columns={"force": "cell"})
