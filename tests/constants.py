@@ -33,7 +33,6 @@ BESIDE = (
     "diagnosis/alternatives.FASTER",
     "diagnosis/alternatives.LONG_ENOUGH",
     "diagnosis/alternatives.REACHED",
-    "diagnosis/alternatives.STILL",
     "diagnosis/binning",
     "diagnosis/contradiction",
     "diagnosis/diagnose",

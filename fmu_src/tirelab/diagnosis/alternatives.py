@@ -12,6 +12,7 @@ from ..estimation.explanation import Explanation
 from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.dataset import Dataset
 from ..preprocessing.kinematics import BoolArray, FloatArray
+from ..regressors.excitation import STILL
 from .confidence import unshared
 
 CREDIBLE = 0.97
@@ -20,11 +21,14 @@ CREDIBLE = 0.97
 MOST = 10
 """So many alternatives are listed, the likeliest first."""
 
-STILL, LONG_ENOUGH = 0.02, 1.0
-"""A hold: less than this part of the root mean square rate, for at least so many seconds."""
+LONG_ENOUGH = 1.0
+"""A hold: at rest for at least so many seconds."""
 
-FASTER, REACHED = 10.0, 0.1
-"""The factor to another speed, and the speed [m/s] that every rig is taken to reach."""
+FASTER = 10.0
+"""The factor to another speed."""
+
+REACHED = 0.1
+"""Speed [m/s] that every rig is taken to reach where its limits are not given; else twice the fastest recorded one."""
 
 LAW_TRAITS = ("static",)
 """Traits of a refitted law: it depends on deflection and surface only."""

@@ -15,7 +15,7 @@ BINS = 800
 """Bins of a continuous coordinate at most, of about equal numbers of samples: a span of 1 % has eight of them."""
 
 MOST_SURFACES = 12
-"""More radii than these (terrain) are a continuous coordinate."""
+"""More radii than these (terrain) are a continuous coordinate; so many of them are told, evenly over the curvature."""
 
 NARROWEST = 1.0 / 2000.0
 """No bin is narrower than this part of its coordinate's range (between the first and the last percent)."""

@@ -18,7 +18,7 @@ from ..preprocessing.kinematics import FloatArray
 from ..regressors.end_of_travel import said_of
 from ..simulation.simulate import simulate
 from .acceptance import accept, validation_on, without_unlikely
-from .alternatives import Alternative, alternatives_of
+from .alternatives import REACHED, Alternative, alternatives_of
 from .confidence import grounds_of_effect, grounds_of_verdict, probability, shared
 from .contradiction import Contradiction, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
@@ -31,9 +31,6 @@ from .verdict import Fit, Verdict
 
 MOST_TESTED = 3
 """Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
-
-FASTEST = 0.1
-"""Rate [m/s] that every rig is taken to reach where its limits are not given; else twice the fastest recorded one."""
 
 
 @one_thread()
@@ -195,9 +192,9 @@ def _recommend(
 def _limits_of(dataset: Dataset, timed: bool) -> Limits:
     """Return the limits of a rig that did what was recorded, and may drive twice as fast."""
     if not timed:
-        return Limits(deepest=dataset.max_deflection, fastest=FASTEST)
+        return Limits(deepest=dataset.max_deflection, fastest=REACHED)
     fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in dataset.experiments)
-    return Limits(deepest=dataset.max_deflection, fastest=max(FASTEST, fastest))
+    return Limits(deepest=dataset.max_deflection, fastest=max(REACHED, fastest))
 
 
 __all__ = ["PoorRecording", "Recorded", "catalogue_names", "diagnose"]

@@ -12,10 +12,8 @@ from ..estimation.findings import Estimate
 from ..preprocessing.dataset import Recorded
 from ..preprocessing.kinematics import FloatArray
 from ..simulation.simulate import simulate
+from .binning import MOST_SURFACES
 from .discriminating_test import Test
-
-MOST_SURFACES = 12
-"""Recordings with more radii than this (terrain) are told by so many of them, evenly over the curvature."""
 
 POINTS = 60
 """Points of a curve of difference."""
