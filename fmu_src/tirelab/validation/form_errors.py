@@ -6,10 +6,11 @@ The independent rig hides one effect alone, 30 to 1000 times the noise, its para
 catalogue's form is fitted to it. Its form error is the root mean square of what it leaves beyond what the true tire
 leaves on the same readings, over the size of the effect:
 
-    f = 1.4826 median over draws of sqrt((left^2 - floor^2) / (before^2 - floor^2)),
+    f = root mean square over draws of sqrt((left^2 - floor^2) / (before^2 - floor^2)),
 
-which is the root mean square of normal errors, and is not moved by a fit that stopped far off. It is what
-`Effect.form_error` states, rounded to two digits.
+0.001 at least, to which a calibrated force repeats (ISO 376, class 0.5). A draw counts where its readings show the
+motion: where a corner or the gauge hides rate or acceleration, the true tire itself leaves more than the noise.
+`Effect.form_error` states it, rounded to two digits.
 """
 
 from __future__ import annotations
@@ -28,15 +29,20 @@ from ..diagnosis.held_out import noise_free_residual
 from ..estimation.explanation import explain_misfit
 from ..names import REFITTED_LAW
 from ..preprocessing.kinematics import motion_of
-from ..preprocessing.robust_scale import MEDIAN_TO_SIGMA
 from ..recordings.recording import Recording, read_recording
 from .commitment import draw_and_commit
 from .folders import Folders, read_json
 
+REPEATS = 0.001
+"""Part of a force to which its reading repeats."""
+
+HIDDEN = 2.0
+"""A motion is hidden where the true tire leaves this much more power on the readings than on the motion itself."""
+
 
 def form_error_of(folder: Path, seed: int, number: int, only: str | None) -> dict[str, Any]:
     """Return the name of the one effect of a loud draw and its form error; nothing where there are several, or another
-    than the one that is wanted.
+    than the one that is wanted, or its motion is hidden.
     """
     folders = Folders(folder / str(number))
     (key,) = (k for k in draw_and_commit(folders, seed, number, "loud") if not k.endswith(".derived"))
@@ -48,14 +54,16 @@ def form_error_of(folder: Path, seed: int, number: int, only: str | None) -> dic
     found = explain_misfit(recordings, read_tire(folders.tire(key)), [name], lambda stage: None).of([name])
     files = [answer["files"][f"{r.name}.csv"] for r in recordings]
     samples = np.array([f["samples"] for f in files])
-    left, floor, before, true_floor = (
+    left, read_floor, before, floor = (
         float(samples @ np.square(errors))
         for errors in (
             [_left(found.model.tire, recording) for recording in recordings],
             *([f[key] for f in files] for key in ("read_floor_rmse", "baseline_rmse", "floor_rmse")),
         )
     )
-    return {"name": name, "error": float(np.sqrt(max(left - floor, 0.0) / (before - true_floor)))}
+    if read_floor > HIDDEN * floor:
+        return {}
+    return {"name": name, "error": float(np.sqrt(max(left - read_floor, 0.0) / (before - floor)))}
 
 
 def _left(tire: TireModel, recording: Recording) -> float:
@@ -66,7 +74,10 @@ def _left(tire: TireModel, recording: Recording) -> float:
 
 def form_errors_of(errors: Mapping[str, Sequence[float]]) -> dict[str, float]:
     """Return the form error of each effect, from those of its draws."""
-    return {name: MEDIAN_TO_SIGMA * float(np.median(values)) for name, values in sorted(errors.items())}
+    return {
+        name: max(REPEATS, float(np.sqrt(np.mean(np.square(values)))))
+        for name, values in sorted(errors.items())
+    }
 
 
 @click.command()
