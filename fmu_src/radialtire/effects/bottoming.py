@@ -89,5 +89,5 @@ BOTTOMING = Effect(
     imitators=("gas_compression", "recalibration", "mullins_softening"),
     source="a second spring with a soft onset; no magnitude for bicycle tires was found, bounds wide",
     traits=("static", "localized"),
-    form_error=0.001,
+    form_error=0.0024,
 )

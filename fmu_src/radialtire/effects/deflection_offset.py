@@ -42,5 +42,5 @@ DEFLECTION_OFFSET = Effect(
     imitators=("recalibration", "series_compliance", "force_offset"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 1 mm, or 22 N of preload, between two rigs",
     traits=("static", "reading"),
-    form_error=0.0013,
+    form_error=0.001,
 )

@@ -113,5 +113,5 @@ ELASTIC_SHAPE = Effect(
     imitators=("gas_compression", "series_compliance", "deflection_offset", "bottoming"),
     source="Renart & Roura-Grabulosa, Am. J. Phys. 87, 102 (2019); Hull, Wang & Moore 1996: errors up to 13.5 %",
     traits=("static", "law"),
-    form_error=0.0062,
+    form_error=0.0029,
 )

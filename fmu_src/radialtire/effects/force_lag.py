@@ -178,5 +178,5 @@ FORCE_LAG = Effect(
     imitators=("inertia", "viscous_damping", "viscoelastic_relaxation"),
     source="low-pass and transport delay; 5 ms at 0.5 Hz make a loop of -2.2 %; magnitudes are an estimate",
     traits=("rate", "loop", "reading"),
-    form_error=0.048,
+    form_error=0.013,
 )

@@ -42,5 +42,5 @@ FORCE_OFFSET = Effect(
     imitators=("deflection_offset", "force_drift", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 22 N of preload, or 1 mm, between two rigs",
     traits=("static", "reading"),
-    form_error=0.0021,
+    form_error=0.001,
 )

@@ -108,6 +108,6 @@ GAS_COMPRESSION = Effect(
     imitators=("recalibration", "bottoming", "series_compliance"),
     source="polytropic gas law; 101.3 kPa over 344.7 kPa; 3 to 4 % of pressure at 25 mm is an estimate, bounds wide",
     traits=("static", "air"),
-    form_error=0.0086,
+    form_error=0.029,
     changes=("pressure",),
 )

@@ -46,5 +46,5 @@ INERTIA = Effect(
     source="Newton's second law; masses of fixtures are not published, bounds wide",
     differentiates=True,
     traits=("rate",),
-    form_error=0.0067,
+    form_error=0.01,
 )

@@ -79,6 +79,6 @@ PRESSURE_LEAK = Effect(
     imitators=("warm_up", "mullins_softening", "force_drift"),
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
     traits=("slow", "air"),
-    form_error=0.0036,
+    form_error=0.001,
     changes=("pressure",),
 )

@@ -197,5 +197,5 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
     imitators=("viscous_damping", "viscoelastic_relaxation", "mullins_softening"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 100 N, 6.5 % of the peak; Dahl 1968; Iwan 1966",
     traits=("loop",),
-    form_error=0.02,
+    form_error=0.028,
 )

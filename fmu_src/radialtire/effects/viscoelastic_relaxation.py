@@ -212,5 +212,5 @@ VISCOELASTIC_RELAXATION = Effect(
     imitators=("viscous_damping", "rate_independent_hysteresis", "pressure_leak", "recalibration"),
     source="Fung 1981, section 7.6; no magnitude for bicycle tires was found, bounds wide",
     traits=("rate", "loop"),
-    form_error=0.0077,
+    form_error=0.0089,
 )

@@ -119,5 +119,5 @@ VISCOUS_DAMPING = Effect(
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Wang & Hull on rates from 3.2 to 63.5 mm/s",
     differentiates=True,
     traits=("rate", "loop"),
-    form_error=0.011,
+    form_error=0.019,
 )

@@ -76,7 +76,7 @@ WARM_UP = Effect(
     imitators=("pressure_leak", "mullins_softening", "force_drift"),
     source="gas law at constant volume: about 1 psi for 10 degF near 40 psi; time constants not found, bounds wide",
     traits=("slow",),
-    form_error=0.015,
+    form_error=0.011,
     reads=Reading("temperature"),
     changes=("pressure",),
 )
