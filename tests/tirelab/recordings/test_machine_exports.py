@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import shlex
 from collections.abc import Sequence
@@ -12,11 +13,14 @@ import numpy as np
 import openpyxl
 import pytest
 from click.testing import CliRunner
-from machine_exports import EXPORTS, Motion, damped, mm, pressed, table
+from exported import EXPORTS, Motion, damped, mm, pressed, table
 from tirelab.cli import main
 from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.reading import Reading
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
+
+for _family in ("machine", "logger", "table", "binary"):
+    importlib.import_module(f"{_family}_exports")
 
 ASKED = {
     "roehrig_damper.csv": "'lbs' is not a unit of force; did you mean lbf?",
