@@ -15,7 +15,7 @@ from ..regressors.dataset import Experiment
 from ..regressors.noise_floor import Noise, NoiseFloor
 from ..simulation.simulate import simulate
 from .rig import Rig
-from .waveforms import MENU, sample_times
+from .waveforms import CORNER, MENU, sample_times
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -26,9 +26,9 @@ LENGTHS = (1 / 16, 1 / 8, 1 / 4)
 FINENESS = 15
 """Rows in which a whole stroke at the fastest rate of a motion is simulated."""
 
-CORNER, AROUND = 3.0, 11
+TURN, AROUND = 3.0, 3 * CORNER + 7
 """The motion turns too fast to be compared where its acceleration exceeds this many times the median of so many samples
-around: a corner takes three samples, of a slow motion as of a fast one, and no smoothed rate resolves it.
+around, a third of which a corner takes. An actuator rounds it in its own way, so a plan does not build on it.
 """
 
 ROUNDING = 1e-6
@@ -144,8 +144,8 @@ class _Kinematics:
 def _corners(acceleration: FloatArray, largest: float) -> BoolArray:
     """Return where the rate jumps; largest [m/s^2]: a jump of the fastest rate in one sample."""
     size = np.abs(acceleration)
-    usual = median_filter(size, AROUND, mode="nearest")
-    return np.asarray(size > CORNER * usual + ROUNDING * largest)
+    usual = median_filter(size, AROUND, mode="constant")
+    return np.asarray(size > TURN * usual + ROUNDING * largest)
 
 
 def _away(corner: BoolArray, reach: int) -> BoolArray:

@@ -37,6 +37,29 @@ def second_pressure(limits: Limits | None) -> str:
 
 Waveform = Callable[[Limits], FloatArray]
 
+STROKE = 20
+"""Samples that a stroke takes at least, whatever the rig could do: with fewer its rate is not read."""
+
+CORNER = 8
+"""Samples over which a corner is rounded: an actuator rounds it, and a mass shows in an acceleration that is read."""
+
+
+def readable_rate(limits: Limits) -> float:
+    """Return the fastest rate [m/s] of a motion: the rig's, or what its sampling can read."""
+    return min(limits.fastest, limits.deepest / (STROKE * limits.step))
+
+
+def rounded(make: Waveform) -> Waveform:
+    """Return a motion with round corners; it is nowhere deeper or faster than before."""
+
+    def made(limits: Limits) -> FloatArray:
+        path = make(limits)
+        weights = np.hanning(CORNER + 3)[1:-1]
+        around = np.pad(path, CORNER // 2, mode="edge")
+        return np.asarray(np.convolve(around, weights / weights.sum(), "valid"))
+
+    return made
+
 
 def sample_times(limits: Limits) -> FloatArray:
     """Return the times [s] of a motion's samples."""
@@ -47,33 +70,36 @@ def _triangle(limits: Limits, phase: FloatArray) -> FloatArray:
     return limits.deepest * (1.0 - np.abs(1.0 - 2.0 * (phase % 1.0)))
 
 
+@rounded
 def three_rates(limits: Limits) -> FloatArray:
     """Triangles at a fortieth, a fifth and the whole of the fastest rate, a third of the time each."""
     t = sample_times(limits)
     third = np.minimum((3.0 * t / limits.longest).astype(int), 2)
-    rate = limits.fastest * np.array([1.0 / 40.0, 1.0 / 5.0, 1.0])[third]
+    rate = readable_rate(limits) * np.array([1.0 / 40.0, 1.0 / 5.0, 1.0])[third]
     return _triangle(limits, np.cumsum(rate * limits.step) / (2.0 * limits.deepest))
 
 
+@rounded
 def ramp_and_hold(limits: Limits) -> FloatArray:
     """Quick ramps to six levels, each held for a sixth of the time."""
     t = sample_times(limits)
     levels = limits.deepest * np.array([0.35, 0.7, 1.0, 0.55, 0.85, 0.2])
     at = np.minimum((6.0 * t / limits.longest).astype(int), 5)
-    return _no_faster(levels[at], 0.5 * limits.fastest * limits.step)
+    return _no_faster(levels[at], 0.5 * readable_rate(limits) * limits.step)
 
 
 def sweep(limits: Limits) -> FloatArray:
     """A sine about half the largest deflection, from 0.05 Hz to what the fastest rate allows, by decades."""
     t = sample_times(limits)
     swing = 0.3 * limits.deepest
-    high = limits.fastest / (2.0 * np.pi * swing)
+    high = readable_rate(limits) / (2.0 * np.pi * swing)
     growth = np.log(high / 0.05) / limits.longest
     return np.asarray(
         0.5 * limits.deepest - swing * np.cos(2.0 * np.pi * 0.05 * np.expm1(growth * t) / growth)
     )
 
 
+@rounded
 def growing(limits: Limits) -> FloatArray:
     """Triangles of growing depth, each depth twice, at a fifth of the fastest rate, and the first one again."""
     peaks = limits.deepest * np.array([0.3, 0.3, 0.5, 0.5, 0.75, 0.75, 1.0, 1.0, 0.3, 0.3])
@@ -83,17 +109,21 @@ def growing(limits: Limits) -> FloatArray:
     return np.interp(sample_times(limits), times * limits.longest / times[-1], knots)
 
 
+@rounded
 def two_means(limits: Limits) -> FloatArray:
     """The same small sine about a low and a high mean deflection, slow and fast."""
     t = sample_times(limits)
     quarter = np.minimum((4.0 * t / limits.longest).astype(int), 3)
     mean = limits.deepest * np.array([0.3, 0.8, 0.3, 0.8])[quarter]
     swing = 0.18 * limits.deepest
-    frequency = np.array([0.2, 0.2, 1.0, 1.0])[quarter] * min(4.0, limits.fastest / (2.0 * np.pi * swing))
+    frequency = np.array([0.2, 0.2, 1.0, 1.0])[quarter] * min(
+        4.0, readable_rate(limits) / (2.0 * np.pi * swing)
+    )
     wave = mean + swing * np.sin(2.0 * np.pi * np.cumsum(frequency) * limits.step)
-    return _no_faster(wave, limits.fastest * limits.step)
+    return _no_faster(wave, readable_rate(limits) * limits.step)
 
 
+@rounded
 def rest_and_repeat(limits: Limits) -> FloatArray:
     """Three slow cycles, a rest of a third of the time without load, and the same cycles again."""
     t = sample_times(limits) / limits.longest
@@ -111,21 +141,23 @@ WAVEFORMS: dict[str, Waveform] = {
 }
 
 
+@rounded
 def slow_triangles(limits: Limits) -> FloatArray:
     """Whole triangles at about a fortieth of the fastest rate, one at least."""
-    cycles = max(1, round(limits.longest * limits.fastest / (80.0 * limits.deepest)))
+    cycles = max(1, round(limits.longest * readable_rate(limits) / (80.0 * limits.deepest)))
     return _triangle(limits, cycles * sample_times(limits) / limits.longest)
 
 
+@rounded
 def fast_triangles(limits: Limits) -> FloatArray:
     """Triangles at the fastest rate."""
-    return _triangle(limits, sample_times(limits) * limits.fastest / (2.0 * limits.deepest))
+    return _triangle(limits, sample_times(limits) * readable_rate(limits) / (2.0 * limits.deepest))
 
 
 def fast_sine(limits: Limits) -> FloatArray:
     """A sine about half the largest deflection at the fastest rate."""
     swing = 0.3 * limits.deepest
-    phase = sample_times(limits) * limits.fastest / swing
+    phase = sample_times(limits) * readable_rate(limits) / swing
     return np.asarray(0.5 * limits.deepest - swing * np.cos(phase))
 
 

@@ -54,7 +54,7 @@ def test_corners_are_not_compared_and_the_rest_is() -> None:
 
 
 def test_a_slow_corner_shows_no_inertia_and_a_sine_does() -> None:
-    """A triangle has no acceleration but in its corners, however slow: no smoothed rate resolves them."""
+    """A triangle has no acceleration but in its corners, which an actuator rounds in its own way."""
     rates = experiment_of(drive_of("triangles at three rates", 0.25, math.inf, RIG), TireModel(), 6.0)
     assert rates.counts.mean() > 0.8
     assert np.abs(rates.acceleration[rates.counts]).max() < 1e-6
