@@ -16,6 +16,9 @@ FEWEST_SAMPLES = 100
 FEWEST_STEPS = 8
 """Fewest distinct deflections: a cycle seen in fewer has no shape."""
 
+RELATED = 0.2
+"""Multiple correlation of a force with its deflection, rate and acceleration below which it has another cause."""
+
 
 class PoorRecording(TirelabError):
     """The recordings are too short or too poor to say anything."""
@@ -68,19 +71,25 @@ def check_signal(
             continue
         # The force of a part that is held at both ends may follow the rate alone, as a damper's does.
         elastic = record.force if record.two_sided else record.elastic(motion.deflection)
-        related = _related(record.force, elastic, np.abs(np.gradient(motion.deflection)))
-        if not np.isfinite(related) or abs(related) < 0.2 or level > 0.9 * float(np.std(record.force)):
+        # Much damping, or a mass, leaves little of the spring in the force.
+        related = _related(
+            record.force, (elastic, motion.rate, motion.acceleration), np.abs(np.gradient(motion.deflection))
+        )
+        if not np.isfinite(related) or related < RELATED or level > 0.9 * float(np.std(record.force)):
             raise PoorRecording(
-                f"the force of recording {name} does not follow its deflection (correlation {related:.2f}); "
-                "check channels and units"
+                f"the force of recording {name} does not follow its deflection (correlation {related:.2f} with it, its "
+                "rate and acceleration together); check channels and units"
             )
 
 
-def _related(force: FloatArray, elastic: FloatArray, path: FloatArray) -> float:
-    """Return the correlation of two forces [N] along the way, by the `path` [m] of each sample: in a hold the tire goes
-    none, and its force relaxes whatever the deflection is.
+def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) -> float:
+    """Return the multiple correlation of a force [N] with its causes along the way, by the `path` [m] of each sample.
+
+    In a hold the tire goes none, and its force relaxes whatever the deflection is.
     """
-    weights = path / max(float(path.sum()), 1e-300)
-    a, b = force - weights @ force, elastic - weights @ elastic
-    power = float(weights @ a**2) * float(weights @ b**2)
-    return float(weights @ (a * b)) / float(np.sqrt(power)) if power > 0.0 else float("nan")
+    root = np.sqrt(path / max(float(path.sum()), 1e-300))
+    centred = [root * (values - float(root**2 @ values)) for values in (force, *causes)]
+    power = float(centred[0] @ centred[0])
+    columns = np.column_stack([c / max(float(np.sqrt(c @ c)), 1e-300) for c in centred[1:]])
+    amounts = np.linalg.lstsq(columns, centred[0], rcond=None)[0]
+    return float(np.linalg.norm(columns @ amounts)) / float(np.sqrt(power)) if power > 0.0 else float("nan")
