@@ -1,9 +1,10 @@
 """The errors of a correction on held-out data.
 
 Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
-part: the last recording whose surfaces the others drive too, or of each recording and surface the end that holds the
-last part of the misfit there, simulated from its true history. The effects were chosen on all of the data; the
-parameters were fitted without the held-out part.
+part, simulated from its true history: a recording, the last one first, or of each recording the end that holds the last
+part of the misfit. Such a part has to be driven as what stays fitted, or its error is one of extrapolation and refutes
+nothing: on the surfaces, and at depths and speeds within a factor of two. Where no part is, the end of each way of
+driving is held out. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -16,14 +17,19 @@ from radialtire import TireModel
 
 from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset, Experiment, Recorded, dataset_of
-from ..preprocessing.kinematics import BoolArray, FloatArray, Motion
+from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray, Motion
+from ..regressors.excitation import STILL
 from ..regressors.law import MOST_SURFACES
 from ..simulation.simulate import simulate, smoothed_motion
 from .untimed import is_timed
 
 FITTED, LEAST = 0.7, 0.1
 """Part of the baseline's squared misfit that is fitted where the end of a recording is held out: by time, one side
-could lack what is to be explained. And the part of its samples that is fitted at least."""
+could lack what is to be explained. It is also the part of the held-out misfit that has to be driven as what is fitted.
+And the part of its samples that is fitted at least."""
+
+HALVINGS = int(np.ceil(-np.log2(STILL)))
+"""Depths and speeds below a sixty-fourth of the largest are one: there the tire rests."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +50,9 @@ class Part:
 class HeldOut:
     """What was fitted and what was held out.
 
-    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"; of several surfaces
-    in one recording "the end on each surface"; with " of each recording" where there are several
+    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"; where
+    surfaces, depths or speeds are driven once "the end at each depth and speed on each surface"; with " of each
+    recording" where there are several
     """
 
     by: str
@@ -116,7 +123,8 @@ def split(
     explanation: Explanation,
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
-    kept, by = _parts(recordings, before)
+    motions = [e.motion for e in dataset.experiments]
+    kept, by = _parts(recordings, before, _ways(recordings, motions))
     refitted = explanation.refitted(kept)
     noise_free = [
         noise_free_residual(refitted.tire, r, e.motion)
@@ -130,36 +138,68 @@ def split(
     )
 
 
-def _parts(recordings: Sequence[Recorded], before: Sequence[FloatArray]) -> tuple[list[BoolArray], str]:
+def _ways(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
+    """Return a number of the way in which the tire is driven, for each sample: the same on one surface, at depths and
+    speeds within one factor of two.
+    """
+    deepest = max(float(np.abs(m.deflection).max()) for m in motions)
+    fastest = max(float(np.abs(m.rate).max()) for m in motions)
+    radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
+    told_apart = radii.size <= MOST_SURFACES
+    found = []
+    for recording, motion in zip(recordings, motions, strict=True):
+        surface = np.searchsorted(radii, recording.surface_radius) if told_apart else 0
+        speed = _halvings(motion.rate, fastest) if is_timed([recording]) else 0
+        found.append(
+            np.asarray((surface * HALVINGS + speed) * HALVINGS + _halvings(motion.deflection, deepest))
+        )
+    return found
+
+
+def _halvings(values: FloatArray, largest: float) -> IndexArray:
+    """Return how often the largest value is halved to have each; less than HALVINGS."""
+    parts = np.abs(values) / max(largest, 1e-300)
+    return np.asarray(np.minimum(-np.log2(np.maximum(parts, 2.0**-HALVINGS)), HALVINGS - 1), dtype=np.intp)
+
+
+def _parts(
+    recordings: Sequence[Recorded], before: Sequence[FloatArray], ways: Sequence[IndexArray]
+) -> tuple[list[BoolArray], str]:
     """Return which samples stay fitted, and the name of the held-out part."""
-    surfaces = [set(np.unique(r.surface_radius).tolist()) for r in recordings]
-    for number in reversed(range(len(recordings))):
-        others = set().union(*(s for i, s in enumerate(surfaces) if i != number))
-        if surfaces[number] <= others:
-            kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
+    for number in reversed(range(len(recordings))) if len(recordings) > 1 else ():
+        kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
+        if _is_driven_alike(kept, before, ways):
             return kept, f"recording {recordings[number].name}"
-    told_apart = len(set().union(*surfaces)) <= MOST_SURFACES
-    kept = [
-        _beginning(b, r.surface_radius if told_apart else np.zeros(b.size))
-        for b, r in zip(before, recordings, strict=True)
-    ]
+    of_each = " of each recording" if len(recordings) > 1 else ""
+    kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
+    if not _is_driven_alike(kept, before, ways):
+        kept = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
+        return kept, f"the end at each depth and speed on each surface{of_each}"
     r, count = recordings[0], int(np.sum(~kept[0]))
     more = " and the ends of the others" if len(recordings) > 1 else ""
     first = kept[0].size - count
-    if kept[0][first:].any():
-        return kept, "the end on each surface" + (" of each recording" if len(recordings) > 1 else "")
     if not is_timed([r]):
         return kept, f"samples {first + 1}-{r.time.size}{more}"
     return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"
 
 
-def _beginning(before: FloatArray, surface: FloatArray) -> BoolArray:
-    """Return the samples that stay fitted of a recording; before [N] (n,): what the baseline leaves of it; surface
-    (n,): a number of the surface, on each of which the beginning is fitted: a law is fitted to each.
+def _is_driven_alike(
+    kept: Sequence[BoolArray], before: Sequence[FloatArray], ways: Sequence[IndexArray]
+) -> bool:
+    """Return whether most of the misfit that is held out belongs to ways of driving that stay fitted."""
+    fitted = np.unique(np.concatenate([w[k] for w, k in zip(ways, kept, strict=True)]))
+    misfit = np.concatenate([b[~k] ** 2 for b, k in zip(before, kept, strict=True)])
+    alike = np.isin(np.concatenate([w[~k] for w, k in zip(ways, kept, strict=True)]), fitted)
+    return float(misfit[alike].sum()) >= FITTED * float(misfit.sum())
+
+
+def _beginning(before: FloatArray, way: IndexArray) -> BoolArray:
+    """Return the samples that stay fitted of a recording; before [N] (n,): what the baseline leaves of it; way (n,): a
+    number, of each of which the beginning is fitted.
     """
     kept = np.ones(before.size, dtype=bool)
-    for one in np.unique(surface):
-        own = surface == one
+    for one in np.unique(way):
+        own = way == one
         missed = np.cumsum(before[own] ** 2) / max(float(before[own] @ before[own]), 1e-300)
         kept[own] = (missed < FITTED) | (np.arange(missed.size) < LEAST * missed.size)
     return kept
