@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drives import damped, flat_force, ride
+from drives import damped, flat_force, read, ride
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.held_out import split
@@ -115,3 +115,30 @@ def test_of_surfaces_in_turn_the_end_on_each_is_held_out():
     # The law of each surface is that of its first part: what is left is the reading's noise of 5 N.
     assert held_out.after == pytest.approx(5.0, rel=0.05)
     assert held_out.before > 10.0 * held_out.after
+
+
+def cycled(name, frequency, seed):
+    """A sine on a tire whose damper grows with the root of the rate: 60 N at 0.1 m/s, twelve times the noise."""
+    time = np.linspace(0.0, 8.0 / frequency, 3000)
+    angle = 2.0 * np.pi * frequency * time
+    deflection, rate = 0.011 - 0.01 * np.cos(angle), 0.02 * np.pi * frequency * np.sin(angle)
+    force = flat_force(deflection) + 60.0 * np.sign(rate) * np.sqrt(np.abs(rate) / 0.1)
+    return read(name, time, deflection, force, seed)
+
+
+def test_what_is_driven_much_faster_is_not_held_out_as_a_whole():
+    """A linear damper fitted at 6 mm/s is eight times too strong at 380 mm/s, sixty-four times as fast."""
+    drives = [cycled("slow", 0.1, 1), cycled("fast", 6.4, 2)]
+    found = explain_misfit(drives, TireModel(), ["viscous_damping"], lambda stage: None).of(
+        ("viscous_damping",)
+    )
+    before = [d.force - flat_force(d.deflection) for d in drives]
+    held_out = split(drives, dataset_of(drives, TireModel()), before, found)
+    assert "ends of the others" in held_out.by
+    assert held_out.after < 0.5 * held_out.before
+    alike = [*drives, cycled("fast again", 6.4, 3)]
+    again = explain_misfit(alike, TireModel(), ["viscous_damping"], lambda stage: None).of(
+        ("viscous_damping",)
+    )
+    before = [d.force - flat_force(d.deflection) for d in alike]
+    assert split(alike, dataset_of(alike, TireModel()), before, again).by == "recording fast again"

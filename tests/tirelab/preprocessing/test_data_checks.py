@@ -90,6 +90,14 @@ def test_a_signal_without_a_tire_in_it_is_refused(channels: dict[str, np.ndarray
     assert reason in str(caught.value)
 
 
+def test_a_force_that_follows_the_rate_for_the_most_part_is_a_tires() -> None:
+    """Damping of ten times the spring's force leaves it a correlation of a tenth with the deflection."""
+    rate = np.gradient(DEFLECTION, TIME)
+    force = FORCE + 10.0 * float(np.std(FORCE)) / float(np.std(rate)) * rate
+    assert abs(np.corrcoef(DEFLECTION, force)[0, 1]) < 0.2
+    checked(force=force)
+
+
 def test_a_force_that_is_noise_for_the_most_part_is_refused() -> None:
     checked(0.5 * float(np.std(FORCE)))
     with pytest.raises(
