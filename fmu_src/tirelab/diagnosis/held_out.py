@@ -4,7 +4,8 @@ Held-out recordings are used where there are any. Without any, the accepted effe
 part, simulated from its true history: a recording, the last one first, or of each recording the end that holds the last
 part of the misfit. Such a part has to be driven as what stays fitted, or its error is one of extrapolation and refutes
 nothing: on the surfaces, and at depths and speeds within a factor of two. Where no part is, the end of each way of
-driving is held out. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
+driving is held out, surface by surface. The effects were chosen on all of the data; the parameters were fitted without
+the held-out part.
 """
 
 from __future__ import annotations
@@ -50,9 +51,8 @@ class Part:
 class HeldOut:
     """What was fitted and what was held out.
 
-    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"; where
-    surfaces, depths or speeds are driven once "the end at each depth and speed on each surface"; with " of each
-    recording" where there are several
+    by: "recordings given", "recording NAME", "time block A-B s" or, without a clock, "samples A-B"; where surfaces,
+    depths or speeds are driven once "the end of each motion"
     """
 
     by: str
@@ -170,11 +170,10 @@ def _parts(
         kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
         if _is_driven_alike(kept, before, ways):
             return kept, f"recording {recordings[number].name}"
-    of_each = " of each recording" if len(recordings) > 1 else ""
     kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
     if not _is_driven_alike(kept, before, ways):
         kept = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
-        return kept, f"the end at each depth and speed on each surface{of_each}"
+        return kept, "the end of each motion"
     r, count = recordings[0], int(np.sum(~kept[0]))
     more = " and the ends of the others" if len(recordings) > 1 else ""
     first = kept[0].size - count

@@ -107,7 +107,7 @@ def test_of_surfaces_in_turn_the_end_on_each_is_held_out():
     found = explain_misfit([two], tire, ["recalibration"], lambda stage: None).of(("recalibration",))
     before = [two.force - flat_force(two.deflection)]
     held_out = split([two], dataset_of([two], tire), before, found)
-    assert held_out.by == "the end at each depth and speed on each surface"
+    assert held_out.by == "the end of each motion"
     (part,) = held_out.held_out
     for surface in (half, ~half):
         missed = np.sum(before[0][surface & part.chosen] ** 2) / np.sum(before[0][surface] ** 2)
