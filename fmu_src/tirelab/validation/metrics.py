@@ -211,12 +211,19 @@ def regions(scores: Sequence[Score]) -> list[RegionSummary]:
 
 
 def discriminations(scores: Sequence[Score]) -> dict[str, Rate]:
-    """What the recommended test decided, for the verdicts with the truth among their alternatives."""
+    """What the recommended test decided, for the verdicts with the truth among their alternatives; and how many were
+    right before it and with it, of all that were repeated.
+    """
+    repeated = [
+        s for s in scores if s.discrimination is not None and s.discrimination.right_after is not None
+    ]
     found = [s.discrimination for s in scores if s.discrimination is not None]
     true = [x for x in found if x.truth_among]
     return {
         "truth among the alternatives": Rate(len(true), len(found)),
         **{f"of these: {o}": Rate.of(x.outcome == o for x in true) for o in OUTCOMES},
+        "verdicts repeated with the recommended recording: right before": Rate.of(s.exact for s in repeated),
+        "right with it": Rate.of(bool(s.discrimination and s.discrimination.right_after) for s in repeated),
     }
 
 

@@ -26,11 +26,13 @@ class Discrimination:
     outcome: "decided rightly" (the verdict is the truth, no earlier set is left beside it), "decided wrongly" (it is
     another set), "undecided", "no test" (none was recommended), or "failed" (the rig refused the test, or the second
     diagnosis failed)
+    right_after: whether the verdict with its recording is one of the right sets; None where there is none
     """
 
     alternatives: int
     truth_among: bool
     outcome: Outcome
+    right_after: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -193,7 +195,10 @@ def discrimination(right: Sequence[Names], first: Stated, second: Stated | None)
     truth = right[0]
     before = {first.names, *first.alternatives}
     outcome: Outcome = "no test" if first.separating_test is None else _outcome(truth, before, second)
-    return Discrimination(len(before), truth in before, outcome)
+    tested = first.separating_test is not None and second is not None
+    return Discrimination(
+        len(before), truth in before, outcome, second.names in right if tested and second else None
+    )
 
 
 def _outcome(truth: Names, before: set[Names], second: Stated | None) -> Outcome:

@@ -118,7 +118,7 @@ def test_regions_and_recommended_tests_are_counted(score: Make) -> None:
             "lag",
             "lag",
             regions=(RegionScore("lag", "time", overlap),),
-            discrimination=Discrimination(2, overlap > 0.5, "decided rightly"),
+            discrimination=Discrimination(2, overlap > 0.5, "decided rightly", overlap > 0.7),
         )
         for overlap in (0.2, 0.6, 1.0)
     ]
@@ -126,6 +126,9 @@ def test_regions_and_recommended_tests_are_counted(score: Make) -> None:
     assert (region.median, region.half) == (0.6, Rate(2, 3))
     assert summary.discriminations(scores)["truth among the alternatives"] == Rate(2, 3)
     assert summary.discriminations(scores)["of these: decided rightly"] == Rate(2, 2)
+    repeated = "verdicts repeated with the recommended recording: right before"
+    assert summary.discriminations(scores)[repeated] == Rate(3, 3)
+    assert summary.discriminations(scores)["right with it"] == Rate(1, 3)
 
 
 def test_the_noise_of_the_reading_is_separated_from_the_error_of_the_model(score: Make) -> None:

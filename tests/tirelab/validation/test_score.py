@@ -99,7 +99,8 @@ def test_a_recommended_test_decides_where_one_set_is_left(
 ) -> None:
     first = stated("damping", "friction")
     found = discrimination([frozenset({"friction"})], first, stated(*second))
-    assert found == Discrimination(2, True, outcome)  # type: ignore[arg-type]
+    right = second[0] == "friction"
+    assert found == Discrimination(2, True, outcome, right)  # type: ignore[arg-type]
 
 
 def test_without_a_second_diagnosis_nothing_is_decided(stated: Callable[..., Stated]) -> None:
