@@ -210,6 +210,12 @@ def regions(scores: Sequence[Score]) -> list[RegionSummary]:
     ]
 
 
+RIGHT_BEFORE, RIGHT_WITH = (
+    "verdicts repeated with the recommended recording: right before",
+    "right with it",
+)
+
+
 def discriminations(scores: Sequence[Score]) -> dict[str, Rate]:
     """What the recommended test decided, for the verdicts with the truth among their alternatives; and how many were
     right before it and with it, of all that were repeated.
@@ -222,8 +228,8 @@ def discriminations(scores: Sequence[Score]) -> dict[str, Rate]:
     return {
         "truth among the alternatives": Rate(len(true), len(found)),
         **{f"of these: {o}": Rate.of(x.outcome == o for x in true) for o in OUTCOMES},
-        "verdicts repeated with the recommended recording: right before": Rate.of(s.exact for s in repeated),
-        "right with it": Rate.of(bool(s.discrimination and s.discrimination.right_after) for s in repeated),
+        RIGHT_BEFORE: Rate.of(s.exact for s in repeated),
+        RIGHT_WITH: Rate.of(bool(s.discrimination and s.discrimination.right_after) for s in repeated),
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.table import Table
 
 from .calibration import skills
+from .metrics import RIGHT_BEFORE, RIGHT_WITH, discriminations
 from .page import REDRAWN, Proof, interval, judged, value_text
 from .wide_kinds import PARTS, kind_criteria
 
@@ -30,6 +31,8 @@ def criteria_table(proof: Proof) -> Table:
 def lines(proof: Proof) -> list[str]:
     """Return what the table leaves open: how many answers the rig accepts, calibration, and when trials are redrawn."""
     found = proof.answers
+    tested = discriminations(proof.scores)
+    before, after = tested[RIGHT_BEFORE], tested[RIGHT_WITH]
     parts = [f"{c.figure}: {value_text(c.measured)}" for c in kind_criteria(proof.scores, PARTS)]
     ruled = [
         f"By the rig's own fits: more than one answer in {value_text(found.several_as_derived)}; exact in "
@@ -42,6 +45,13 @@ def lines(proof: Proof) -> list[str]:
         f"in {value_text(found.exact_single)}, {interval(found.exact_single)}.",
         *(ruled if proof.drawn else []),
         f"Alternatives per verdict: {value_text(found.alternatives)}.",
+        *(
+            [
+                f"With the recommended recording right in {value_text(after)}, before it in {value_text(before)}."
+            ]
+            if after.trials
+            else []
+        ),
         *(
             f"Brier skill of the {what} over the constant rate: {value_text(value)}, {interval(value)}."
             for what, value in skills(proof.scores).items()

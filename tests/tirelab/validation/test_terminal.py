@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from rich.console import Console
 from tirelab.validation.page import Proof
-from tirelab.validation.score import Score
-from tirelab.validation.terminal import criteria_table
+from tirelab.validation.score import Discrimination, Score
+from tirelab.validation.terminal import criteria_table, lines
 
 Make = Callable[..., Score]
 
@@ -46,3 +46,11 @@ def test_what_no_trial_measured_has_neither_passed_nor_failed(score: Make) -> No
     unknown = line_with(lines_of(Proof(7, (score("single", "lag", "lag"),))), "unknown recognised")
     assert "no trial" in unknown
     assert unknown.rstrip(" │").endswith("not measured")
+
+
+def test_how_many_are_right_with_the_recommended_recording_is_told_where_it_was_recorded(score: Make) -> None:
+    decided = Discrimination(2, True, "decided rightly", right_after=True)
+    scores = (score("single", "lag", "gas", discrimination=decided), score("single", "lag", "lag"))
+    line = line_with(lines(Proof(7, scores)), "With the recommended recording")
+    assert line == "With the recommended recording right in 100.0 % (1 of 1), before it in 0.0 % (0 of 1)."
+    assert not [told for told in lines(Proof(7, scores[1:])) if "recommended recording" in told]
