@@ -41,6 +41,7 @@ OF_VERDICT = (
     "transfer",
     "alike",
     "imitated",
+    "law_alone",
     "effects",
     "loudness",
     "least_share",
@@ -61,7 +62,7 @@ OF_EFFECT = (
 )
 """Grounds of the verdict and of one effect; each is explained in `grounds_of_verdict`."""
 
-LOWERING = ("remainder_share", "remainder_size", "structure", "transfer", "alike", "imitated")
+LOWERING = ("remainder_share", "remainder_size", "structure", "transfer", "alike", "imitated", "law_alone")
 """Grounds that may only lower a probability."""
 
 
@@ -85,6 +86,7 @@ def grounds_of_verdict(
         **_of_fit(explanation, validation),
         "alike": math.log1p(len(explanation.confounded)),
         "imitated": float(sum(_imitated(n, names, explanation) for n in names)),
+        "law_alone": float(names == [REFITTED_LAW]),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
         "least_share": min((_share(e) for e in explanation.effects), default=0.0),

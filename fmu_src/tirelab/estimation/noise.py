@@ -16,11 +16,9 @@ from ..selection.marginal_likelihood import NormalEquations, normal_equations
 def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
     """Return the dataset with the noise that all signatures together leave, block by block."""
     equations = normal_equations(signatures, dataset.misfit)
-    left = dataset.misfit - _saturated(equations)
-    found, begin = [], 0
-    for e in dataset.experiments:
-        own = left[begin : begin + int(e.counts.sum())]
-        begin += own.size
+    left = dataset.apart(dataset.misfit - _saturated(equations))
+    found = []
+    for e, own in zip(dataset.experiments, left, strict=True):
         noise = noise_of(own, e.smooth, e.deflection[e.counts])
         found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
     return dataset.with_noise(found)

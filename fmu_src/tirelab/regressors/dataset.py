@@ -139,6 +139,11 @@ class Dataset:
         """Return any values (n,) of each experiment at the counted blocks in a row."""
         return np.concatenate([v[e.counts] for e, v in zip(self.experiments, values, strict=True)])
 
+    def apart(self, values: FloatArray) -> list[FloatArray]:
+        """Return values at the counted blocks (m,) recording by recording."""
+        ends = np.cumsum([int(e.counts.sum()) for e in self.experiments])
+        return np.split(values, ends[:-1])
+
     @cached_property
     def _stages(self) -> tuple[KeptStages, ...]:
         return tuple(KeptStages(e) for e in self.experiments)
