@@ -27,7 +27,8 @@ from radialtire import CATALOGUE
 FloatArray = NDArray[np.float64]
 
 EFFECTIVE = 30.0
-"""Effective samples of a discrepancy."""
+"""Effective samples of a discrepancy. What is left of recorded dampers has 30 to 60 by its autocorrelation, of pistons
+100 to 200; more than 30 let many a set win over a simpler one."""
 
 LIKE_NOISE = 1.0
 """Root mean square of a remainder like the noise, in units of it: forms that leave no more are taken for exact."""
