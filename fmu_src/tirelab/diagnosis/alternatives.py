@@ -58,7 +58,8 @@ def alternatives_of(
     the probability CREDIBLE: what else the confidence leaves is shared by evidence. A set is not told as likelier
     beside the verdict than its evidence is: what is left then belongs to sets that nobody has compared.
 
-    An effect that the excitation cannot show is an alternative beside the verdict, with the reason.
+    An effect that the excitation cannot show, and one that leaves no trace beside the verdict's refitted law, is an
+    alternative beside the verdict, with the reason.
     """
     best = explanation.model.names
     own = next(e for e in explanation.evidence if set(e.names) == set(best))
@@ -78,10 +79,15 @@ def alternatives_of(
         reason = reason_of(best, e.names, explanation, dataset, limits)
         found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, told))
     found.sort(key=lambda a: a.names not in explanation.confounded)
+    listed = found[:MOST]
+    told_of = {frozenset(a.names) for a in listed}
+    beside_law = {n: (*best, n) for n in explanation.within_law if frozenset((*best, n)) not in told_of}
+    reasons = {n: reason_of(best, names, explanation, dataset, limits) for n, names in beside_law.items()}
     unseen = [
-        Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan")) for name, why in explanation.hidden
+        Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan"))
+        for name, why in (*reasons.items(), *explanation.hidden)
     ]
-    return (*found[:MOST], *unseen)
+    return (*listed, *unseen)
 
 
 def reason_of(

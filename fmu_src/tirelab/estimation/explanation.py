@@ -20,10 +20,10 @@ from ..regressors.excitation import Excitation, excitation_of
 from ..regressors.law import LAW, SHAPE, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.out_of_size import out_of_size
-from ..regressors.signature import Signature, in_other_noise, signatures_of
+from ..regressors.signature import Signature, in_other_noise, signatures_of, size_of
 from ..selection.discrepancy import discrepancy_of, usual_form_error
 from ..selection.marginal_likelihood import normal_equations, parts_of
-from ..selection.search import search
+from ..selection.search import PRIOR_ODDS, search
 from ..simulation.simulate import simulate
 from .findings import Estimate, Evidence, FittedModel, NamedEffect, Refitted
 from .fit import Fit, fitted
@@ -52,6 +52,7 @@ class Explanation:
     evidence: all sets, this one first, then the likeliest
     confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
+    within_law: names of effects that leave no trace beside the refitted law of the set
     model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
     """
 
@@ -60,6 +61,7 @@ class Explanation:
     evidence: tuple[Evidence, ...]
     confounded: tuple[tuple[str, ...], ...]
     hidden: tuple[tuple[str, str], ...]
+    within_law: tuple[str, ...]
     remainder: Remainder
     model: FittedModel
     residuals: tuple[FloatArray, ...]
@@ -67,6 +69,7 @@ class Explanation:
     excitation: Excitation
     _ranking: Ranking = field(repr=False)
     _recordings: tuple[Recorded, ...] = field(repr=False)
+    _like_law: tuple[str, ...] = field(repr=False)
 
     @property
     def evaluations(self) -> int:
@@ -82,7 +85,8 @@ class Explanation:
         fit = self._ranking.of(frozenset(names))
         if fit is None:
             raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made")
-        return _explanation(self._recordings, self._ranking, fit, self.excitation, self.hidden)
+        own = self._recordings, self._ranking, fit, self.excitation, self.hidden, self._like_law
+        return _explanation(*own)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
         """Return the likeliest sets; before them that of all effects that are likelier there than not, if it is near.
@@ -153,7 +157,8 @@ def explain_misfit(
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
     progress("fitting the sets that can win")
     ranking = ranked(quiet, signatures, rough, starts, partial(_alike, excitation))
-    return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()))
+    like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
+    return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 
 
 def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
@@ -166,6 +171,7 @@ def _explanation(
     chosen: Fit,
     excitation: Excitation,
     hidden: tuple[tuple[str, str], ...],
+    like_law: tuple[str, ...],
 ) -> Explanation:
     order = sorted(range(len(ranking.fits)), key=lambda i: ranking.fits[i] is not chosen)
     weights = ranking.weights().tolist()
@@ -200,6 +206,7 @@ def _explanation(
         ),
         _confounded(chosen, ranking, excitation),
         hidden,
+        tuple(n for n in like_law if LAW in chosen.names and n not in chosen.names),
         remainder_of(chosen),
         FittedModel(chosen),
         _residuals(chosen.tire, recordings),
@@ -207,7 +214,27 @@ def _explanation(
         excitation,
         ranking,
         recordings,
+        like_law,
     )
+
+
+def _like_law(signatures: Sequence[Signature], misfit: FloatArray, variance: float) -> tuple[str, ...]:
+    """Return the effects that a refitted law follows: one as large as the whole misfit would not be found beside it.
+
+    Beyond the law's columns it has the sum of squares s^2 and gains s^2 / 2V in log likelihood, less than a name needs.
+    """
+    law = next((s for s in signatures if s.name == LAW), None)
+    if law is None:
+        return ()
+    vectors, values, _ = np.linalg.svd(law.columns, full_matrices=False)
+    vectors = vectors[:, values > 1e-9 * values[0]]
+    found = []
+    for other in (s for s in signatures if s.name != LAW):
+        curve = other.mean * size_of(misfit) / max(size_of(other.mean), 1e-300)
+        beyond = curve - vectors @ (vectors.T @ curve)
+        if 0.5 * float(beyond @ beyond) / variance < PRIOR_ODDS:
+            found.append(other.name)
+    return tuple(found)
 
 
 def _alike(excitation: Excitation, name: str) -> tuple[str, ...]:

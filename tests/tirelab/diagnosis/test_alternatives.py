@@ -33,6 +33,7 @@ def explained(*sets: tuple[str, float, float], **more: Any) -> Any:
         model=SimpleNamespace(names=names, baseline=more.get("baseline", TireModel())),
         confounded=more.get("confounded", ()),
         hidden=more.get("hidden", ()),
+        within_law=more.get("within_law", ()),
         excitation=SimpleNamespace(timed=True, one_speed=more.get("one_speed", False)),
     )
 
@@ -155,3 +156,20 @@ def test_the_second_pressure_is_one_that_the_rig_holds(pressures: tuple[float, .
     asked = explained(("recalibration", 0.0, 1.0))
     limits = Limits(pressures=pressures)
     assert reason_of(("recalibration",), ("gas_compression",), asked, RIDE, limits).endswith(said)
+
+
+def test_what_leaves_no_trace_beside_the_refitted_law_is_told_once_with_the_reason() -> None:
+    explanation = explained(
+        ("recalibration", 0.0, 0.9),
+        ("recalibration series_compliance", -4.0, 0.1),
+        verdict="recalibration",
+        within_law=("series_compliance", "deflection_offset"),
+    )
+    found = alternatives_of(explanation, RIDE, 0.8)
+    assert [set(a.names) for a in found] == [
+        {"recalibration", "series_compliance"},
+        {"recalibration", "deflection_offset"},
+    ]
+    assert not math.isnan(found[0].probability)
+    assert math.isnan(found[1].probability)
+    assert found[1].reason == "they depend on deflection and surface only: repeat at a second pressure"

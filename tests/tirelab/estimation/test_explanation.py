@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drives import damped, flat_force, ride
+from drives import damped, flat_force, read, ride, triangle
 from radialtire import TireModel
 from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
 
@@ -117,3 +117,18 @@ def test_where_the_motion_shows_no_candidate_no_effect_is_named() -> None:
     found = explain_misfit(RIDES[:1], TireModel(), ["inflation_pressure"], lambda stage: None)
     assert found.effects == ()
     assert found.remainder.unexplained
+
+
+def test_beside_a_refitted_law_of_one_slow_press_an_offset_leaves_no_trace_but_a_loop_does() -> None:
+    """Two per cent more force at every deflection: with another A, what is zero at another place looks the same."""
+    time, deflection = triangle(samples=200)
+    press = read("press", time, deflection, 1.02 * flat_force(deflection), 3)
+    whole = explain_misfit([press], TireModel(), catalogue_names(), lambda stage: None)
+    refitted, nothing = whole.of(("recalibration",)), whole.of(())
+    assert "deflection_offset" in refitted.within_law
+    assert not {"rate_independent_hysteresis", "viscous_damping"} & set(refitted.within_law)
+    assert nothing.within_law == ()
+
+
+def test_a_misfit_far_above_the_noise_shows_what_a_law_cannot_follow(found: Explanation) -> None:
+    assert not {"viscous_damping", "inertia"} & set(found.within_law)
