@@ -19,7 +19,7 @@ def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> D
     left = dataset.apart(dataset.misfit - _saturated(equations))
     found = []
     for e, own in zip(dataset.experiments, left, strict=True):
-        noise = noise_of(own, e.smooth, e.deflection[e.counts])
+        noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
         found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
     return dataset.with_noise(found)
 

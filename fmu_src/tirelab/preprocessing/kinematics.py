@@ -21,6 +21,9 @@ of a sample's travel, the motion has a corner within a sample."""
 CORNER_SAMPLES, SHORTEST = 6, 13
 """A corner shows in at most so many samples, and a piece between two corners has at least so many."""
 
+STILL = 0.02
+"""Speed over its root mean square below which the tire rests."""
+
 MOST_PIECES = 1000
 """Budget: pieces that are smoothed each by itself."""
 

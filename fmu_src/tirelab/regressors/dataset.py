@@ -52,9 +52,6 @@ FORMS_APART = 0.005
 STEPS_LEFT = 0.3
 """Part of a gauge's steps that is left of the motion behind them: smooth over a step, no average takes it out."""
 
-MEMORY_SPANS = float(np.pi / 3.0)
-"""Phase [rad] of the motion over which its misfit is smooth: the three lags of a difference are half a cycle."""
-
 BY_CHANCE = 0.01
 """Level of the test that more single samples stand out than the part of all that may."""
 
@@ -77,7 +74,7 @@ class Experiment:
     counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
     least_noise [N]: what the steps of the force's reading leave of it, however smooth they are
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
-    smooth: blocks over which a misfit of the motion is smooth; reading: noise of the samples [N]
+    interval [s]: from block to block; reading: noise of the samples [N]
     measured: the channels that were recorded, by their names, averaged over the blocks
     """
 
@@ -95,7 +92,7 @@ class Experiment:
     floor: NoiseFloor
     gauge: float
     size: int
-    smooth: float
+    interval: float
     reading: Noise
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
@@ -213,10 +210,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     interval = float(np.median(np.diff(recording.time)))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
     slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
-    # Of a sine both are its frequency; of a triangle the second one is, and neither of steps, whose misfit may jump.
-    phase = interval * max(quick / max(slow, 1e-300), np.pi * slow / max(float(np.ptp(read)), 1e-300))
-    smooth = MEMORY_SPANS / max(phase, 1e-300)
-    reading = reading or noise_of(misfit, smooth, read)
+    reading = reading or noise_of(misfit, interval, motion.deflection, motion.rate, motion.acceleration)
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & _rare(lone[turns]))
     floor = noise_floor(reading.level, stiffness, gauge, step, force_step)
@@ -261,7 +255,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
         measured,
     )
     # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
-    of_blocks = noise_of(averaged, smooth / size, blocks.deflection)
+    of_blocks = noise_of(averaged, interval * size, blocks.deflection, blocks.rate, blocks.acceleration)
     noise = min(reading.level * np.sqrt(min(reading.memory / size, 1.0)), of_blocks.level)
     # A slow force rests on a step for many samples, and their average errs as each of them.
     moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
@@ -281,7 +275,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
         floor,
         gauge,
         size,
-        smooth / size,
+        interval * size,
         reading,
         measured,
     )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
+from ..preprocessing.kinematics import STILL
 from .channel_evidence import ChannelEvidence, channel_evidence
 from .dataset import Dataset, Experiment
 
@@ -22,9 +23,6 @@ RETURNS = 0.02
 
 SPEEDS = 0.5
 """Spread of the speed, at one deflection in one direction, over its mean, below which there is one speed."""
-
-STILL = 0.02
-"""Speed over its root mean square below which the tire rests."""
 
 UNDER_WAY = 0.3
 """Speed over its root mean square above which the direction is sure: a channel may change with it."""

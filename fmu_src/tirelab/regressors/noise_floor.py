@@ -8,11 +8,12 @@ What is left by the best tire cannot be less than all of them together, counted 
 
 A filter before the converter smooths the noise of a force: neighbours err alike. How many do so shows in differences
 over growing lags, which rise until the lag is the noise's memory and then stay, where a smooth misfit rises on
-(variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). What comes
-again at the same deflection is no noise, however quick it is: a ripple of the tread. Nor is what comes again on the
-same way from a turn: the knee of a loop, which a linear model follows in part. So the lags are looked at once more in
-what differs between visits of one place (pure error of replicates: N. R. Draper, H. Smith, Applied Regression
-Analysis, 1998, 2.1), and the least of these levels is the noise's.
+(variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). A misfit is
+smooth where the motion is slow, so each lag is looked at there: a quick part of a recording does not hide the memory
+that a slow part shows. What comes again at the same deflection is no noise, however quick it is: a ripple of the tread.
+Nor is what comes again on the same way from a turn: the knee of a loop, which a linear model follows in part. So the
+lags are looked at once more in what differs between visits of one place (pure error of replicates: N. R. Draper, H.
+Smith, Applied Regression Analysis, 1998, 2.1), and the least of these levels is the noise's.
 """
 
 from __future__ import annotations
@@ -20,15 +21,19 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from ..preprocessing.kinematics import STILL
 from ..preprocessing.robust_scale import trimmed_sigma
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
 """Root mean square error of a reading that is rounded to steps, in steps."""
@@ -39,6 +44,10 @@ noise that has a memory."""
 
 FEWEST_LAGS = 20
 """Lags that a recording holds at least: noise that is independent a lag apart has its scale known to a sixth then."""
+
+LONGEST_PHASE = float(2.0 * np.pi / 3.0)
+"""Phase p [rad] of the motion over the longest lag: third differences of a sine, (2 sin(p / 2))^3 of it, are five times
+those over half the lag there. A level that does not rise so far is a noise's."""
 
 OF_THIRD = float(np.sqrt(20.0))
 """Standard deviation of third differences of white noise of one: 1 + 9 + 9 + 1 squared weights."""
@@ -67,30 +76,51 @@ class Noise:
     memory: int
 
 
-def white_level(residual: FloatArray, lag: int = 1) -> float:
-    """Return the standard deviation of what differs between samples `lag` apart, from third differences."""
-    if residual.size < 3 * lag + 5:
+def white_level(residual: FloatArray) -> float:
+    """Return the standard deviation of what differs from sample to sample, from third differences."""
+    if residual.size < 8:
         return float(np.std(residual))
-    return trimmed_sigma(_third_differences(residual, lag)) / OF_THIRD
+    return _level(_third_differences(residual, 1))
 
 
-def noise_of(residual: FloatArray, smooth: float, deflection: FloatArray) -> Noise:
+def noise_of(
+    residual: FloatArray, interval: float, deflection: FloatArray, rate: FloatArray, acceleration: FloatArray
+) -> Noise:
     """Return the noise of a residual, white or with a memory.
 
-    smooth: samples over which what is no noise is smooth, so that its differences rise on; deflection [m]: beside them
+    interval [s] from sample to sample; deflection [m], rate [m/s] and acceleration [m/s^2]: the motion beside them
     """
-    lags = [1]
-    # Twice as far a smooth misfit still rises: a level that does not is a noise's.
-    while 2 * lags[-1] <= 2.0 * smooth and residual.size >= FEWEST_LAGS * 2 * lags[-1]:
+    span = float(np.ptp(deflection))
+    lags, slow = [1], np.ones(residual.size, dtype=bool)
+    while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
+        slower = _slow(rate * interval, acceleration * interval**2, span, 2 * lags[-1])
+        if slower.sum() < FEWEST_LAGS * 2 * lags[-1]:
+            break
         lags.append(2 * lags[-1])
-    found = _resting([white_level(residual, lag) for lag in lags])
+        slow = slower
+    found = _resting([_level(_third_differences(residual, lag)[_inner(slow, lag)]) for lag in lags])
     if found.memory == 1:
-        return found
-    for visits in _visits(deflection, found.memory):
+        return Noise(white_level(residual), 1)
+    for one, other in _visits(deflection, found.memory):
+        seen = slow[one] & slow[other]
+        visits = one[seen], other[seen]
         if visits[0].size >= FEWEST_LAGS * found.memory:
             own = _resting([_level_between(residual, lag, *visits) for lag in lags])
             found = min(found, own, key=lambda noise: noise.level)
     return found
+
+
+def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolArray:
+    """Return around which samples the motion is slow enough for the differences over a lag.
+
+    change [m], bend [m]: of the deflection, first and second, from sample to sample; span [m]: all of it. The
+    frequency of a sine is that of its bend over its change, that of a triangle follows from change and span.
+    """
+    local = (uniform_filter1d(v**2, 3 * lag + 1, mode="nearest") for v in (change, bend))
+    change_there, bend_there = (np.sqrt(np.maximum(mean, 0.0)) for mean in local)
+    rests = change_there < STILL * float(np.sqrt(np.mean(change**2)))
+    follows = bend_there * lag <= LONGEST_PHASE * change_there
+    return np.asarray((rests | follows) & (np.pi * change_there * lag <= LONGEST_PHASE * span))
 
 
 def _resting(levels: list[float]) -> Noise:
@@ -122,9 +152,18 @@ def _visits(deflection: FloatArray, memory: int) -> Iterator[tuple[IntArray, Int
 def _level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArray) -> float:
     """Return the level as of `white_level`, of what differs between visits."""
     differences = np.full(residual.size, np.nan)
-    differences[(3 * lag) // 2 :][: residual.size - 3 * lag] = _third_differences(residual, lag)
+    _inner(differences, lag)[:] = _third_differences(residual, lag)
     between = differences[one] - differences[other]
-    return trimmed_sigma(between[np.isfinite(between)]) / (OF_THIRD * float(np.sqrt(2.0)))
+    return _level(between[np.isfinite(between)]) / float(np.sqrt(2.0))
+
+
+def _level(third_differences: FloatArray) -> float:
+    return trimmed_sigma(third_differences) / OF_THIRD
+
+
+def _inner(values: NDArray[Scalar], lag: int) -> NDArray[Scalar]:
+    """Return the view of those values in whose middle a third difference over a lag is taken."""
+    return values[(3 * lag) // 2 :][: values.size - 3 * lag]
 
 
 def _third_differences(values: FloatArray, lag: int) -> FloatArray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
-from tirelab.regressors.noise_floor import noise_floor, noise_of, white_level
+from tirelab.regressors.noise_floor import Noise, noise_floor, noise_of, white_level
 
 FloatArray = NDArray[np.float64]
 
@@ -47,12 +47,16 @@ def test_a_reading_in_steps_has_their_error_however_slowly_it_moves() -> None:
 WHITE = np.random.default_rng(5).normal(0.0, 1.0, 8000)
 SLOW = 40.0 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0)
 MOTION = 0.02 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0 + 0.3)
-SMOOTH = 900.0 / 6.0
-"""A misfit of 900 samples to a cycle, of which three lags of 150 are a half."""
+
+
+def noise_beside(residual: FloatArray, motion: FloatArray) -> Noise:
+    """Return the noise of a residual beside an exact motion of one sample a second."""
+    rate = np.gradient(motion)
+    return noise_of(residual, 1.0, motion, rate, np.gradient(rate))
 
 
 def test_white_noise_has_no_memory() -> None:
-    found = noise_of(WHITE + SLOW, SMOOTH, MOTION)
+    found = noise_beside(WHITE + SLOW, MOTION)
     assert found.level == pytest.approx(1.0, rel=0.05)
     assert found.memory == 1
 
@@ -62,7 +66,7 @@ def test_filtered_noise_is_seen_beside_a_slower_misfit(cut_off: float) -> None:
     """Long averages see the spectrum at the frequency zero: of a filter of the second order 1 / (1.11 cut-off)."""
     filtered = lfilter(*butter(2, cut_off), WHITE)
     filtered /= np.std(filtered)
-    found = noise_of(filtered + SLOW, SMOOTH, MOTION)
+    found = noise_beside(filtered + SLOW, MOTION)
     assert found.level == pytest.approx(1.0, rel=0.25)
     # A memory is known as a power of two, so the variance of an average to a factor of two either way.
     assert 0.5 < found.memory * 1.11 * cut_off < 2.0
@@ -71,32 +75,35 @@ def test_filtered_noise_is_seen_beside_a_slower_misfit(cut_off: float) -> None:
 def test_a_white_part_does_not_hide_the_filtered_one() -> None:
     filtered = lfilter(*butter(2, 0.1), WHITE)
     beside = np.random.default_rng(6).normal(0.0, 0.1, WHITE.size)
-    found = noise_of(filtered / np.std(filtered) + beside, SMOOTH, MOTION)
+    found = noise_beside(filtered / np.std(filtered) + beside, MOTION)
     assert found.level == pytest.approx(1.0, rel=0.25)
 
 
 def test_a_misfit_that_rises_with_the_lag_to_the_motions_own_length_is_no_noise() -> None:
-    found = noise_of(0.01 * WHITE + SLOW, SMOOTH, MOTION)
+    found = noise_beside(0.01 * WHITE + SLOW, MOTION)
     assert found.level == pytest.approx(0.01, rel=0.2)
     assert found.memory == 1
 
 
 def test_a_ripple_that_comes_again_at_the_same_deflection_is_no_noise() -> None:
     ripple = np.sin(2.0 * np.pi * MOTION / 1e-3)
-    found = noise_of(0.1 * WHITE + ripple, SMOOTH, MOTION)
+    found = noise_beside(0.1 * WHITE + ripple, MOTION)
     assert found.level < 0.2
 
 
 def test_what_comes_again_with_the_other_sign_on_the_way_back_is_no_noise() -> None:
     ripple = np.sin(2.0 * np.pi * MOTION / 1e-3) * np.sign(np.gradient(MOTION))
-    found = noise_of(0.1 * WHITE + ripple, SMOOTH, MOTION)
+    found = noise_beside(0.1 * WHITE + ripple, MOTION)
     assert found.level < 0.2
 
 
-ROUGH = 4e-3 * sum(
-    np.sin(2.0 * np.pi * np.arange(8000) / p + 0.7 * p) for p in (40.0, 61.0, 97.0, 210.0, 890.0)
-)
-"""A motion that never turns twice at the same deflection."""
+def ride(stretched: float) -> FloatArray:
+    """Return a motion that never turns twice at the same deflection."""
+    periods = stretched * np.array([40.0, 61.0, 97.0, 210.0, 890.0])
+    return np.asarray(4e-3 * sum(np.sin(2.0 * np.pi * np.arange(8000) / p + 0.7 * p) for p in periods))
+
+
+ROUGH = ride(1.0)
 
 
 def test_the_knee_of_a_loop_that_comes_again_after_each_turn_is_no_noise() -> None:
@@ -106,7 +113,7 @@ def test_the_knee_of_a_loop_that_comes_again_after_each_turn_is_no_noise() -> No
     last = ROUGH[turns[np.searchsorted(turns, np.arange(8000), side="right") - 1]]
     gone = np.abs(ROUGH - last) / 1e-4
     knee = np.where(inwards, 1.0, -1.0) * (1.0 - 2.0 * gone) * gone * np.exp(1.0 - gone)
-    found = noise_of(knee + 0.3 * WHITE, 40.0 / 6.0, ROUGH)
+    found = noise_beside(knee + 0.3 * WHITE, ROUGH)
     assert found.memory == 1
     assert found.level < 0.4
 
@@ -115,19 +122,47 @@ def test_a_ripple_beside_filtered_noise_is_taken_off_and_the_noise_stays() -> No
     """Something comes again, with a third of the noise's power; what does not is the noise."""
     noise = lfilter(*butter(2, 0.2), WHITE)
     ripple = np.sqrt(2.0 / 3.0) * np.sin(2.0 * np.pi * MOTION / 1e-3)
-    found = noise_of(noise / np.std(noise) + ripple, SMOOTH, MOTION)
+    found = noise_beside(noise / np.std(noise) + ripple, MOTION)
     assert found.level == pytest.approx(1.0, rel=0.1)
     assert found.memory > 1
 
 
-@pytest.mark.parametrize("motion", [MOTION, ROUGH], ids=["cycles", "ride"])
+@pytest.mark.parametrize("motion", [MOTION, ride(4.0)], ids=["cycles", "ride"])
 def test_filtered_noise_does_not_come_again(motion: FloatArray) -> None:
     """Of 100 drawn noises at most five are taken for a ripple."""
     taken = 0
     for seed in range(100):
         noise = lfilter(*butter(2, 0.2), np.random.default_rng([7, seed]).normal(0.0, 1.0, motion.size))
-        taken += noise_of(noise / np.std(noise), SMOOTH, motion).level < 0.5
+        taken += noise_beside(noise / np.std(noise), motion).level < 0.5
     assert taken <= 5
+
+
+def test_a_quick_part_does_not_hide_the_memory_that_a_slow_part_shows() -> None:
+    """Of the last quarter a cycle has 24 samples; a memory of nine shows over lags of 32 and more."""
+    noise = lfilter(*butter(2, 0.1), WHITE)
+    quick = 0.02 * np.sin(2.0 * np.pi * np.arange(2000) / 24.0)
+    found = noise_beside(noise / np.std(noise), np.concatenate([MOTION[:6000], quick]))
+    assert found.level == pytest.approx(1.0, rel=0.25)
+    assert found.memory in (8, 16)
+
+
+def test_a_misfit_of_the_quick_part_is_no_noise() -> None:
+    """It is as large as filtered noise and rests over the same lags, but there the motion is quick."""
+    quick = 0.02 * np.sin(2.0 * np.pi * np.arange(2000) / 24.0)
+    motion = np.concatenate([MOTION[:6000], quick])
+    found = noise_beside(0.1 * WHITE + 100.0 * np.gradient(motion), motion)
+    assert found.level < 0.2
+    assert found.memory == 1
+
+
+def test_a_memory_is_seen_in_holds() -> None:
+    """At rest the rate is the rest of the gauge's noise, and its changes are as quick as the samples."""
+    noise = lfilter(*butter(2, 0.1), WHITE[:4000])
+    ramp = np.concatenate([np.linspace(0.0, 0.02, 60), np.full(3940, 0.02)])
+    motion = ramp + 1e-7 * np.random.default_rng(8).normal(0.0, 1.0, 4000)
+    found = noise_beside(noise / np.std(noise), motion)
+    assert found.level == pytest.approx(1.0, rel=0.25)
+    assert found.memory in (8, 16)
 
 
 def test_a_memory_is_seen_where_the_motion_is_hardly_slower() -> None:
@@ -135,6 +170,6 @@ def test_a_memory_is_seen_where_the_motion_is_hardly_slower() -> None:
     noise = lfilter(*butter(2, 0.13), WHITE[:1800])
     noise /= np.std(noise)
     cycle = 2.0 * np.pi * np.arange(1800) / 110.0
-    assert noise_of(noise, 110.0 / 6.0, 0.02 * np.sin(cycle)).memory > 1
+    assert noise_beside(noise, 0.02 * np.sin(cycle)).memory > 1
     loop = np.sign(np.cos(cycle)) * (1.0 - np.exp(-40.0 * np.abs(np.sin(cycle))))
-    assert noise_of(10.0 * loop + 0.1 * WHITE[:1800], 110.0 / 6.0, 0.02 * np.sin(cycle)).memory == 1
+    assert noise_beside(10.0 * loop + 0.1 * WHITE[:1800], 0.02 * np.sin(cycle)).memory == 1
