@@ -67,7 +67,7 @@ DERIVED = (
     "regressors/dataset.BY_CHANCE",
     "regressors/noise_floor.SHARE_OF_STEP",
     "regressors/noise_floor.STAYS",
-    "regressors/dataset.MEMORY_SPANS",
+    "regressors/noise_floor.LONGEST_PHASE",
     "regressors/turns.SAME",
     "estimation/uncertainty.SHAPE_INDICES",
     "diagnosis/acceptance.LIKELY",

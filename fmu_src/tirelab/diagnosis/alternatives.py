@@ -11,8 +11,7 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.dataset import Dataset
-from ..preprocessing.kinematics import BoolArray, FloatArray
-from ..regressors.excitation import STILL
+from ..preprocessing.kinematics import STILL, BoolArray, FloatArray
 from .confidence import unshared
 
 CREDIBLE = 0.97

@@ -18,8 +18,7 @@ from radialtire import TireModel
 
 from ..estimation.explanation import Explanation
 from ..preprocessing.dataset import Dataset, Experiment, Recorded, dataset_of
-from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray, Motion
-from ..regressors.excitation import STILL
+from ..preprocessing.kinematics import STILL, BoolArray, FloatArray, IndexArray, Motion
 from ..regressors.law import MOST_SURFACES
 from ..simulation.simulate import simulate, smoothed_motion
 from .untimed import is_timed
