@@ -125,7 +125,9 @@ def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolAr
 
 def _resting(levels: list[float]) -> Noise:
     """Return the noise that levels over doubled lags show: where they rise and then stay, else that of the first."""
-    rises = [after >= STAYS * before for before, after in itertools.pairwise(levels)]
+    # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
+    highest = list(itertools.accumulate(levels, max))
+    rises = [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
     # One doubling without a rise may be chance between two rises: a level holds over a factor of four.
     last = max((i + 1 for i, pair in enumerate(itertools.pairwise(rises)) if not any(pair)), default=0)
     risen = [i for i in range(last) if rises[i]]
