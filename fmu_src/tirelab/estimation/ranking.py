@@ -49,7 +49,7 @@ FLOOR_MOVED = 1.2
 """Factor to another floor from which on the sets are judged again."""
 
 HOPE = 8.0
-"""A promise may err by this much in log posterior before it is not followed."""
+"""A promise may err by this much in log posterior, beside another promise, before it is not followed."""
 
 
 @dataclass(frozen=True)
@@ -197,13 +197,18 @@ def _follow(board: _Board, names: frozenset[str]) -> None:
 
 
 def _promising(board: _Board, names: frozenset[str], beside: frozenset[str], most: int) -> None:
-    """Put in what may bring a fitted set within reach of the best; not what is in `beside`."""
-    base = board.fits[names]
+    """Put in what may bring a fitted set within reach of the best, or promises as much as what it is to replace.
+
+    beside: the set that is followed, of which nothing is put in
+    """
+    base, best = board.fits[names], board.posterior(board.best())
     others = [n for n in board.signatures if n not in beside]
-    gains = promises([board.signatures[n] for n in others], base, board.discrepancy)
-    for gain, name in sorted(zip(gains, others, strict=True), reverse=True)[:most]:
-        behind = board.posterior(board.best()) - board.posterior(names)
-        if gain - PRIOR_ODDS - behind > -HOPE and board.count < MOST_FITS:
+    replaced = [n for n in board.signatures if n in beside - names]
+    gains = promises([board.signatures[n] for n in (*others, *replaced)], base, board.discrepancy)
+    # A fit may bring far more than its promise did, so a promise is held against that of what it would replace.
+    wanted = min([best + PRIOR_ODDS - board.posterior(names), *gains[len(others) :]])
+    for gain, name in sorted(zip(gains, others, strict=False), reverse=True)[:most]:
+        if gain > wanted - HOPE and board.count < MOST_FITS:
             board.put_in(base, name)
 
 
