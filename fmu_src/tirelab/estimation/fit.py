@@ -91,7 +91,7 @@ class Fit:
 
     def judged(self, discrepancy: Discrepancy) -> Fit:
         """Return the fit as it is judged under another discrepancy."""
-        evidence = laplace_evidence(self.near, discrepancy.blurred(self.problem.dataset.gauge_error))
+        evidence = laplace_evidence(self.near, discrepancy.blurred(self.problem.dataset.rounding_error))
         return replace(
             self,
             log_likelihood=evidence.log_likelihood,

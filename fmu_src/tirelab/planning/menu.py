@@ -126,10 +126,11 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
         away[rows],
         noise / float(np.sqrt(stride)),
         0.0,
+        0.0,
         NoiseFloor(noise, 0.0, 0.0, 0.0),
         0.0,
         stride,
-        1.0,
+        step * stride,
         Noise(noise, 1),
         moved.measured,
     )

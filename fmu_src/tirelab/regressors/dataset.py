@@ -72,7 +72,8 @@ class Experiment:
     time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
     baseline [N]: force of the baseline tire there; misfit [N]: force read less the baseline's, averaged over the block
     counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
-    least_noise [N]: what the steps of the force's reading leave of it, however smooth they are
+    least_noise [N]: what the steps of the force's reading leave of it, however smooth they are; resting [N]: the part
+    of it that neighbouring blocks share, where the force rests on a step for longer than a block
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
     interval [s]: from block to block; reading: noise of the samples [N]
     measured: the channels that were recorded, by their names, averaged over the blocks
@@ -89,6 +90,7 @@ class Experiment:
     counts: BoolArray
     noise: float
     least_noise: float
+    resting: float
     floor: NoiseFloor
     gauge: float
     size: int
@@ -111,10 +113,13 @@ class Dataset:
         return self.stacked([e.misfit for e in self.experiments])
 
     @property
-    def gauge_error(self) -> float:
-        """Root mean square of what a gauge's steps leave of the motion behind them, in units of the noise."""
-        parts = [(e.counts.sum(), (STEPS_LEFT * e.floor.steps / e.noise) ** 2) for e in self.experiments]
-        return float(np.sqrt(sum(n * p for n, p in parts) / max(sum(n for n, _ in parts), 1)))
+    def rounding_error(self) -> float:
+        """Root mean square of what the steps of the readings leave that neighbouring blocks share, in units of the
+        noise: of the motion behind those of the deflection, and of a force that rests on a step.
+        """
+        count = np.array([e.counts.sum() for e in self.experiments])
+        left = [np.hypot(STEPS_LEFT * e.floor.steps, e.resting) / e.noise for e in self.experiments]
+        return float(np.sqrt(count @ np.square(left) / max(int(count.sum()), 1)))
 
     @property
     def load(self) -> float:
@@ -204,7 +209,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     misfit = recording.force - baseline
     stiffness = _stiffness(motion.deflection, baseline)
     force_step = staircase_step(recording.force)
-    lone = _spikes(misfit)
+    lone = spikes(misfit)
     resolved = motion.resolved & ~lone
     followed = ~beyond_travel(recording.deflection, recording.force)
     interval = float(np.median(np.diff(recording.time)))
@@ -259,7 +264,9 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     noise = min(reading.level * np.sqrt(min(reading.memory / size, 1.0)), of_blocks.level)
     # A slow force rests on a step for many samples, and their average errs as each of them.
     moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
-    least_noise = force_step * SHARE_OF_STEP / float(np.sqrt(max(size * moving, 1.0)))
+    rounding = force_step * SHARE_OF_STEP
+    least_noise = rounding / float(np.sqrt(max(size * moving, 1.0)))
+    resting = rounding * float(np.sqrt(max(1.0 - size * moving, 0.0)))
     return Experiment(
         recording.name,
         blocks.time,
@@ -272,6 +279,7 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
         counts,
         max(noise, least_noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
         least_noise,
+        resting,
         floor,
         gauge,
         size,
@@ -292,7 +300,7 @@ def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
     return np.asarray(np.interp(deflection, grid, np.gradient(np.interp(grid, x, f), grid)))
 
 
-def _spikes(misfit: FloatArray) -> BoolArray:
+def spikes(misfit: FloatArray) -> BoolArray:
     """Return where a single sample stands out of both its neighbours."""
     level = white_level(misfit)
     lone = np.zeros(misfit.size, dtype=bool)
