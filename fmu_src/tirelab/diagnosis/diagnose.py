@@ -11,6 +11,7 @@ from radialtire import TireModel
 from ..computing.threads import one_thread
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect
+from ..estimation.remainder import of_the_written_tire
 from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
@@ -20,7 +21,7 @@ from ..simulation.simulate import simulate
 from .acceptance import accept, validation_on, without_unlikely
 from .alternatives import REACHED, Alternative, alternatives_of
 from .confidence import grounds_of_effect, grounds_of_verdict, probability, shared
-from .contradiction import Contradiction, contradiction_of
+from .contradiction import contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .held_out import HeldOut, rmse
 from .localization import law_corrected, localize
@@ -28,6 +29,12 @@ from .residual_model import residual_models, unexplained_by
 from .summary import summarise
 from .untimed import OF_TIME, is_timed, places_told, remainder_told
 from .verdict import Fit, Verdict
+
+QUICK = (
+    "Most of it lies in sharp turns of the motion or in changes quicker than what is compared: drive round corners, "
+    "sample faster, or look for what disturbs the force."
+)
+"""Said of a remainder that is not where one set is compared with another."""
 
 MOST_TESTED = 3
 """Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
@@ -71,7 +78,9 @@ def diagnose(
     likely = {e.name: e.probability for e in considered}
     explanation, validation = without_unlikely(explanation, validation, likely, validate)
     effects, doubted = _named_and_doubted(explanation, considered)
-    left = remainder_told(explanation.remainder, timed)
+    fit = _figures(before, explanation, validation)
+    written = of_the_written_tire(explanation.remainder, before, explanation.residuals, fit.noise)
+    left = remainder_told(written, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
@@ -84,7 +93,6 @@ def diagnose(
         levels,
         None if unexplained else explanation.residuals,
     )
-    fit = _figures(before, explanation, validation)
     contradiction = contradiction_of(explanation, fitted)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset, timed))
@@ -98,7 +106,10 @@ def diagnose(
         unexplained_by=unexplained,
         residual_models=remainder,
         summary=_said(
-            summarise(effects, alternatives, remainder, confidence, fit, test), contradiction, fitted
+            summarise(effects, alternatives, remainder, confidence, fit, test),
+            QUICK if unexplained and left.uncompared > 0.5 else "",
+            "" if contradiction is None else contradiction.sentence,
+            said_of(fitted),
         ),
         where=places_told(places, timed),
         fit=fit,
@@ -113,9 +124,8 @@ def diagnose(
     )
 
 
-def _said(summary: str, contradiction: Contradiction | None, fitted: Sequence[Recorded]) -> str:
-    doubts = ("" if contradiction is None else contradiction.sentence, said_of(fitted))
-    return " ".join(part for part in (summary, *doubts) if part)
+def _said(*sentences: str) -> str:
+    return " ".join(sentence for sentence in sentences if sentence)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..regressors.dataset import Dataset
+from ..regressors.dataset import Dataset, spikes
 from .fit import Fit
 
 FloatArray = NDArray[np.float64]
@@ -39,13 +40,15 @@ class Dependence:
 @dataclass(frozen=True)
 class Remainder:
     """share: of the misfit's power beyond the noise; size: root mean square over the noise of the recorded samples;
-    force [N]; depends: coordinates, the strongest first.
+    force [N]; depends: coordinates, the strongest first; uncompared: share of its power that lies where no set is
+    compared with another, at sharp turns of the motion or quicker than the blocks.
     """
 
     share: float
     size: float
     force: float
     depends: tuple[Dependence, ...]
+    uncompared: float = 0.0
 
     def to_dict(self) -> dict[str, object]:
         """Return the entry `remainder` of diagnosis.json."""
@@ -53,6 +56,7 @@ class Remainder:
             "share": self.share,
             "size": self.size,
             "rms": self.force,
+            "uncompared": self.uncompared,
             "depends_on": [
                 {"by": d.coordinate, "share": d.share, "from": d.begin, "to": d.end} for d in self.depends
             ],
@@ -77,6 +81,24 @@ def remainder_of(fit: Fit) -> Remainder:
     return Remainder(
         min(beyond / missed, 1.0), force / max(level, 1e-300), force, _dependences(dataset, left)
     )
+
+
+def of_the_written_tire(
+    compared: Remainder, before: Sequence[FloatArray], after: Sequence[FloatArray], noise: float
+) -> Remainder:
+    """Return the remainder of the written tire over all samples as recorded but single ones that stand out.
+
+    compared: that of the fitted set in the compared blocks; before, after [N]: what the baseline and the written tire
+    leave of each recording; noise [N]: of the recorded samples, root mean square
+    """
+    whole, left = (float(np.mean(np.concatenate([v[~spikes(v)] for v in r]) ** 2)) for r in (before, after))
+    beyond, missed = max(left - noise**2, 0.0), max(whole - noise**2, 1e-300)
+    force = float(np.sqrt(beyond))
+    if force <= compared.force:
+        return compared
+    hidden = 1.0 - (compared.force / force) ** 2
+    size = force / max(noise, 1e-300)
+    return replace(compared, share=min(beyond / missed, 1.0), size=size, force=force, uncompared=hidden)
 
 
 def _dependences(dataset: Dataset, left: FloatArray) -> tuple[Dependence, ...]:
