@@ -1,11 +1,14 @@
-"""An amplifier whose zero drifts: a force that adds in proportion to the time since the start.
+"""An amplifier whose zero drifts: a force that adds with the time since the start, evenly or until it has settled.
 
-    F_read = F + d t
+    F_read = F + d (1 - exp(-k t)) / k,   so d t for k = 0
 
+d [N/s] is the drift at first, k [1/s] the rate at which it settles: that of what warms up, the amplifier or its cell.
 It adds to the force, where a leaking or warming tire scales it: samples of the tire in the air distinguish the two.
 """
 
 from __future__ import annotations
+
+import math
 
 from ..effect import Effect, Instant, State
 from ..parameter import Parameter
@@ -13,8 +16,13 @@ from ..prior import Prior
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Add d t [N]."""
-    return signal + values[0] * instant.time, state
+    """Add the drift since the start [N]."""
+    drift, settling = values
+    settled = settling * instant.time
+    duration = instant.time
+    if settled > 1e-9:
+        duration *= -math.expm1(-settled) / settled
+    return signal + drift * duration, state
 
 
 FORCE_DRIFT = Effect(
@@ -28,11 +36,22 @@ FORCE_DRIFT = Effect(
             0.0,
             -100.0,
             100.0,
-            "added for each second",
+            "added for each second at first",
             neutral=0.0,
             nominal=0.05,
             role="strength",
             prior=Prior("normal", 0, 0.05, "force/duration"),
+        ),
+        Parameter(
+            "settling",
+            "k",
+            "1/s",
+            0.0,
+            0.0,
+            1.0,
+            "rate at which the drift settles",
+            optional=True,
+            prior=Prior("normal", 0, 2.0, "1/duration", "even, or settled within the recording"),
         ),
     ),
     initial_state=(),
@@ -40,7 +59,7 @@ FORCE_DRIFT = Effect(
     statement="the force's zero drifts with time",
     tell_tale="the residual grows with time by the same amount at every deflection, also without contact",
     imitators=("pressure_leak", "warm_up", "force_offset"),
-    source="straight-line drift of an amplifier; magnitudes are in the gauge's data sheet, bounds wide",
+    source="warm-up drift of an amplifier, at first a straight line; magnitudes are in its data sheet, bounds wide",
     traits=("slow", "reading"),
     form_error=0.001,
 )

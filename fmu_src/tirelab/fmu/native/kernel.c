@@ -1134,10 +1134,16 @@ static Tuple8 force_offset_respond(double signal, Instant instant, Nothing state
     return (Tuple8){signal + values.v[0], state};
 }
 
-/* effects.force_drift.py: Add d t [N]. */
-static Tuple8 force_drift_respond(double signal, Instant instant, Nothing state, Vector1 values)
+/* effects.force_drift.py: Add the drift since the start [N]. */
+static Tuple8 force_drift_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
-    return (Tuple8){signal + values.v[0] * instant.time, state};
+    double drift = values.v[0], settling = values.v[1];
+    double settled = settling * instant.time;
+    double duration = instant.time;
+    if (settled > 1e-09) {
+        duration *= -expm1(-settled) / settled;
+    }
+    return (Tuple8){signal + drift * duration, state};
 }
 
 /* effects.saturation.py: Return the force as read [N]. */
@@ -1177,11 +1183,11 @@ static double through_reading(double signal, Instant at, const double *p, const 
         signal = t3.a;
     }
     if (p[89] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector1){{p[90]}});
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[90], p[91]}});
         signal = t4.a;
     }
-    if (p[91] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[92], p[93]}});
+    if (p[92] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[93], p[94]}});
         signal = t5.a;
     }
     return signal;

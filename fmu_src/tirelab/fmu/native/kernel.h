@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "75a871b192813930" /* what stands where in p and s */
+#define LAYOUT "cbd5da5ce584e44d" /* what stands where in p and s */
 enum {
-    PARAMETERS = 94,
+    PARAMETERS = 95,
     STATES = 181,
     S_TIME = 0,
     S_STARTED = 4,
