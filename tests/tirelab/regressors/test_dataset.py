@@ -71,3 +71,19 @@ def test_lone_peaks_at_the_turns_count_and_a_spike_at_one_does_not() -> None:
         counted.append(dataset_of([replace(quiet, force=force)], TireModel()).experiments[0].counts)
     assert counted[0][upper].mean() > 0.8
     assert not counted[1][one]
+
+
+def test_a_force_that_rests_on_a_step_errs_alike_in_neighbouring_blocks() -> None:
+    """In a hold almost all of the error of rounding, q / sqrt(12), is shared; of one that passes many steps none."""
+    time = 0.01 * np.arange(8000)
+    hold, ramp = np.minimum(2e-4 * np.arange(8000), 0.015), np.linspace(0.005, 0.02, 8000)
+    shared = []
+    for x, step in ((hold, 2.0), (ramp, 0.002)):
+        silent = Recording("coarse", time, x, np.full(8000, np.inf), np.zeros(8000))
+        noise = 0.1 * step * np.random.default_rng(9).normal(size=8000)
+        force = step * np.round((simulate(TireModel(), silent) + noise) / step)
+        dataset = dataset_of([replace(silent, force=force)], TireModel())
+        (e,) = dataset.experiments
+        shared.append(dataset.rounding_error * e.noise * np.sqrt(12.0) / step)
+    assert shared[0] > 0.9
+    assert shared[1] < 0.1

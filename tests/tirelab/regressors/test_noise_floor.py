@@ -155,6 +155,13 @@ def test_a_misfit_of_the_quick_part_is_no_noise() -> None:
     assert found.memory == 1
 
 
+def test_differences_that_fall_and_rise_again_have_no_memory() -> None:
+    """A limit cycle of two samples beside white noise: over even lags it is gone, over odd ones it is all there."""
+    cycle = np.where(np.arange(WHITE.size) % 2 == 0, 0.6, -0.6)
+    slower = 0.8 * np.sin(2.0 * np.pi * np.arange(WHITE.size) / 12.0)
+    assert noise_beside(WHITE + cycle + slower, MOTION).memory == 1
+
+
 def test_a_memory_is_seen_in_holds() -> None:
     """At rest the rate is the rest of the gauge's noise, and its changes are as quick as the samples."""
     noise = lfilter(*butter(2, 0.1), WHITE[:4000])
