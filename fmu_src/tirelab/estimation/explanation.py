@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.dataset import Recorded
-from ..regressors.dataset import Dataset, dataset_of
+from ..regressors.dataset import BLURRED, Dataset, blocking_error, dataset_of
 from ..regressors.excitation import Excitation, excitation_of
 from ..regressors.law import LAW, SHAPE, candidates, law_signature
 from ..regressors.noise_floor import NoiseFloor
 from ..regressors.out_of_size import out_of_size
 from ..regressors.signature import Signature, in_other_noise, signatures_of, size_of
-from ..selection.discrepancy import discrepancy_of, usual_form_error
+from ..selection.discrepancy import LIKE_NOISE, discrepancy_of, usual_form_error
 from ..selection.marginal_likelihood import normal_equations, parts_of
 from ..selection.search import PRIOR_ODDS, search
 from ..simulation.simulate import simulate
@@ -145,20 +145,43 @@ def explain_misfit(
     hidden = excitation.reasons(allowed) | out_of_size((*allowed, SHAPE), dataset.scales)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
+    dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
+    ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
+    error = blocking_error(ranking.best.problem.dataset, recordings, ranking.best.tire)
+    if error > LIKE_NOISE:
+        # The error of a block grows with the square of its length.
+        longest = max(e.size for e in dataset.experiments) * (BLURRED / error) ** 0.5
+        readings = [e.reading for e in dataset.experiments]
+        finer = dataset_of(recordings, baseline, readings, max(1, int(longest)))
+        dataset, raw, quiet = _signatures(finer, recordings, shown, catalogue)
+        ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
+    like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
+    return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+
+
+def _signatures(
+    dataset: Dataset, recordings: Sequence[Recorded], shown: Sequence[str], catalogue: Sequence[str]
+) -> tuple[Dataset, tuple[Signature, ...], Dataset]:
+    """Return the dataset in blocks as long as its noise remembers, its signatures, and it with its noise."""
     raw = _raw(dataset, shown, catalogue)
     quiet = with_saturated_noise(dataset, raw)
     if any(e.reading.memory > e.size for e in quiet.experiments):
-        dataset = dataset_of(recordings, baseline, [e.reading for e in quiet.experiments])
+        dataset = dataset_of(recordings, dataset.tire, [e.reading for e in quiet.experiments])
         raw = _raw(dataset, shown, catalogue)
         quiet = with_saturated_noise(dataset, raw)
+    return dataset, raw, quiet
+
+
+def _ranking(
+    dataset: Dataset, raw: Sequence[Signature], quiet: Dataset, excitation: Excitation, progress: Progress
+) -> tuple[Ranking, tuple[Signature, ...]]:
+    """Return the ranked sets and the signatures in units of the noise."""
     signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
     rough = discrepancy_of(quiet.misfit, usual_form_error())
     equations = normal_equations(signatures, quiet.misfit)
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
     progress("fitting the sets that can win")
-    ranking = ranked(quiet, signatures, rough, starts, partial(_alike, excitation))
-    like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
-    return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+    return ranked(quiet, signatures, rough, starts, partial(_alike, excitation)), signatures
 
 
 def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:

@@ -175,20 +175,47 @@ class Dataset:
 
 
 def dataset_of(
-    recordings: Sequence[Recorded], tire: TireModel, readings: Sequence[Noise] | None = None
+    recordings: Sequence[Recorded],
+    tire: TireModel,
+    readings: Sequence[Noise] | None = None,
+    longest: int | None = None,
 ) -> Dataset:
     """Return the recordings in blocks and what `tire`, the baseline, misses of them.
 
     readings: noise of the samples of each recording, if it is known; blocks are as long at least as it remembers
+    longest: samples of a block at most, as far as MOST_ROWS and that allow
     """
     total = sum(r.time.size for r in recordings)
     size = max(1, -(-total // ROWS))
+    least = size * ROWS // MOST_ROWS
+    if longest is not None:
+        size = min(size, longest)
     known: Sequence[Noise | None] = readings or [None] * len(recordings)
-    experiments = tuple(_experiment(r, tire, size, n) for r, n in zip(recordings, known, strict=True))
+    experiments = tuple(
+        _experiment(r, tire, (least, size), n) for r, n in zip(recordings, known, strict=True)
+    )
     gauge = float(np.median([e.gauge for e in experiments]))
     return Dataset(
         experiments, replace(tire, reading_noise=min(gauge, 0.01)), _scales(experiments, recordings)
     )
+
+
+def blocking_error(dataset: Dataset, recordings: Sequence[Recorded], tire: TireModel) -> float:
+    """Return by how much the response of `tire` in blocks differs from its average over their samples.
+
+    Root mean square in units of the noise, over the `recordings` of the dataset: a delay that is shorter than a block
+    is not what it is from sample to sample.
+    """
+    error = []
+    for e, recording in zip(dataset.experiments, recordings, strict=True):
+        if e.size == 1:
+            error.append(np.zeros(e.time.size))
+            continue
+        moved = smoothed_motion(recording, motion_of(recording.time, _read(recording)[0]))
+        changed = simulate(tire, moved, moved) - simulate(dataset.tire, moved, moved)
+        averaged = changed[: e.time.size * e.size].reshape(-1, e.size).mean(axis=1)
+        error.append(averaged - (simulate(tire, e, e) - e.baseline))
+    return float(np.sqrt(np.mean(dataset.stacked(error) ** 2)))
 
 
 def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:
@@ -199,9 +226,18 @@ def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) 
     return replace(tire, effects=tuple(order))
 
 
-def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise | None) -> Experiment:
+def _read(recording: Recorded) -> tuple[FloatArray, float]:
+    """Return the deflection [m] as it is read, without the steps of a gauge, and these [m], 0 where it has none."""
     step = staircase_step(recording.deflection)
     read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
+    return read, step
+
+
+def _experiment(
+    recording: Recorded, tire: TireModel, sizes: tuple[int, int], reading: Noise | None
+) -> Experiment:
+    """Return a recording in blocks; sizes: samples of one at least, and at most."""
+    read, step = _read(recording)
     motion = motion_of(recording.time, read)
     gauge = 0.0 if step > 0.0 else motion.noise
     moved = smoothed_motion(recording, motion)
@@ -223,10 +259,10 @@ def _experiment(recording: Recorded, tire: TireModel, size: int, reading: Noise 
     blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
     turn = min(TURN, float(np.sqrt(12.0 * blur)))
     longest = turn * slow / max(quick * interval, 1e-300)
-    least = size * ROWS // MOST_ROWS
+    least, most = sizes
     # Blocks within the memory of their noise would not be independent of each other.
     remembered = min(reading.memory, TURN * slow / max(quick * interval, 1e-300))
-    size = int(max(1, least, remembered, min(size, longest, recording.time.size // FEWEST_ROWS)))
+    size = int(max(1, least, remembered, min(most, longest, recording.time.size // FEWEST_ROWS)))
     whole = recording.time.size // size * size
     if size > 1:
         # A block that holds a turn has no motion of its own.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 from tirelab.recordings.recording import Recording
-from tirelab.regressors.dataset import dataset_of
+from tirelab.regressors.dataset import arranged, blocking_error, dataset_of
 from tirelab.simulation.simulate import simulate
 
 FORCE_NOISE = 5.0
@@ -87,3 +87,22 @@ def test_a_force_that_rests_on_a_step_errs_alike_in_neighbouring_blocks() -> Non
         shared.append(dataset.rounding_error * e.noise * np.sqrt(12.0) / step)
     assert shared[0] > 0.9
     assert shared[1] < 0.1
+
+
+def test_a_delay_shorter_than_a_block_errs_in_blocks_and_hardly_in_samples() -> None:
+    """A sine through a chord over one interval misses p^2 / 8 of its amplitude in its middle: half of that is rms."""
+    time = 0.002 * np.arange(16_000)
+    x = 0.015 + 0.005 * np.sin(2.0 * np.pi * 4.0 * time)
+    silent = Recording("sine", time, x, np.full(16_000, np.inf), np.zeros(16_000))
+    force = simulate(TireModel(), silent)
+    read = replace(silent, force=force + 0.2 * np.random.default_rng(5).normal(size=16_000))
+    lag = CATALOGUE["force_lag"]
+    values = tuple({"lag": 0.0, "delay": 0.005}.get(p.name, p.start) for p in lag.parameters)
+    coarse = dataset_of([read], TireModel())
+    fine = dataset_of([read], TireModel(), longest=1)
+    delayed = arranged(TireModel(), [(lag.name, values)])
+    (e,) = coarse.experiments
+    assert e.size > 2
+    bound = (2.0 * np.pi * 4.0 * 0.002 * e.size) ** 2 / 8.0 * np.std(force) / e.noise
+    assert 0.1 * bound < blocking_error(coarse, [read], delayed) < bound
+    assert blocking_error(fine, [read], delayed) == 0.0
