@@ -16,7 +16,7 @@ from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
 from ..preprocessing.dataset import Dataset, Recorded, dataset_of
 from ..preprocessing.kinematics import FloatArray
-from ..regressors.end_of_travel import said_of
+from ..regressors.end_of_travel import beyond_travel, said_of
 from ..simulation.simulate import simulate
 from .acceptance import accept, validation_on, without_unlikely
 from .alternatives import REACHED, Alternative, alternatives_of
@@ -79,7 +79,13 @@ def diagnose(
     explanation, validation = without_unlikely(explanation, validation, likely, validate)
     effects, doubted = _named_and_doubted(explanation, considered)
     fit = _figures(before, explanation, validation)
-    written = of_the_written_tire(explanation.remainder, before, explanation.residuals, fit.noise)
+    followed = [~beyond_travel(r.deflection, r.force) for r in fitted]
+    written = of_the_written_tire(
+        explanation.remainder,
+        [values[seen] for values, seen in zip(before, followed, strict=True)],
+        [values[seen] for values, seen in zip(explanation.residuals, followed, strict=True)],
+        fit.noise,
+    )
     left = remainder_told(written, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, unexplained=bool(unexplained))

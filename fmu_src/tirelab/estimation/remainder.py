@@ -89,7 +89,7 @@ def of_the_written_tire(
     """Return the remainder of the written tire over all samples as recorded but single ones that stand out.
 
     compared: that of the fitted set in the compared blocks; before, after [N]: what the baseline and the written tire
-    leave of each recording; noise [N]: of the recorded samples, root mean square
+    leave of each recording where its gauges follow; noise [N]: of the recorded samples, root mean square
     """
     whole, left = (float(np.mean(np.concatenate([v[~spikes(v)] for v in r]) ** 2)) for r in (before, after))
     beyond, missed = max(left - noise**2, 0.0), max(whole - noise**2, 1e-300)

@@ -137,7 +137,7 @@ def test_what_does_not_repeat_is_not_packed(rippled: Rippled, tmp_path: Path) ->
 def test_a_correction_is_built_from_its_diagnosis(tmp_path: Path) -> None:
     drift = CATALOGUE["force_drift"]
     law = PowerLaw(coefficient=1000.0, exponent=1.0)
-    tire = TireModel(law=law, effects=((drift, (2.0,)),))
+    tire = TireModel(law=law, effects=((drift, (2.0, 0.0)),))
     correction = Correction(TireModel(law=law), tire, 1e5, False)
     content = {
         "schema": 2,

@@ -55,8 +55,8 @@ def test_two_effects_do_not_share_a_loop() -> None:
     loops = [compiled.loop("respond_loop", e.name, e.respond) for e in (one, two)]
     history = (np.array([0.0, 2.0]), *(np.zeros(2) for _ in range(9)))
     answers = [np.empty(2), np.empty(2)]
-    for loop, answer in zip(loops, answers, strict=True):
-        loop(np.full(2, 100.0), history, (), (5.0,), answer, False)
+    for loop, answer, values in zip(loops, answers, ((5.0,), (5.0, 0.0)), strict=True):
+        loop(np.full(2, 100.0), history, (), values, answer, False)
     # F + F0, and F + d t with t = 0 s and 2 s
     assert answers[0].tolist() == [105.0, 105.0]
     assert answers[1].tolist() == [100.0, 110.0]
