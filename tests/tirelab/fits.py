@@ -8,11 +8,10 @@ import numpy as np
 from drives import flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
 from tirelab.estimation.findings import FittedModel
-from tirelab.estimation.fit import Fit
-from tirelab.estimation.laplace import Linearised
+from tirelab.estimation.fit import Fit, Linearised
 from tirelab.estimation.problem import law_start, problem_of
 from tirelab.regressors.dataset import dataset_of
-from tirelab.regressors.law import LAW
+from tirelab.regressors.signature import LAW
 
 
 def values_of(name: str, **given: float) -> tuple[float, ...]:

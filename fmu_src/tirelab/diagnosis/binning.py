@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from radialtire import FLAT_RADIUS
 
-from ..preprocessing.dataset import Dataset, Experiment, Recorded
-from ..preprocessing.kinematics import BoolArray, FloatArray, IndexArray
+from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
+from ..preprocessing.samples import Dataset, Experiment, Recorded
 
 BINS = 800
 """Bins of a continuous coordinate at most, of about equal numbers of samples: a span of 1 % has eight of them."""

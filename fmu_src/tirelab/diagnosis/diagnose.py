@@ -10,24 +10,26 @@ from radialtire import TireModel
 
 from ..computing.threads import one_thread
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
-from ..estimation.findings import NamedEffect
-from ..estimation.remainder import of_the_written_tire
+from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..planning.waveforms import Limits
-from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal
-from ..preprocessing.dataset import Dataset, Recorded, dataset_of
-from ..preprocessing.kinematics import FloatArray
-from ..regressors.end_of_travel import beyond_travel, said_of
+from ..preprocessing.data_checks import PoorRecording, beyond_travel, check_recordings, check_signal, said_of
+from ..preprocessing.motion import FloatArray
+from ..preprocessing.samples import OF_TIME, Dataset, Recorded, dataset_of, is_timed
 from ..simulation.simulate import simulate
-from .acceptance import accept, validation_on, without_unlikely
-from .alternatives import REACHED, Alternative, alternatives_of
-from .confidence import grounds_of_effect, grounds_of_verdict, probability, shared
-from .contradiction import contradiction_of
+from .acceptance import HeldOut, accept, rmse, validation_on, without_unlikely
+from .confidence import (
+    REACHED,
+    Alternative,
+    alternatives_of,
+    grounds_of_effect,
+    grounds_of_verdict,
+    probability,
+    shared,
+)
 from .discriminating_test import DiscriminatingTest, discriminate
-from .held_out import HeldOut, rmse
-from .localization import law_corrected, localize
-from .residual_model import residual_models, unexplained_by
+from .localization import Span, law_corrected, localize
+from .residual_model import contradiction_of, residual_models, unexplained_by
 from .summary import summarise
-from .untimed import OF_TIME, is_timed, places_told, remainder_told
 from .verdict import Fit, Verdict
 
 QUICK = (
@@ -86,7 +88,7 @@ def diagnose(
         [values[seen] for values, seen in zip(explanation.residuals, followed, strict=True)],
         fit.noise,
     )
-    left = remainder_told(written, timed)
+    left = _remainder_told(written, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
@@ -117,7 +119,7 @@ def diagnose(
             "" if contradiction is None else contradiction.sentence,
             said_of(fitted),
         ),
-        where=places_told(places, timed),
+        where=_places_told(places, timed),
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
         evidence=explanation.evidence,
@@ -214,3 +216,15 @@ def _limits_of(dataset: Dataset, timed: bool) -> Limits:
 
 
 __all__ = ["PoorRecording", "Recorded", "catalogue_names", "diagnose"]
+
+
+def _places_told(places: Sequence[Span], timed: bool) -> tuple[Span, ...]:
+    """Return the places that can be told."""
+    return tuple(place for place in places if timed or place.by not in OF_TIME)
+
+
+def _remainder_told(remainder: Remainder, timed: bool) -> Remainder:
+    """Return a remainder without what it depends on in time."""
+    if timed:
+        return remainder
+    return replace(remainder, depends=tuple(d for d in remainder.depends if d.coordinate not in OF_TIME))

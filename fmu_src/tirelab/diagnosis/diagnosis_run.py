@@ -32,11 +32,21 @@ from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
-from .believed_force import Believed, believed_of, simulated_by
-from .correction import CORRECTION, deliver, write_corrected
 from .diagnose import PoorRecording, diagnose
-from .outcome import DATA, DIAGNOSIS, FMU, REPORT, TEST, TIRE, Replayed, content_of
-from .provenance import command_line, files_read, sha256
+from .outcome import (
+    DATA,
+    DIAGNOSIS,
+    FMU,
+    REPORT,
+    TEST,
+    TIRE,
+    Replayed,
+    command_line,
+    content_of,
+    files_read,
+    sha256,
+)
+from .simulation_correction import CORRECTION, Believed, believed_of, deliver, simulated_by, write_corrected
 from .verdict import Verdict
 
 AGREEMENT = 1e-9

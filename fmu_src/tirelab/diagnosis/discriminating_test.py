@@ -15,7 +15,7 @@ import numpy as np
 
 from ..estimation.findings import FittedModel
 from ..planning.waveforms import WAVEFORMS, Limits, sample_times
-from ..preprocessing.kinematics import FloatArray
+from ..preprocessing.motion import FloatArray
 from ..report.titles import set_title
 from ..simulation.simulate import simulate
 

@@ -24,8 +24,8 @@ import numpy as np
 from radialtire import TireModel
 from scipy.stats import chi2
 
-from ..preprocessing.dataset import Dataset, Experiment, Recorded
-from ..preprocessing.kinematics import FloatArray, IndexArray
+from ..preprocessing.motion import FloatArray, IndexArray
+from ..preprocessing.samples import Dataset, Experiment, Recorded
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 

@@ -10,7 +10,7 @@ from radialtire import CATALOGUE
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, set_title, sure
-from .alternatives import Alternative
+from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 from .verdict import Fit

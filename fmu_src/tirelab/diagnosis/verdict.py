@@ -12,20 +12,17 @@ from radialtire import TireModel
 from radialtire.tirefile import to_text
 
 from ..errors import TirelabError
-from ..estimation.findings import Evidence, NamedEffect
-from ..estimation.remainder import Remainder
+from ..estimation.findings import Evidence, NamedEffect, Remainder
 from ..names import REFITTED_LAW, UNKNOWN
-from ..preprocessing.dataset import Recorded
-from ..preprocessing.kinematics import FloatArray
+from ..preprocessing.motion import FloatArray
+from ..preprocessing.samples import Recorded
 from ..recordings.recording import Recording
 from ..report.titles import headline, more_than_noise
 from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
-from .alternatives import Alternative
+from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
-from .effect_sizes import effect_size, load_of
-from .effect_sketch import sketch_of
-from .law_change import LawChange, law_changes
+from .effect_figures import LawChange, effect_size, law_changes, load_of, sketch_of
 from .localization import Span, law_corrected
 from .outcome import alternative_detail, finite, page_content
 from .residual_model import ResidualModel

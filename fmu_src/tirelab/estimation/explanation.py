@@ -1,41 +1,82 @@
 """The engine's one entry: which effects explain the misfit of a baseline tire on recordings.
 
-The signatures of all effects are compared with the misfit (`selection`); every set that can still win is fitted in the
-catalogue's own forms (`estimation`), and the sets are ranked by those fits.
+The signatures of all effects are compared with the misfit (`selection`), whose noise is judged by what a model with
+every freedom at once leaves; every set that can still win is fitted in the catalogue's own forms (`estimation`), and
+the sets are ranked by those fits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel
 
-from ..preprocessing.dataset import Recorded
+from ..preprocessing.noise import NoiseFloor, noise_of
+from ..preprocessing.samples import Recorded
 from ..regressors.dataset import BLURRED, Dataset, blocking_error, dataset_of
 from ..regressors.excitation import Excitation, excitation_of
-from ..regressors.law import LAW, SHAPE, candidates, law_signature
-from ..regressors.noise_floor import NoiseFloor
-from ..regressors.out_of_size import out_of_size
-from ..regressors.signature import Signature, in_other_noise, signatures_of, size_of
-from ..selection.discrepancy import LIKE_NOISE, discrepancy_of, usual_form_error
-from ..selection.marginal_likelihood import normal_equations, parts_of
-from ..selection.search import PRIOR_ODDS, search
+from ..regressors.signature import (
+    LAW,
+    SHAPE,
+    Signature,
+    candidates,
+    in_other_noise,
+    law_signature,
+    out_of_size,
+    signatures_of,
+    size_of,
+)
+from ..selection.search import (
+    LIKE_NOISE,
+    PRIOR_ODDS,
+    NormalEquations,
+    discrepancy_of,
+    normal_equations,
+    parts_of,
+    search,
+    usual_form_error,
+)
 from ..simulation.simulate import simulate
-from .findings import Estimate, Evidence, FittedModel, NamedEffect, Refitted
+from .findings import (
+    Estimate,
+    Evidence,
+    FittedModel,
+    NamedEffect,
+    Refitted,
+    Remainder,
+    estimates_of,
+    remainder_of,
+)
 from .fit import Fit, fitted
-from .noise import with_saturated_noise
 from .ranking import BEGUN, Ranking, ranked
-from .remainder import Remainder, remainder_of
-from .uncertainty import estimates_of
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-Progress = Callable[[str], None]
 
+
+def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
+    """Return the dataset with the noise that all signatures together leave, block by block."""
+    equations = normal_equations(signatures, dataset.misfit)
+    left = dataset.apart(dataset.misfit - _saturated(equations))
+    found = []
+    for e, own in zip(dataset.experiments, left, strict=True):
+        noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
+        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
+    return dataset.with_noise(found)
+
+
+def _saturated(equations: NormalEquations) -> np.ndarray:
+    """Return the misfit as all columns follow it, each with a weak prior of the misfit's own size."""
+    size = equations.power / equations.columns.shape[0]
+    gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
+    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))
+
+
+Progress = Callable[[str], None]
 
 NEAR = 4.0
 """Log posterior odds of the likeliest set over the median one up to which the latter is preferred."""

@@ -1,9 +1,14 @@
-"""One set of effects fitted in the catalogue's own forms."""
+"""One set of effects fitted in the catalogue's own forms, and its evidence.
+
+The fit is penalised least squares in bounds by Levenberg's and Marquardt's steps on the axes of the priors. Minimised
+is |r(q)|^2 / V + sum (q_i / w_i)^2. Steps are cut at the bounds; what stands at a bound and would leave it is held for
+a step. The evidence is Laplace's approximation, with form errors, discrepancy and the law's scales.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,15 +16,239 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..regressors.dataset import Dataset
-from ..regressors.law import form_error
-from ..regressors.signature import size_of
-from ..selection.discrepancy import Discrepancy
-from .form_error import form_errors, smooth_functions
-from .laplace import Linearised, laplace_evidence
-from .least_squares import Minimum, Objective, begun, minimised
-from .problem import EstimationProblem, Values, problem_of
+from ..regressors.signature import form_error, size_of
+from ..selection.search import Discrepancy
+from .problem import EstimationProblem, Values, form_errors, problem_of, smooth_functions
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int_]
+
+
+STEP = 2e-3
+"""Step of the difference quotients, in standard deviations of the prior."""
+
+LONGEST = 1.5
+"""Longest step, in standard deviations of the prior."""
+
+TRUSTED = 0.5
+"""Part of the promised gain that a step must bring for the slopes to be updated only."""
+
+TRIES = 8
+"""Dampings tried before a step is given up."""
+
+DAMPING = (1e-3, 1e-7, 1e7)
+"""Damping at first, least and most."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """residual: (k,) -> (m,); low, high, width (k,): bounds and standard deviations of the prior; variance: V."""
+
+    residual: Callable[[FloatArray], FloatArray]
+    low: FloatArray
+    high: FloatArray
+    width: FloatArray
+    variance: float
+
+    def cost(self, residual: FloatArray, q: FloatArray) -> float:
+        """Return what is minimised."""
+        return float(residual @ residual) / self.variance + float(np.sum((q / self.width) ** 2))
+
+    def jacobian(self, q: FloatArray, at: FloatArray) -> FloatArray:
+        """Return the slopes (m, k) of the residual `at` the positions q."""
+        columns = []
+        for i in range(q.size):
+            aside = q.copy()
+            aside[i] += STEP if q[i] + STEP <= self.high[i] else -STEP
+            columns.append((self.residual(aside) - at) / (aside[i] - q[i]))
+        return np.stack(columns, axis=1) if columns else np.zeros((at.size, 0))
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """positions (k,), the residual there (m,) and its slopes (m, k); settled: whether the last steps gained nothing."""
+
+    positions: FloatArray
+    residual: FloatArray
+    jacobian: FloatArray
+    settled: bool
+    evaluations: int
+
+
+def begun(objective: Objective, start: FloatArray) -> Minimum:
+    """Return where a search begins."""
+    q = np.clip(start, objective.low, objective.high)
+    residual = objective.residual(q)
+    return Minimum(q, residual, objective.jacobian(q, residual), False, 1 + q.size)
+
+
+def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) -> Minimum:
+    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last.
+
+    Between rounds the slopes are updated by Broyden's rule (Math. Comp. 19 (1965) 577); they are taken anew by
+    difference quotients where a step gains less than they promised, and at the end.
+    """
+    q, residual, slopes = start.positions, start.residual, start.jacobian
+    cost = objective.cost(residual, q)
+    damping, evaluations, settled, exact = DAMPING[0], start.evaluations, not q.size, True
+    for _ in range(rounds if q.size else 0):
+        step, left, new = np.zeros_like(q), residual, cost
+        for _ in range(TRIES if exact else 1):
+            trial = np.clip(q + _step(objective, q, residual, slopes, damping), objective.low, objective.high)
+            step, left = trial - q, objective.residual(trial)
+            new = objective.cost(left, trial)
+            evaluations += 1
+            if new < cost:
+                damping = max(damping / 10.0, DAMPING[1])
+                break
+            damping = min(10.0 * damping, DAMPING[2])
+        moved, small = new < cost, cost - new < enough
+        if moved:
+            foretold = residual + slopes @ step
+            promised = cost - objective.cost(foretold, q + step)
+            updated = slopes + np.outer((left - foretold) / float(step @ step), step)
+            gained, q, residual, cost = cost - new, q + step, left, new
+        if exact and small:
+            settled, exact = True, not moved
+            break
+        if moved and not small and gained > TRUSTED * promised:
+            slopes, exact = updated, False
+        else:
+            slopes, exact = objective.jacobian(q, residual), True
+            evaluations += q.size
+    if not exact:
+        slopes = objective.jacobian(q, residual)
+        evaluations += q.size
+    return Minimum(q, residual, slopes, settled, evaluations)
+
+
+def _step(
+    objective: Objective, q: FloatArray, residual: FloatArray, jacobian: FloatArray, damping: float
+) -> FloatArray:
+    gradient = jacobian.T @ residual / objective.variance + q / objective.width**2
+    held = ((q <= objective.low) & (gradient > 0.0)) | ((q >= objective.high) & (gradient < 0.0))
+    free = ~held
+    step = np.zeros_like(q)
+    if not free.any():
+        return step
+    own = jacobian[:, free]
+    curvature = own.T @ own / objective.variance + np.diag(1.0 / objective.width[free] ** 2)
+    curvature[np.diag_indices_from(curvature)] *= 1.0 + damping
+    step[free] = -np.linalg.solve(curvature, gradient[free])
+    longest = float(np.max(np.abs(step)))
+    return step * min(1.0, LONGEST / longest) if longest > 0.0 else step
+
+
+LAW_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+"""Scales of a group of the law's parameters that are tried (type II)."""
+
+PASSES = 2
+"""Rounds in which the groups' scales are found one after the other."""
+
+FORM_SCALES = (1.0, 3.0, 10.0)
+"""Scales of the form errors that are tried (type II)."""
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A fitted set near its optimum, in units of the noise.
+
+    residual (m,); slopes (m, k); positions (k,) on the priors' axes; forms (m, f): columns of the form errors
+    groups (k,): numbers from 1 on of parameters whose prior has a scale to be found, 0: the prior is as declared
+    """
+
+    residual: FloatArray
+    slopes: FloatArray
+    positions: FloatArray
+    forms: FloatArray
+    groups: IntArray
+
+
+@dataclass(frozen=True)
+class LaplaceEvidence:
+    """log_likelihood: marginal; variance: V of the discrepancy; scale: of the form errors
+    unformed (m,): residual less what the form errors and the parameters that give way explain of it.
+    """
+
+    log_likelihood: float
+    variance: float
+    scale: float
+    unformed: FloatArray
+
+
+def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEvidence:
+    """Return the evidence of a fit."""
+    power = float(fit.residual @ fit.residual)
+    own = fit.slopes.T @ fit.slopes
+    width = np.ones(fit.positions.size)
+    best = _of_parameters(power, own, fit.positions, width, discrepancy)
+    for _ in range(PASSES if fit.groups.any() else 0):
+        for group in np.unique(fit.groups[fit.groups > 0]):
+            for scale in LAW_SCALES:
+                trial = np.where(fit.groups == group, scale, width)
+                value = _of_parameters(power, own, fit.positions, trial, discrepancy)
+                if value[0] > best[0]:
+                    best, width = value, trial
+    if not fit.forms.size:
+        return LaplaceEvidence(*best, 1.0, fit.residual)
+    return _beside_forms(fit, width, discrepancy)
+
+
+def _of_parameters(
+    power: float, gram: FloatArray, positions: FloatArray, width: FloatArray, discrepancy: Discrepancy
+) -> tuple[float, float]:
+    """Return the evidence at given standard deviations of the prior, without form errors, at the best V."""
+    variances = discrepancy.grid()
+    curvatures = np.maximum(np.linalg.eigvalsh(gram * np.outer(width, width)), 0.0) if width.size else width
+    determinant = np.log1p(curvatures[:, None] / variances).sum(axis=0)
+    prior = float(np.sum((positions / width) ** 2))
+    values = -0.5 * (power / variances + prior + determinant) + discrepancy.beside(variances)
+    best = int(np.argmax(values))
+    return float(values[best]), float(variances[best])
+
+
+def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:
+    """Return the evidence where the form errors explain what they can, and the parameters give way to them."""
+    variances = discrepancy.grid()
+    k = width.size
+    columns = np.concatenate([fit.slopes, fit.forms], axis=1)
+    gram, moment = columns.T @ columns, columns.T @ fit.residual
+    # The slopes are those of the residual: a step along them takes the positions the other way.
+    pull = np.concatenate([-fit.positions / width, np.zeros(fit.forms.shape[1])])
+    power = float(fit.residual @ fit.residual)
+    fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.beside(variances)
+    # What the parameters alone would still gain is not counted: a fit that stopped early must not win by it.
+    alone, _, _ = _gained(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
+    found = []
+    for scale in FORM_SCALES:
+        wide = np.concatenate([width, np.full(fit.forms.shape[1], scale)])
+        gained, determinant, given_way = _gained(gram * np.outer(wide, wide), moment * wide, pull, variances)
+        values = fixed + 0.5 * (gained - alone - determinant)
+        best = int(np.argmax(values))
+        cost = math.log1p(scale**2) - math.log(2.0)
+        found.append((float(values[best]) - cost, best, scale, given_way(best) * wide))
+    likelihood, best, scale, coefficients = max(found, key=lambda f: f[0])
+    unformed = fit.residual - columns @ coefficients
+    return LaplaceEvidence(likelihood, float(variances[best]), scale, unformed)
+
+
+def _gained(
+    gram: FloatArray, moment: FloatArray, pull: FloatArray, variances: FloatArray
+) -> tuple[FloatArray, FloatArray, Callable[[int], FloatArray]]:
+    """Return for each V what linear coefficients gain (twice a log likelihood), the log determinant of their curvature,
+    and the coefficients; pull: how far each already is from its prior's centre, in standard deviations.
+    """
+    if not moment.size:
+        none = np.zeros(variances.size)
+        return none, none, lambda index: moment
+    values, vectors = np.linalg.eigh(gram)
+    values = np.maximum(values, 0.0)
+    stretched = values[:, None] + variances
+    turned = (vectors.T @ moment)[:, None] - (vectors.T @ pull)[:, None] * variances
+    gained = (turned**2 / stretched).sum(axis=0) / variances
+    determinant = np.log(stretched / variances).sum(axis=0)
+    return gained, determinant, lambda index: np.asarray(vectors @ (turned / stretched)[:, index])
+
 
 LAW_LOOSE = 3.0
 """Scale of the law's prior while it is fitted; the evidence finds its own."""

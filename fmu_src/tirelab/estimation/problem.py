@@ -1,20 +1,166 @@
-"""A set of effects as a fit: free parameters in, a tire and what it leaves of the recordings out."""
+"""A set of effects as a fit: free parameters in, a tire and what it leaves of the recordings out.
+
+A free parameter is counted on the axis of its prior: 0 at the prior's centre, 1 one standard deviation beyond. What the
+form of a fitted effect may miss is its own response, modulated smoothly by what the recording shows:
+
+    discrepancy = sum_e c_e f_e scale sum_j z_j phi_j,   z_j ~ N(0, 1)
+
+c_e: response of effect e as fitted; f_e: its form error, declared from measurements; phi_j: smooth functions of
+deflection, direction, speed, time and surface, together of mean square 1. An effect beside another one that only mends
+the other one's form explains nothing that these do not. The law's discrepancy is the law times functions of the
+deflection, on each surface. `scale` is found by the evidence under a half-Cauchy prior (A. Gelman, Bayesian Analysis 1
+(2006) 515), since real forms may be further from the catalogue's than the measured ones.
+
+M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, Recalibrated, TireModel
+from radialtire import CATALOGUE, Parameter, Recalibrated, TireModel
 
-from ..regressors.dataset import Dataset, arranged
-from ..regressors.draws import at_reading
-from ..regressors.law import LAW, MOST_SURFACES, REFERENCE, SHAPE
-from .free_parameter import COMMON, FreeParameter, parameters_of_effect, parameters_of_law
+from ..regressors.dataset import Dataset, Scales, arranged
+from ..regressors.signature import (
+    BEND,
+    EXPONENT,
+    FACTOR,
+    HEIGHT,
+    HEIGHTS,
+    LAW,
+    MOST_SURFACES,
+    REFERENCE,
+    SHAPE,
+    TWIST,
+    at_reading,
+    centre_and_spread,
+    form_error,
+    size_of,
+)
 
 FloatArray = NDArray[np.float64]
+
+
+AWAKE = 0.3
+"""Where an optional form begins that lies at a bound of its parameter, in standard deviations: at the bound itself some
+have no slope."""
+
+COMMON = 4 + HEIGHTS
+"""Parameters of the law that are common to all surfaces: they come first."""
+
+
+@dataclass(frozen=True)
+class FreeParameter:
+    """owner: the effect's name, or LAW; index: of its parameter there; label, unit: for a reader
+    centre, spread: of the prior, of the logarithm where `logarithm`
+    low, high: bounds on the axis of the prior, minimum, maximum: of the value
+    optional: whether the plain form does without it; plain: its value there
+    group: number of those whose prior has a scale that is found by the evidence, 0: as declared
+    """
+
+    owner: str
+    index: int
+    label: str
+    unit: str
+    centre: float
+    spread: float
+    logarithm: bool
+    low: float
+    high: float
+    minimum: float
+    maximum: float
+    optional: bool = False
+    plain: float = 0.0
+    group: int = 0
+
+    def value(self, position: float) -> float:
+        """Return the value at a position on the prior's axis, within the bounds."""
+        inside = self.centre + self.spread * min(max(position, self.low), self.high)
+        value = math.exp(inside) if self.logarithm else inside
+        return min(max(value, self.minimum), self.maximum)
+
+    def position(self, value: float) -> float:
+        """Return the position of a value, within the bounds."""
+        inside = math.log(max(value, 1e-300)) if self.logarithm else value
+        return min(max((inside - self.centre) / self.spread, self.low), self.high)
+
+    @property
+    def awake(self) -> float:
+        """The position at which a fit of the optional forms begins."""
+        start = self.position(self.plain)
+        if start <= self.low + 1e-9:
+            return min(self.low + AWAKE, self.high)
+        return max(self.high - AWAKE, self.low) if start >= self.high - 1e-9 else start
+
+
+def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]:
+    """Return what may be fitted of an effect, in the order of its parameters."""
+    return tuple(
+        _free(name, i, p, scales)
+        for i, p in enumerate(CATALOGUE[name].parameters)
+        if p.role != "reading" and p.prior is not None
+    )
+
+
+def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
+    """Return what may be fitted of the law: factor and exponent common to all surfaces, bend, twist and heights of the
+    shape, and, with more than one surface, factor and exponent of each beside the common ones.
+    """
+    shared = math.sqrt(0.5) if surfaces > 1 else 1.0
+    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[HEIGHT] * HEIGHTS]
+    spreads += [FACTOR * shared, EXPONENT * shared] * (surfaces if surfaces > 1 else 0)
+    labels = ["log factor on A", "change of B", "bend", "twist"]
+    labels += [f"height {i + 1}" for i in range(HEIGHTS)]
+    labels += [f"{w}, surface {i}" for i in range(surfaces) for w in labels[:2]] if surfaces > 1 else []
+    groups = [1, 2, 3, 4, *[5] * HEIGHTS, *[6, 7] * surfaces]
+    return tuple(
+        FreeParameter(
+            LAW,
+            i,
+            label,
+            "1",
+            0.0,
+            spread,
+            False,
+            -2.0 / spread,
+            2.0 / spread,
+            -2.0,
+            2.0,
+            optional=4 <= i < COMMON,
+            group=groups[i],
+        )
+        for i, (label, spread) in enumerate(zip(labels, spreads, strict=True))
+    )
+
+
+def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
+    centre, spread, logarithm = centre_and_spread(p, scales)
+    low, high = p.minimum, p.maximum
+    if logarithm:
+        low = math.log(low) if low > 0.0 else centre - 12.0 * spread
+        high = math.log(high)
+    low, high = (low - centre) / spread, (high - centre) / spread
+    return FreeParameter(
+        name,
+        index,
+        p.name,
+        p.unit,
+        centre,
+        spread,
+        logarithm,
+        low,
+        high,
+        p.minimum,
+        p.maximum,
+        p.optional,
+        p.start,
+    )
+
+
 Values = Mapping[str, tuple[float, ...]]
 """Of each effect the values of all its parameters; of LAW the values of its free ones."""
 
@@ -125,3 +271,67 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
             reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
             effects.append((SHAPE, (bend, twist, reference, *heights)))
     return arranged(tire, effects)
+
+
+DEPTHS, WAYS = 6, 3
+"""Hats over the deflection, and over the deflection with the sign of the direction."""
+
+
+def smooth_functions(dataset: Dataset) -> FloatArray:
+    """Return the functions phi (m, k) at the counted blocks, of mean square 1 together."""
+    many = dataset.experiments
+    x = dataset.gathered([e.deflection for e in many])
+    rate = dataset.gathered([e.rate for e in many])
+    time = dataset.gathered([(e.time - e.time[0]) / max(e.time[-1] - e.time[0], 1e-300) for e in many])
+    radius = dataset.gathered([e.surface_radius for e in many])
+    depth = (x - x.min()) / max(float(np.ptp(x)), 1e-300)
+    speed = np.log(np.maximum(np.abs(rate) / dataset.scales.rate, 1e-2))
+    groups = [_hats(depth, DEPTHS), np.sign(rate)[:, None] * _hats(depth, WAYS)]
+    groups += [_polynomial(time), _polynomial(speed)]
+    if 1 < len(dataset.radii) <= DEPTHS:
+        groups.append(np.column_stack([(radius == r).astype(float) for r in dataset.radii]))
+    parts = [g / np.sqrt(max(float(np.mean(np.sum(g**2, axis=1))), 1e-300)) for g in groups]
+    return np.asarray(np.concatenate(parts, axis=1) / np.sqrt(len(parts)))
+
+
+def form_errors(curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray) -> FloatArray:
+    """Return the columns (m, k) of the discrepancy at scale 1, in units of the noise.
+
+    curves (m,): what each effect adds to the others
+    """
+    columns = []
+    for name, curve in curves.items():
+        if name == LAW:
+            columns.append(form_error(name) * size_of(curve) * _of_law(dataset))
+        else:
+            columns.append(form_error(name) * curve[:, None] * functions)
+    return np.concatenate(columns, axis=1) if columns else np.zeros((dataset.misfit.size, 0))
+
+
+def _of_law(dataset: Dataset) -> FloatArray:
+    """Return the law times hats over the deflection, common to all surfaces and on each, of mean square 1 together."""
+    many = dataset.experiments
+    x = dataset.gathered([e.deflection for e in many])
+    radius = dataset.gathered([e.surface_radius for e in many])
+    force = dataset.stacked([e.baseline for e in many])
+    hats = force[:, None] * _hats((x - x.min()) / max(float(np.ptp(x)), 1e-300), DEPTHS)
+    columns = [hats]
+    if 1 < len(dataset.radii) <= DEPTHS:
+        columns += [hats * (radius == r)[:, None] for r in dataset.radii]
+    whole = np.concatenate(columns, axis=1)
+    return np.asarray(whole / np.sqrt(max(float(np.mean(np.sum(whole**2, axis=1))), 1e-300)))
+
+
+def _hats(place: FloatArray, count: int) -> FloatArray:
+    knots = np.linspace(0.0, 1.0, count)
+    return np.column_stack([np.interp(place, knots, row) for row in np.eye(count)])
+
+
+def _polynomial(values: FloatArray) -> FloatArray:
+    """Return first and second power, each of mean zero and mean square 1; zero where the values are all one."""
+    spread = float(np.std(values))
+    if spread < 1e-9:
+        return np.zeros((values.size, 1))
+    first = (values - values.mean()) / spread
+    second = first**2 - 1.0
+    return np.column_stack([first, second / max(float(np.std(second)), 1e-300)])

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
-from ..regressors.law import LAW
+from ..regressors.signature import LAW
 from .separation import Question, probabilities
 
 FloatArray = NDArray[np.float64]

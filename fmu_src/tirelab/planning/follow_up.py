@@ -19,7 +19,7 @@ from radialtire import TireModel
 
 from ..errors import TirelabError, what_is_wrong
 from ..names import UNKNOWN
-from ..regressors.law import LAW
+from ..regressors.signature import LAW
 from .menu import FEWEST, Drive
 from .plan import Progress, RecordingPlan, motions_within, offered, planned
 from .responses import responses_of

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 from scipy.ndimage import median_filter
 
+from ..preprocessing.noise import Noise, NoiseFloor
 from ..recordings.description import surface_text
 from ..regressors.dataset import Experiment
-from ..regressors.noise_floor import Noise, NoiseFloor
 from ..simulation.simulate import simulate
 from .rig import Rig
 from .waveforms import CORNER, MENU, sample_times

@@ -12,7 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..regressors.law import LAW
+from ..regressors.signature import LAW
 from ..report.palette import PLAIN
 from ..report.titles import short_title
 from .choice import TOLD

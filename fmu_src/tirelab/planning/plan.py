@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..errors import TirelabError
-from ..regressors.law import LAW
+from ..regressors.signature import LAW
 from .choice import TOLD, Choice, Menu, chosen_of
 from .menu import LENGTHS, SLOW, Drive, drive_of, menu
 from .responses import Responses, responses_of

@@ -19,12 +19,18 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
-from ..regressors.dataset import Dataset, Experiment, arranged
-from ..regressors.draws import drawn
+from ..regressors.dataset import Dataset, Experiment, Scales, arranged
 from ..regressors.excitation import excitation_of
-from ..regressors.law import FACTOR, LAW, candidates, law_signature
-from ..regressors.scales import Scales
-from ..regressors.signature import SILENT, size_of, strengthened
+from ..regressors.signature import (
+    FACTOR,
+    LAW,
+    SILENT,
+    candidates,
+    drawn,
+    law_signature,
+    size_of,
+    strengthened,
+)
 from ..simulation.simulate import simulate
 from .menu import Drive, experiment_of, peak_force
 from .rig import Rig

@@ -30,9 +30,8 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import ncx2
 
-from ..regressors.law import LAW, form_error
-from ..selection.discrepancy import EFFECTIVE
-from ..selection.search import PRIOR_ODDS
+from ..regressors.signature import LAW, form_error
+from ..selection.search import EFFECTIVE, PRIOR_ODDS
 from .responses import HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW
 
 FloatArray = NDArray[np.float64]

@@ -2,8 +2,8 @@
 
 A recording is averaged over blocks of neighbouring samples, as long as the motion allows. What is averaged is the
 misfit of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. A block
-whose motion turns within a sample counts only where the misfit is the same before and after the turn (`turns`). All
-comparisons are made in units of the noise of the averaged misfit.
+whose motion turns within a sample counts only where the misfit is the same before and after the turn. All comparisons
+are made in units of the noise of the averaged misfit.
 """
 
 from __future__ import annotations
@@ -18,18 +18,52 @@ from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
 from scipy.stats import binom
 
-from ..preprocessing.dataset import Recorded
-from ..preprocessing.kinematics import motion_of
+from ..preprocessing.data_checks import beyond_travel
+from ..preprocessing.motion import followed_turns, motion_of, through_turns
+from ..preprocessing.noise import (
+    SHARE_OF_STEP,
+    Noise,
+    NoiseFloor,
+    destepped,
+    noise_floor,
+    noise_of,
+    staircase_step,
+    white_level,
+)
+from ..preprocessing.samples import Recorded
 from ..simulation.kept_stages import KeptStages
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
-from .end_of_travel import beyond_travel
-from .gauge import destepped, staircase_step
-from .noise_floor import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, white_level
-from .scales import Scales
-from .turns import followed_turns, through_turns
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Scales:
+    """force [N] peak; travel [m] span of the deflection; duration and interval [s]; rate [m/s] and acceleration [m/s^2]
+    root mean squares over what moves; gauge [m] noise of the deflection's reading; channels: the level of each channel
+    [SI] by its name. All positive.
+    """
+
+    force: float
+    travel: float
+    duration: float
+    interval: float
+    rate: float
+    acceleration: float
+    gauge: float
+    channels: Mapping[str, float] = field(default_factory=dict)
+
+    def of(self, scale: str) -> float:
+        """Return the size that a prior's `scale` names, such as "force/travel"."""
+        above, _, below = scale.partition("/")
+        return self._size(above) / self._size(below or "1")
+
+    def _size(self, name: str) -> float:
+        if name in self.channels:
+            return self.channels[name]
+        return 1.0 if name == "1" else float(getattr(self, name))
+
 
 ROWS = 4000
 """Blocks of all recordings together, where the motion allows: signatures and fits cost in proportion."""

@@ -1,19 +1,155 @@
-"""What the recorded motion can show: traits of effects that it cannot tell from others."""
+"""What the recorded motion and channels can show, before any force is looked at.
+
+Traits of effects that the motion cannot tell from others are left out. An effect that changes a channel (a leak the
+pressure) must show in it. Each channel of all recordings together is
+
+    y = level of the recording + sum of the courses of the effects that change it + rest,
+
+by least squares, with each effect's courses from draws of its parameters. An effect is refuted where its courses add
+next to nothing. An effect that reads the channel needs one that was set to several values: levels and rest must differ
+at one deflection in one direction, and more so than from one to another, as the pressure does that swings with each
+stroke. Or everything that depends on both would pass for it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE
+from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
-from ..preprocessing.kinematics import STILL
-from .channel_evidence import ChannelEvidence, channel_evidence
+from ..preprocessing.noise import STILL
+from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
+from .signature import drawn
 
 FloatArray = NDArray[np.float64]
+
+Cells = NDArray[np.int_]
+
+COURSES, DRAWS = 2, 16
+"""Courses of an effect, and the draws that they are the leading ones of."""
+
+SEEN = 0.05
+"""Part of a channel's variance within the recordings that the courses of an effect must add."""
+
+LEAST = 0.1
+"""Part of a channel's resolution that a course must have, root mean square."""
+
+ALIKE = 0.8
+"""Cosine of the leading courses of two effects beyond which either may stand for the other."""
+
+
+@dataclass(frozen=True)
+class ChannelEvidence:
+    """impossible: effects that the channels speak against, or that need one that is not there; unvaried: effects that
+    read a channel which was the same at every visit of a deflection, and the sentence that says so.
+    """
+
+    impossible: frozenset[str]
+    unvaried: Mapping[str, str]
+
+
+def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidence:
+    """Return what the channels show; cells: deflection and direction of each recording's blocks, -1: where it turns."""
+    impossible: set[str] = set()
+    unvaried: dict[str, str] = {}
+    for channel in CHANNELS:
+        readers = [e for e in CATALOGUE.values() if e.reads is not None and e.reads.channel == channel.name]
+        if any(channel.name not in e.measured for e in dataset.experiments):
+            impossible |= {e.name for e in readers if e.reads is not None and e.reads.reference is not None}
+            continue
+        level = dataset.scales.channels[channel.name]
+        value = np.concatenate([e.measured[channel.name] for e in dataset.experiments]) / level
+        changing = [e for e in CATALOGUE.values() if channel.name in e.changes]
+        followed, seen = _followed(value, changing, dataset)
+        impossible |= {
+            e.name
+            for e in changing
+            if not (seen[e.name][0] > SEEN and seen[e.name][1] > LEAST * channel.resolution)
+        }
+        within, between = _spreads(value - followed, np.concatenate(cells))
+        if within < max(channel.resolution, between):
+            same = (
+                f"the {channel.name} was the same whenever a deflection was visited: record at a second one"
+            )
+            unvaried |= {e.name: same for e in readers}
+    return ChannelEvidence(frozenset(impossible), unvaried)
+
+
+def _followed(
+    value: FloatArray, effects: Sequence[Effect], dataset: Dataset
+) -> tuple[FloatArray, dict[str, tuple[float, float]]]:
+    """Return what all courses explain of a channel within the recordings, and of each effect the part of the variance
+    that it adds to those that are unlike it, and the size of its course: 0 where it goes the other way.
+    """
+    centred = _centring(dataset.experiments)
+    target = centred(value)
+    total = max(float(target @ target), 1e-300)
+    columns = {e.name: np.stack([centred(c) for c in _courses(e, dataset)], axis=1) for e in effects}
+
+    def fitted(names: Sequence[str]) -> tuple[float, dict[str, FloatArray]]:
+        if not names:
+            return total, {}
+        matrix = np.concatenate([columns[name] for name in names], axis=1)
+        answer = np.linalg.lstsq(matrix, target, rcond=1e-9)[0]
+        parts = {n: columns[n] @ answer[COURSES * i : COURSES * (i + 1)] for i, n in enumerate(names)}
+        return float(np.sum((target - matrix @ answer) ** 2)), parts
+
+    seen = {}
+    for name, own in columns.items():
+        others = [n for n in columns if n != name and abs(_cosine(columns[n][:, 0], own[:, 0])) < ALIKE]
+        less, (more, parts) = fitted(others)[0], fitted([*others, name])
+        onward = float(parts[name] @ own[:, 0]) > 0.0
+        seen[name] = ((less - more) / total, _size(parts[name]) if onward else 0.0)
+    return sum(fitted(list(columns))[1].values(), np.zeros_like(value)), seen
+
+
+def _cosine(a: FloatArray, b: FloatArray) -> float:
+    return float(a @ b) / max(float(np.sqrt((a @ a) * (b @ b))), 1e-300)
+
+
+def _courses(effect: Effect, dataset: Dataset) -> list[FloatArray]:
+    """Return the leading courses of an effect's factor over all recordings, the first one in the effect's own sense."""
+    sets, _ = drawn(effect, dataset.scales, DRAWS)
+    tire = TireModel(dataset.tire.law, tested_range=None)
+    histories = [elastic_stage(tire, e, e)[0] for e in dataset.experiments]
+    curves = np.array([_factor(effect, tuple(values), histories) for values in sets])
+    curves = curves[np.isfinite(curves).all(axis=1)] - 1.0
+    size = np.sqrt(np.mean(curves**2, axis=1))
+    curves = curves[size > 0.0] / size[size > 0.0, None]
+    if not len(curves):
+        return [np.zeros(sum(e.time.size for e in dataset.experiments))] * COURSES
+    courses = np.linalg.svd(curves, full_matrices=False)[2][:COURSES]
+    sense = 1.0 if float(courses[0] @ curves.mean(axis=0)) > 0.0 else -1.0
+    return list(sense * courses)
+
+
+def _factor(effect: Effect, values: tuple[float, ...], histories: Sequence[History]) -> FloatArray:
+    return np.concatenate([respond_series(effect, values, np.ones_like(h.time), h) for h in histories])
+
+
+def _centring(experiments: Sequence[Experiment]) -> Callable[[FloatArray], FloatArray]:
+    """Return the function that takes the mean of each recording off values of all of them in a row."""
+    ends = np.cumsum([e.time.size for e in experiments])[:-1]
+    return lambda values: np.concatenate([part - part.mean() for part in np.split(values, ends)])
+
+
+def _spreads(values: FloatArray, cell: Cells) -> tuple[float, float]:
+    """Return the standard deviations of values within the cells and of the cells' means; a cell of -1 is none."""
+    inside = cell >= 0
+    if not inside.any():
+        return 0.0, 0.0
+    own, place = values[inside], cell[inside]
+    mean = (np.bincount(place, own) / np.maximum(np.bincount(place), 1))[place]
+    return _size(own - mean), float(np.std(mean))
+
+
+def _size(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
 
 CELLS = 12
 """Parts of the deflection's span in which two visits are visits of the same deflection."""
@@ -26,7 +162,6 @@ SPEEDS = 0.5
 
 UNDER_WAY = 0.3
 """Speed over its root mean square above which the direction is sure: a channel may change with it."""
-
 
 NO_EVIDENCE = ChannelEvidence(frozenset(), {})
 """That of recordings whose channels were not looked at."""

@@ -2,22 +2,190 @@
 
 Parameters are drawn from their priors, the response of the baseline tire with the effect is simulated along the motion,
 and the baseline is taken off. Mean and covariance of these curves, of one size, are a Gaussian law of forms: the mean
-and the leading vectors of a singular value decomposition, each scaled by its standard deviation.
+and the leading vectors of a singular value decomposition, each scaled by its standard deviation. The priors are
+multiples of the recording's own force and travel; the bounds of the parameters are not. Where hardly any of a prior
+lies within them, the effect could only be fitted with a value that is out of proportion, and is not tried.
+
+The elastic law has a signature of its own: how a refitted law, or one of another shape, would differ.
+
+    dF / F = a + b l + c l^2 + d l^3 + h(x),   l = ln(x / x_ref)
+
+a and b on each surface beside those common to all, h: straight lines between the heights of `elastic_shape`. These are
+the derivatives of what is fitted and delivered as a refitted law, so a law that can be fitted is seen before it is.
+Their scale is not declared: it is found by the marginal likelihood (type II), like that of the effects.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, Effect
+from radialtire import CATALOGUE, Effect, Parameter
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
 
-from .dataset import Dataset, arranged
-from .draws import drawn
+from ..names import REFITTED_LAW
+from .dataset import Dataset, Scales, arranged
 
 FloatArray = NDArray[np.float64]
+
+
+LEAST_MASS = 1e-3
+"""Part of a prior that must lie within the parameter's bounds, or the prior says nothing there."""
+
+
+def centre_and_spread(parameter: Parameter, scales: Scales) -> tuple[float, float, bool]:
+    """Return centre and spread of a parameter's prior on these recordings, and whether they are of its logarithm."""
+    prior = parameter.prior
+    if prior is None:
+        raise ValueError(f"{parameter.name} declares no prior")
+    unit = scales.of(prior.scale)
+    if prior.shape == "log":
+        return math.log(prior.centre * unit), prior.spread, True
+    return prior.centre * unit, prior.spread * unit, False
+
+
+def quantile(parameter: Parameter, share: float, scales: Scales) -> float:
+    """Return the value below which a `share` of the parameter's prior lies, the prior cut off at its bounds."""
+    centre, spread, logarithm = centre_and_spread(parameter, scales)
+    low, high = parameter.minimum, parameter.maximum
+    if logarithm:
+        low, high = math.log(max(low, 1e-300)), math.log(high)
+    below, above = ndtr((low - centre) / spread), ndtr((high - centre) / spread)
+    if above - below < LEAST_MASS:
+        value = min(max(centre, low), high)
+    else:
+        value = centre + spread * float(ndtri(below + share * (above - below)))
+    value = math.exp(value) if logarithm else value
+    return min(max(value, parameter.minimum), parameter.maximum)
+
+
+def at_reading(parameter: Parameter, scales: Scales) -> float:
+    """Return the value of a parameter that follows from the reading: the centre of its prior, within its bounds."""
+    return quantile(parameter, 0.5, scales) if parameter.prior is not None else parameter.start
+
+
+def drawn(effect: Effect, scales: Scales, count: int) -> tuple[list[list[float]], FloatArray]:
+    """Return `count` quasi-random sets of values (Sobol), and a number of 0 to 1 for each that sizes it.
+
+    The first half is of the plain form: what it does without stays at its start. Halves of a Sobol sequence fill the
+    priors evenly; every other one of its sets would not.
+    """
+    names = effect.parameters
+    shares = qmc.Sobol(len(names) + 1, seed=1).random(count)
+    shares = np.clip(shares, 1e-3, 1.0 - 1e-3)
+    sets = [
+        [_one(p, float(row[i]), scales, plain=k < count // 2) for i, p in enumerate(names)]
+        for k, row in enumerate(shares)
+    ]
+    return sets, shares[:, -1]
+
+
+def _one(parameter: Parameter, share: float, scales: Scales, *, plain: bool) -> float:
+    if parameter.role == "reading":
+        return at_reading(parameter, scales)
+    if parameter.prior is None or (parameter.optional and plain):
+        return parameter.start
+    return quantile(parameter, share, scales)
+
+
+LAW = REFITTED_LAW
+"""The name under which a refitted law stands in a verdict."""
+
+SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)
+"""The effect in which a refitted law keeps bend and twist."""
+
+FACTOR, EXPONENT, BEND, TWIST = 0.1, 0.07, 0.03, 0.01
+"""Standard deviations of a, b, c and d at the scale 1: their proportions are what counts."""
+
+HEIGHT = 0.05
+"""Standard deviation of each height of a refitted law's shape at the scale 1."""
+
+HEIGHTS = 5
+"""Heights in the shape of a refitted law."""
+
+REFERENCE, LEAST_RATIO = 2, 0.01
+"""Index of the shape's reference, and the least x / x_ref, as in `elastic_shape`."""
+
+MOST_SURFACES = 8
+"""Beyond them (terrain) the law is refitted for all alike."""
+
+
+def candidates() -> tuple[str, ...]:
+    """Return the names of the effects that may be missing; the law comes beside them."""
+    return tuple(name for name in CATALOGUE if name != SHAPE)
+
+
+def form_error(name: str) -> float:
+    """Return the declared form error of an effect or of the law."""
+    return CATALOGUE[SHAPE if name == LAW else name].form_error
+
+
+def law_signature(dataset: Dataset) -> Signature:
+    """Return the law's signature; its size 1 is that of a change of A by FACTOR."""
+    gather = dataset.gathered
+    x = gather(
+        [np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments]
+    )
+    radius = gather([e.surface_radius for e in dataset.experiments])
+    # A refitted law leaves a part's preload as it is.
+    force = dataset.stacked([e.baseline - dataset.tire.preload for e in dataset.experiments])
+    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
+    way = np.log(np.maximum(x / reference, LEAST_RATIO))
+    places = 2.0 * reference * np.arange(1, HEIGHTS + 1) / HEIGHTS
+    heights = [HEIGHT * np.interp(x, places, row) for row in np.eye(HEIGHTS)]
+    changes = [FACTOR + 0.0 * way, EXPONENT * way]
+    bends = [BEND * way**2, TWIST * way**3, *heights]
+    columns = [force * part for part in (*changes, *bends)]
+    if len(dataset.radii) > 1:
+        shapes = [np.sqrt(0.5) * force * part for part in changes]
+        columns[: len(shapes)] = shapes
+        if len(dataset.radii) <= MOST_SURFACES:
+            columns += [s * (radius == r) for r in dataset.radii for s in shapes]
+    basis = np.column_stack(columns) / max(size_of(FACTOR * force), 1e-300)
+    none = np.zeros((0, force.size))
+    return Signature(LAW, np.zeros(force.size), basis, False, none, (), np.zeros(0))
+
+
+SIZES = frozenset({"force", "travel"})
+"""The scales by which a recording is small or large; how long or fast it is says nothing of its size."""
+
+WITHIN = 0.05
+"""Part of a prior that must lie within the parameter's bounds."""
+
+
+def out_of_size(names: Sequence[str], scales: Scales) -> dict[str, str]:
+    """Return which of the effects `names` cannot be fitted to recordings of these scales, and why."""
+    return {name: why for name in names if (why := _why(name, scales))}
+
+
+def _why(name: str, scales: Scales) -> str:
+    for p in CATALOGUE[name].parameters:
+        needed = not p.optional or name == SHAPE
+        if needed and p.prior is not None and p.prior.shape == "log" and _within(p, scales) < WITHIN:
+            size = math.exp(centre_and_spread(p, scales)[0])
+            bound = (
+                f"at least {p.minimum:g} {p.unit}" if size < p.minimum else f"at most {p.maximum:g} {p.unit}"
+            )
+            return (
+                f"its {p.name.replace('_', ' ')} is {bound}, a tire's, and these recordings, of {scales.travel:.2g} m "
+                f"and {scales.force:.2g} N, would need about {size:.1g} {p.unit}"
+            )
+    return ""
+
+
+def _within(p: Parameter, scales: Scales) -> float:
+    """Return the part of a prior of the logarithm that lies within the bounds; 1 of one that has no size."""
+    assert p.prior is not None
+    if not set(p.prior.scale.split("/")) <= SIZES:
+        return 1.0
+    centre, spread, _ = centre_and_spread(p, scales)
+    low = -math.inf if p.minimum <= 0.0 else (math.log(p.minimum) - centre) / spread
+    return float(ndtr((math.log(p.maximum) - centre) / spread) - ndtr(low))
+
 
 DRAWS = 32
 COLUMNS = 8

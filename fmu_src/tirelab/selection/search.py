@@ -1,11 +1,260 @@
-"""Search over sets of candidates by the marginal likelihood of their signatures: a beam, one candidate at a time."""
+"""Search over sets of candidates by the marginal likelihood of their signatures: a beam, one candidate at a time.
+
+The likelihood is linear in Gaussian coefficients, so known in closed form:
+
+    misfit = sum_i s_i (m_i + A_i z_i) + discrepancy + noise,   z ~ N(0, 1)
+
+s_i is the size of candidate i, V the variance of the discrepancy: both are found by the marginal likelihood (type II).
+
+A form that is not quite right leaves something smooth: over n blocks it has about e effective samples (e << n). In
+units of the noise each of them has the variance V = 1 + n tau^2 / e, with tau the root mean square of the discrepancy.
+What the set leaves beyond the noise lies in these e samples, so with a residual of the sum of squares q
+
+    2 ln p(V) = -(q - (n - e)) / V - e ln V,
+
+highest at V = (q - (n - e)) / e: a set is priced by e ln(what it leaves). V is a number of every set, found by the
+marginal likelihood. Below the floor, which follows from the measured errors of the forms, one remainder is like another
+and says nothing for a set; but forms may also be exact, and a set that leaves a remainder like the noise where the
+floor is far above it has them: wrong forms do not meet there by chance.
+
+M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
-from .discrepancy import Discrepancy
-from .marginal_likelihood import Evidence, NormalEquations, evidence_of
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import CATALOGUE
+from scipy.linalg import cholesky, solve_triangular
+from scipy.optimize import minimize
+
+from ..regressors.signature import Signature
+
+FloatArray = NDArray[np.float64]
+
+
+EFFECTIVE = 30.0
+"""Effective samples of a discrepancy. What is left of recorded dampers has 30 to 60 by its autocorrelation, of pistons
+100 to 200; more than 30 let many a set win over a simpler one."""
+
+LIKE_NOISE = 1.0
+"""Root mean square of a remainder like the noise, in units of it: forms that leave no more are taken for exact."""
+
+GRID = 40
+"""Variances that are tried."""
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """samples: n; effective: e; lowest: V at the floor, highest: V of the whole misfit
+    exact: V of a remainder like the noise; below a higher floor it is allowed all the same.
+    """
+
+    samples: int
+    effective: float
+    lowest: float
+    highest: float
+    exact: float = math.inf
+
+    def beside(self, variance: FloatArray) -> FloatArray:
+        """Return what the log likelihood holds beside -q / 2V, for several V."""
+        e = self.effective
+        return np.asarray(0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance))
+
+    def likelihood(self, power: float, variance: float) -> float:
+        """Return the log likelihood of a sum of squares left at one V."""
+        e = self.effective
+        return -0.5 * (power - (self.samples - e)) / variance - 0.5 * e * math.log(variance)
+
+    def above(self, form_error: float) -> Discrepancy:
+        """Return the discrepancy of a set whose forms may always miss this much, a root mean square in units of the
+        noise.
+        """
+        lowest = self.lowest + self._of(form_error)
+        return replace(self, lowest=lowest, highest=max(self.highest, 2.0 * lowest))
+
+    def blurred(self, error: float) -> Discrepancy:
+        """Return the discrepancy where the reading adds this much whatever the forms are, in units of the noise."""
+        return replace(self.above(error), exact=self.exact + self._of(error))
+
+    def grid(self) -> FloatArray:
+        """Variances V to try: from the lowest to the highest, and what is below them."""
+        grid = np.geomspace(self.lowest, self.highest, GRID)
+        return np.append(grid, self.exact) if self.exact < self.lowest else grid
+
+    def profile(self, power: float) -> tuple[float, float]:
+        """Return the log likelihood of a sum of squares left at its best V, and that V."""
+        best = (power - (self.samples - self.effective)) / self.effective
+        tried = {min(max(best, self.lowest), self.highest), min(self.exact, self.lowest)}
+        return max((self.likelihood(power, variance), variance) for variance in tried)
+
+    def size(self, variance: float) -> float:
+        """Return tau in units of the noise."""
+        return math.sqrt(max(variance - 1.0, 0.0) * self.effective / self.samples)
+
+    def _of(self, error: float) -> float:
+        """Return what a root mean square in units of the noise adds to V."""
+        return error**2 * self.samples / self.effective
+
+
+def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
+    """Return the discrepancy's law for a misfit (n,) in units of the noise, and the part of it that is the floor."""
+    n = misfit.size
+    power = float(misfit @ misfit)
+    effective = min(EFFECTIVE, n / 3.0)
+    lowest = 1.0 + floor**2 * max(power - n, 0.0) / effective
+    highest = max(2.0 * power / effective, 2.0 * lowest)
+    return Discrepancy(n, effective, lowest, highest, 1.0 + LIKE_NOISE**2 * n / effective)
+
+
+def usual_form_error() -> float:
+    """Return the root mean square of all form errors: what a set may miss of a misfit before its effects are known."""
+    return float(np.sqrt(np.mean([effect.form_error**2 for effect in CATALOGUE.values()])))
+
+
+SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)
+"""Sizes tried first, as parts of the misfit."""
+
+ROUNDS = 12
+NARROWEST, WIDEST = 1e-3, 100.0
+"""Bounds of a size, as parts of the misfit."""
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """Products of all signatures' columns with each other and with the misfit.
+
+    gram (k, k), moment (k,), power: of the misfit; places: of each candidate its columns, the mean first
+    """
+
+    gram: FloatArray
+    moment: FloatArray
+    power: float
+    places: Mapping[str, slice]
+    signed: Mapping[str, bool]
+    columns: FloatArray
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Log marginal likelihood of a set at its best sizes (units of the noise) and variance V."""
+
+    names: tuple[str, ...]
+    log_likelihood: float
+    sizes: tuple[float, ...]
+    variance: float
+
+
+def normal_equations(signatures: Sequence[Signature], misfit: FloatArray) -> NormalEquations:
+    """Return the products of the signatures' columns."""
+    columns = np.concatenate([np.empty((misfit.size, 0)), *(s.columns for s in signatures)], axis=1)
+    places, begin = {}, 0
+    for s in signatures:
+        width = 1 + s.basis.shape[1]
+        places[s.name] = slice(begin, begin + width)
+        begin += width
+    return NormalEquations(
+        columns.T @ columns,
+        columns.T @ misfit,
+        float(misfit @ misfit),
+        places,
+        {s.name: s.signed for s in signatures},
+        columns,
+    )
+
+
+def evidence_of(
+    names: Sequence[str],
+    equations: NormalEquations,
+    discrepancy: Discrepancy,
+    start: Evidence | None = None,
+    *,
+    polish: bool = True,
+) -> Evidence:
+    """Return the evidence of a set, begun at the sizes of a set that shares names with it.
+
+    polish: whether sizes and variance are climbed to the top; else the best of a few are taken
+    """
+    known = dict(zip(start.names, start.sizes, strict=True)) if start is not None else {}
+    if not names:
+        likelihoods = [discrepancy.likelihood(equations.power, float(v)) for v in discrepancy.grid()]
+        best = int(np.argmax(likelihoods))
+        return Evidence((), float(likelihoods[best]), (), float(discrepancy.grid()[best]))
+    unit = math.sqrt(equations.power / discrepancy.samples)
+    begin = start.variance if start is not None else 0.25 * discrepancy.highest
+    tries = []
+    new = [n for n in names if n not in known]
+    signs_of = [(1.0, -1.0) if equations.signed[n] and n in new else (1.0,) for n in names]
+    for part, signs in itertools.product(SIZES if new else (1.0,), itertools.product(*signs_of)):
+        chosen = [known.get(n, part * unit * sign) for n, sign in zip(names, signs, strict=True)]
+        tries += [(chosen, max(begin / f, discrepancy.lowest)) for f in (1.0, 8.0, 64.0)]
+    likelihoods = [_likelihood(names, s, v, equations, discrepancy)[0] for s, v in tries]
+    best = int(np.argmax(likelihoods))
+    sizes, variance = tries[best]
+    if not polish:
+        return Evidence(tuple(names), likelihoods[best], tuple(sizes), variance)
+    direction = np.sign(sizes)
+
+    def cost(q: FloatArray) -> float:
+        return -_likelihood(names, direction * np.exp(q[:-1]), math.exp(q[-1]), equations, discrepancy)[0]
+
+    first = np.append(np.log(np.maximum(np.abs(sizes), 1e-4 * unit)), math.log(variance))
+    bounds = [(math.log(NARROWEST * unit), math.log(WIDEST * unit))] * len(names)
+    bounds.append((math.log(discrepancy.lowest), math.log(discrepancy.highest)))
+    answer = minimize(cost, first, method="L-BFGS-B", bounds=bounds, options={"maxiter": ROUNDS})
+    found = direction * np.exp(answer.x[:-1])
+    return Evidence(tuple(names), -float(answer.fun), tuple(found.tolist()), math.exp(answer.x[-1]))
+
+
+def parts_of(
+    evidence: Evidence, equations: NormalEquations, discrepancy: Discrepancy
+) -> dict[str, FloatArray]:
+    """Return what each candidate of a set explains of the misfit, in units of the noise."""
+    if not evidence.names:
+        return {}
+    _, coefficients = _likelihood(evidence.names, evidence.sizes, evidence.variance, equations, discrepancy)
+    parts, begin = {}, 0
+    for name, size in zip(evidence.names, evidence.sizes, strict=True):
+        place = equations.places[name]
+        width = place.stop - place.start - 1
+        own = np.append(size, coefficients[begin : begin + width])
+        parts[name] = equations.columns[:, place] @ own
+        begin += width
+    return parts
+
+
+def _likelihood(
+    names: Sequence[str],
+    sizes: Sequence[float] | FloatArray,
+    variance: float,
+    equations: NormalEquations,
+    discrepancy: Discrepancy,
+) -> tuple[float, FloatArray]:
+    """Return the log marginal likelihood and the coefficients of the bases at their posterior mean."""
+    places = [equations.places[n] for n in names]
+    means = np.array([p.start for p in places])
+    free = np.concatenate([np.arange(p.start + 1, p.stop) for p in places])
+    scale = np.concatenate([np.full(p.stop - p.start - 1, s) for p, s in zip(places, sizes, strict=True)])
+    s = np.asarray(sizes)
+    gram, moment = equations.gram, equations.moment
+    power = equations.power - 2.0 * s @ moment[means] + s @ gram[np.ix_(means, means)] @ s
+    if not free.size:
+        return discrepancy.likelihood(power, variance), np.zeros(0)
+    right = scale * (moment[free] - gram[np.ix_(free, means)] @ s)
+    left = scale[:, None] * gram[np.ix_(free, free)] * scale / variance
+    left[np.diag_indices(free.size)] += 1.0
+    factor = cholesky(left, lower=True, check_finite=False)
+    z = solve_triangular(factor, right, lower=True, check_finite=False)
+    remaining = power - float(z @ z) / variance
+    determinant = 2.0 * float(np.log(np.diag(factor)).sum())
+    mean = scale * solve_triangular(factor.T, z, lower=False, check_finite=False) / variance
+    return discrepancy.likelihood(remaining, variance) - 0.5 * determinant, mean
+
 
 PRIOR_ODDS = 5.0
 """What a candidate must gain in log likelihood before it is as likely as not: one of a dozen candidates is there, or

@@ -24,12 +24,10 @@ from scipy.stats import norm
 
 from ..computing.workers import Cores, work
 from ..estimation.explanation import explain_misfit
-from ..estimation.uncertainty import estimates_of
+from ..estimation.findings import estimates_of
 from ..recordings.recording import Recording
 from ..regressors.dataset import arranged, dataset_of
-from ..regressors.draws import quantile
-from ..regressors.law import candidates
-from ..regressors.signature import strengthened
+from ..regressors.signature import candidates, quantile, strengthened
 from ..simulation.simulate import simulate
 from .metrics import Rate
 

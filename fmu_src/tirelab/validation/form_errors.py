@@ -25,10 +25,10 @@ import numpy as np
 from radialtire import TireModel, read_tire
 
 from ..computing.workers import Cores, work
-from ..diagnosis.held_out import noise_free_residual
+from ..diagnosis.acceptance import noise_free_residual
 from ..estimation.explanation import explain_misfit
 from ..names import REFITTED_LAW
-from ..preprocessing.kinematics import motion_of
+from ..preprocessing.motion import motion_of
 from ..recordings.recording import Recording, read_recording
 from .commitment import draw_and_commit
 from .folders import Folders, read_json

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from radialtire import TireModel
 
-from ..diagnosis.held_out import noise_free_residual
+from ..diagnosis.acceptance import noise_free_residual
 from ..fmu.replay import replay
-from ..preprocessing.kinematics import motion_of
+from ..preprocessing.motion import motion_of
 from ..recordings.recording import Recording
 from ..simulation.simulate import simulate
 

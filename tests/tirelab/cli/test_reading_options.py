@@ -9,7 +9,7 @@ from click.testing import CliRunner, Result
 from drives import damped, saved
 from house_form import loading, write_rows
 from tirelab.cli import main
-from tirelab.diagnosis.untimed import OF_TIME
+from tirelab.preprocessing.samples import OF_TIME
 
 
 def run(*words: object) -> Result:

@@ -9,7 +9,7 @@ import pytest
 from drives import Drive, flat_force, read, ride
 from radialtire import TireModel
 from tirelab.diagnosis.binning import BINS, Axis, axes_of
-from tirelab.preprocessing.dataset import dataset_of
+from tirelab.preprocessing.samples import dataset_of
 
 
 def press(cycles: int = 3, radius: float = np.inf, name: str = "press") -> Drive:

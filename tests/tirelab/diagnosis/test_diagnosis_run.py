@@ -13,7 +13,7 @@ import pytest
 from radialtire import TireModel, read_tire
 from tirelab.diagnosis import diagnosis_run
 from tirelab.diagnosis.diagnosis_run import run_diagnosis
-from tirelab.diagnosis.provenance import command_line
+from tirelab.diagnosis.outcome import command_line
 from tirelab.errors import TirelabError
 from tirelab.recordings.reading import Reading
 

@@ -8,7 +8,7 @@ from drives import Drive, flat_force, read, ride
 from radialtire import CATALOGUE, Recalibrated, TireModel
 from scipy.signal import lfilter
 from tirelab.diagnosis.localization import law_corrected, localize
-from tirelab.preprocessing.dataset import dataset_of
+from tirelab.preprocessing.samples import dataset_of
 from tirelab.simulation.simulate import simulate
 
 LEVEL = 5.0

@@ -1,7 +1,7 @@
 """What is said in the verdict's sentences, and what is not."""
 
 import numpy as np
-from tirelab.diagnosis.alternatives import Alternative
+from tirelab.diagnosis.confidence import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.diagnosis.summary import summarise

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from tirelab.planning.choice import TOLD, Menu, chosen_of
 from tirelab.planning.responses import PRIOR_OF_LAW
 from tirelab.planning.separation import Question
-from tirelab.regressors.law import LAW
+from tirelab.regressors.signature import LAW
 
 PLACES = {
     "inertia": slice(0, 1),

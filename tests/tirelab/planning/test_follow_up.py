@@ -11,7 +11,7 @@ from small_rig import RIG, few_effects
 from tirelab.errors import TirelabError
 from tirelab.planning.follow_up import Diagnosed, alternatives_asked, follow_up, read_diagnosed
 from tirelab.planning.menu import drive_of
-from tirelab.regressors.law import LAW
+from tirelab.regressors.signature import LAW
 
 FRICTION, DAMPING = "rate_independent_hysteresis", "viscous_damping"
 

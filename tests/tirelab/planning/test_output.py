@@ -11,7 +11,7 @@ from tirelab.planning.menu import drive_of
 from tirelab.planning.output import draw_plan, write_drive
 from tirelab.planning.plan import Answer, RecordingPlan, Row
 from tirelab.planning.separation import Question
-from tirelab.regressors.law import LAW
+from tirelab.regressors.signature import LAW
 from tirelab.validation.follow_up_test import read_test
 
 DRIVE = drive_of("fast triangles", 0.25, -0.508, RIG, 2e5)

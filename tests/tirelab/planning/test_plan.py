@@ -10,7 +10,7 @@ from tirelab.errors import TirelabError
 from tirelab.planning.menu import drive_of
 from tirelab.planning.plan import SIZES, RecordingPlan, file_name, offered, plan_recordings
 from tirelab.planning.responses import HELD, responses_of
-from tirelab.regressors.law import LAW
+from tirelab.regressors.signature import LAW
 
 
 @pytest.fixture

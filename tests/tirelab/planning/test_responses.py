@@ -9,7 +9,7 @@ from small_rig import RIG, few_effects, silent
 from tirelab.planning.menu import drive_of, experiment_of
 from tirelab.planning.responses import DRAWS, HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW, Responses, responses_of
 from tirelab.planning.separation import Question, probabilities
-from tirelab.regressors.law import LAW
+from tirelab.regressors.signature import LAW
 
 
 @pytest.fixture

@@ -9,9 +9,8 @@ from radialtire import CATALOGUE
 from scipy.stats import norm
 from tirelab.planning.responses import PRIOR_OF_LAW
 from tirelab.planning.separation import Question, probabilities, questions_of
-from tirelab.regressors.law import LAW
-from tirelab.selection.discrepancy import EFFECTIVE, Discrepancy
-from tirelab.selection.search import PRIOR_ODDS
+from tirelab.regressors.signature import LAW
+from tirelab.selection.search import EFFECTIVE, PRIOR_ODDS, Discrepancy
 
 PLACES = {
     "inertia": slice(0, 3),

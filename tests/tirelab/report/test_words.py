@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from fits import fit_of
-from tirelab.estimation.uncertainty import estimates_of
+from tirelab.estimation.findings import estimates_of
 from tirelab.report import titles, words
 
 

@@ -1,4 +1,4 @@
-"""The recordings of one diagnosis as the misfit is located in them: motion, baseline law, and the rows looked at."""
+"""The samples of one diagnosis as the misfit is located in them: motion, baseline law, and the rows looked at."""
 
 from __future__ import annotations
 
@@ -10,10 +10,13 @@ from typing import Protocol
 import numpy as np
 from radialtire import TireModel
 
-from .kinematics import FloatArray, IndexArray, Motion, motion_of
+from .motion import FloatArray, IndexArray, Motion, motion_of
 
 ROWS = 8000
 """Samples in which the misfit is located, evenly spaced, all experiments together."""
+
+OF_TIME = frozenset({"time", "rate", "acceleration"})
+"""Coordinates that need the times of the samples."""
 
 
 class Recorded(Protocol):
@@ -122,3 +125,8 @@ def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
         tuple(radii.tolist()),
         max(float(e.motion.deflection.max()) for e in experiments),
     )
+
+
+def is_timed(recordings: Sequence[Recorded]) -> bool:
+    """Whether the time of every recording was measured; one that does not say it was."""
+    return all(getattr(recording, "timed", True) for recording in recordings)

@@ -1,9 +1,11 @@
 """The dataset of a diagnosis: rows, surfaces and the baseline law, against the article's law and by hand."""
 
+from __future__ import annotations
+
 import numpy as np
 import pytest
 from radialtire import TireModel, power_law
-from tirelab.preprocessing.dataset import ROWS, dataset_of
+from tirelab.preprocessing.samples import ROWS, dataset_of
 from tirelab.recordings.recording import Recording
 
 BASELINE = TireModel()

@@ -1,0 +1,253 @@
+"""The motion of a recording: smoothed deflection, rate, acceleration, direction, turns and distance since reversal.
+
+The longest smoothing that the motion allows at each moment: a smoothing spline of order 3 (it penalises the third
+derivative) passes an angular frequency w [1/sample] by
+
+    H(w) = 1 / (1 + (w / w_c)^6)
+
+Splines of many cut-offs w_c are fitted. How well each predicts a held-out sample is known without another fit: a
+residual r of leverage h has left out the variance s^2 (1 - h) of the reading's noise s,
+
+    log p = 1/2 log(1 - h) - r^2 / (2 s^2 (1 - h))
+
+Summed over a window around each sample this weighs the splines (Wahba, "Spline Models for Observational Data", SIAM
+1990, on leave-one-out; the mean over models is Bayesian), together with how often each is used in the whole recording:
+long ones where the motion is smooth, short ones at corners. Being a mean given the data and not the data themselves,
+rate and acceleration do not bias what is fitted to them towards zero.
+
+In a turn within a sample neither is known. A misfit that depends on the direction, the rate or the past of the motion
+jumps there and says nothing that can be judged. Where it is the same before and after the turn, what shows within it
+comes from the deflection, which is read as well there as elsewhere, or from the mass that turns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
+from scipy.ndimage import gaussian_filter1d
+
+from .noise import deflection_noise
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IndexArray = NDArray[np.intp]
+
+
+CORNER = 9.0
+"""Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by a twentieth
+of a sample's travel, the motion has a corner within a sample."""
+
+CORNER_SAMPLES, SHORTEST = 6, 13
+"""A corner shows in at most so many samples, and a piece between two corners has at least so many."""
+
+MOST_PIECES = 1000
+"""Budget: pieces that are smoothed each by itself."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion of one recording; every array has the shape of its samples.
+
+    deflection [m], rate [m/s], acceleration [m/s^2]: smoothed as long as the noise and the motion allow
+    noise: standard deviation [m] of the deflection's reading; smoothed_noise: that of the smoothed deflection [m]
+    deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
+    -1 unloading, kept through holds; since_reversal: distance [m] from the deflection of the last reversal
+    resolved: False where the motion has a corner within a sample, so that its rate there is not known
+    """
+
+    deflection: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+    noise: float
+    smoothed_noise: FloatArray
+    deepest: FloatArray
+    cycle: FloatArray
+    direction: FloatArray
+    since_reversal: FloatArray
+    resolved: BoolArray
+
+
+def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
+    """Return the motion of a recording: time [s] rising, deflection [m]."""
+    noise = deflection_noise(deflection)
+    smooth, rate, acceleration, smoothed_noise, resolved = _smoothed(time, deflection, noise)
+    # Smoothing cuts a corner short: there the reading itself is nearer.
+    smooth, smoothed_noise = np.where(resolved, smooth, deflection), np.where(resolved, smoothed_noise, noise)
+    direction, cycle, since_reversal = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
+    deepest = np.maximum.accumulate(smooth)
+    return Motion(
+        smooth, rate, acceleration, noise, smoothed_noise, deepest, cycle, direction, since_reversal, resolved
+    )
+
+
+def _smoothed(
+    time: FloatArray, deflection: FloatArray, noise: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return deflection, rate and acceleration, the noise left in the deflection, and where the motion is resolved."""
+    step = float(np.median(np.diff(time)))
+    if np.ptp(np.diff(time)) > 1e-3 * step:
+        grid = np.linspace(time[0], time[-1], deflection.size)
+        read = np.interp(grid, time, deflection)
+        level, *rest, resolved = _smoothed(grid, read, noise)
+        rate, acceleration, smoothed_noise = (np.interp(time, grid, r) for r in rest)
+        return deflection - np.interp(time, grid, read - level), rate, acceleration, smoothed_noise, resolved
+    resolved = _resolved(deflection, noise)
+    parts = np.zeros((4, deflection.size))
+    for begin, end in _pieces(resolved):
+        parts[:, begin:end] = smoothed(deflection[begin:end], step, noise)
+    smooth, rate, acceleration, leverage = parts
+    return smooth, rate, acceleration, noise * np.sqrt(leverage), resolved
+
+
+def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
+    """Return where five samples follow a cubic."""
+    resolved = np.ones(deflection.size, dtype=bool)
+    travel = float(np.sqrt(max(np.mean(np.diff(deflection) ** 2) - 2.0 * noise**2, 0.0)))
+    basis = np.linalg.qr(np.vander(np.arange(-2.0, 3.0), 4, increasing=True))[0]
+    outside = np.linalg.qr(np.eye(5) - basis @ basis.T)[0][:, 0]
+    misfit = np.convolve(deflection - deflection.mean(), outside[::-1], mode="valid") ** 2
+    resolved[2:-2] = misfit < max(CORNER * noise**2, (0.05 * travel) ** 2)
+    return resolved
+
+
+def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
+    """Return the pieces of the motion between its corners: a spline across a corner rings on both sides of it.
+
+    Shorter ones than SHORTEST, and what no corner of a sample explains, stay with their neighbours.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], ~resolved, [False]])))
+    cuts = [0]
+    for begin, end in edges.reshape(-1, 2).tolist():
+        middle = (begin + end) // 2
+        if end - begin <= CORNER_SAMPLES and middle - cuts[-1] >= SHORTEST:
+            cuts.append(middle)
+    if resolved.size - cuts[-1] < SHORTEST and len(cuts) > 1:
+        cuts.pop()
+    if len(cuts) > MOST_PIECES:
+        cuts = [0]
+    return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))
+
+
+def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return direction, cycle number and distance since the last reversal; one counts beyond `threshold` [m].
+
+    It is recognised late, but counts from the turning point on.
+    """
+    turns, sign, best = [0], 1.0, 0
+    extreme = deflection[0]
+    values = deflection.tolist()
+    for i, x in enumerate(values):
+        ahead = sign * (x - extreme)
+        if ahead >= 0.0:
+            best, extreme = i, x
+        elif -ahead > threshold:
+            turns.append(best + 1)
+            sign, best, extreme = -sign, i, x
+    lengths = np.diff([*turns, deflection.size])
+    number = np.arange(lengths.size)
+    direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), lengths)
+    cycle = np.repeat(np.floor(number / 2.0), lengths)
+    start = np.repeat(deflection[np.maximum(np.array(turns) - 1, 0)], lengths)
+    return direction, cycle, np.abs(deflection - start)
+
+
+CUTOFFS = np.pi * np.geomspace(0.02, 2.0, 14)
+"""Cut-off frequencies [1/sample]: from a hundred samples to almost the samples themselves."""
+
+WINDOW = 12.0
+"""Standard deviation [samples] of the window over which splines are weighed: some forty samples together."""
+
+WEIGHT_ROUNDS = 6
+"""Rounds in which the splines' shares are found: an expectation and a maximisation each."""
+
+PADDING = 400
+"""Samples that are reflected at each end, so that value and slope go on there."""
+
+LEVERAGE = 0.97
+"""Upper bound of a spline's leverage: the shortest one would leave no residual to judge it by."""
+
+
+def smoothed(
+    values: FloatArray, step: float, noise: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return value, first and second derivative of even samples, and the part of the noise's variance left.
+
+    values (n,) with n >= 3; step: between samples [s]; noise: standard deviation of the reading, in the values' unit
+    """
+    count = values.size
+    pad = min(count - 1, PADDING)
+    line = np.linspace(values[0], values[-1], count)
+    level = values - line
+    reflected = np.concatenate([-level[pad:0:-1], level, -level[-2 : -pad - 2 : -1]])
+    whole = next_fast_len(reflected.size, real=True)
+    # The samples that fill up to a quick length are detrended too: both ends are zero.
+    filled = np.concatenate([reflected, np.linspace(reflected[-1], reflected[0], whole - reflected.size)])
+    slope = (values[-1] - values[0]) / (count - 1)
+    angle = 2.0 * np.pi * rfftfreq(whole)
+    spectrum = rfft(filled)
+    inside = slice(pad, pad + count)
+    splines = [1.0 / (1.0 + (angle / cutoff) ** 6) for cutoff in CUTOFFS]
+    leverages = [min(float(np.mean(passed)), LEVERAGE) for passed in splines]
+    scores = np.empty((len(splines), count), dtype=np.float32)
+    for i, (passed, leverage) in enumerate(zip(splines, leverages, strict=True)):
+        left = (level - irfft(spectrum * passed, whole)[inside]) / noise
+        score = 0.5 * (np.log(1.0 - leverage) - left**2 / (1.0 - leverage))
+        scores[i] = gaussian_filter1d(score, WINDOW, mode="nearest") * np.sqrt(4.0 * np.pi) * WINDOW
+    sums = np.zeros((4, count))
+    for passed, leverage, weight in zip(splines, leverages, _weights(scores), strict=True):
+        kept = spectrum * passed
+        sums[0] += weight * irfft(kept, whole)[inside]
+        sums[1] += weight * (irfft(1j * angle * kept, whole)[inside] + slope)
+        sums[2] -= weight * irfft(angle**2 * kept, whole)[inside]
+        sums[3] += weight * leverage
+    return sums[0] + line, sums[1] / step, sums[2] / step**2, sums[3]
+
+
+def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return each spline's weight at every sample, (splines, n): often used ones have the larger prior."""
+    scores -= scores.max(axis=0)
+    prior = np.full((scores.shape[0], 1), 1.0 / scores.shape[0], dtype=np.float32)
+    for _ in range(WEIGHT_ROUNDS):
+        weights = prior * np.exp(scores)
+        weights /= weights.sum(axis=0)
+        prior = weights.mean(axis=1, keepdims=True)
+    return weights
+
+
+SAME = 3.0 * float(np.sqrt(2.0))
+"""Noises by which the misfit before a turn and after it may differ: three standard deviations of a difference."""
+
+
+def followed_turns(misfit: FloatArray, resolved: BoolArray, noise: float) -> BoolArray:
+    """Return the samples (n,) within turns that leave the misfit as it was before; noise: of a sample."""
+    found = np.zeros(misfit.size, dtype=bool)
+    for begin, end in _runs(~resolved):
+        if begin < 2 or end > misfit.size - 2:
+            continue
+        before, after = misfit[begin - 2 : begin], misfit[end : end + 2]
+        # The two samples need not be read at the same deflection.
+        slope = max(abs(float(before[1] - before[0])), abs(float(after[1] - after[0])))
+        found[begin:end] = abs(float(after[0] - before[1])) < max(SAME * noise, slope)
+    return found
+
+
+def through_turns(
+    time: FloatArray, rate: FloatArray, acceleration: FloatArray, turns: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return rate [m/s] and acceleration [m/s^2] where the rate changes evenly within each of the `turns`."""
+    rate, acceleration = rate.copy(), acceleration.copy()
+    for begin, end in _runs(turns):
+        whole = slice(begin - 1, end + 1)
+        ends = time[[begin - 1, end]], rate[[begin - 1, end]]
+        rate[whole] = np.interp(time[whole], *ends)
+        acceleration[begin:end] = (ends[1][1] - ends[1][0]) / (ends[0][1] - ends[0][0])
+    return rate, acceleration
+
+
+def _runs(inside: BoolArray) -> list[tuple[int, int]]:
+    """Return begin and end of each run of samples `inside`."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]])))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
