@@ -36,6 +36,7 @@ BESIDE = (
     "diagnosis/diagnose",
     "diagnosis/discriminating_test",
     "diagnosis/localization",
+    "diagnosis/simulation_correction.WORSE",
     "preprocessing/samples",
 )
 """Modules or numbers of these rooms that make what is shown beside a verdict: places, the next test, reasons."""
@@ -43,112 +44,150 @@ BESIDE = (
 SENSITIVITY = Path(__file__).parent / "sensitivity.json"
 
 KINDS: dict[str, str] = {
-    "derived": "from a definition, a theorem, a cited source or the numbers' own precision",
-    "calibrated": "measured by a command on declared seeds",
-    "budget": "bounds time or memory, or says where a search begins; more changes a verdict where one was cut short",
+    "derived": "from a definition, a theorem, a cited source, other numbers or the numbers' own precision",
+    "prior": "spread of a refitted law's parameters, as the effects' files declare theirs; recordings find its scale",
+    "effort": "bounds time or memory, or says where and how finely a search looks: one number, scaled all together",
     "chosen": "set by hand and tried on drawn cases",
 }
 
 DERIVED = (
     "preprocessing/data_checks.FEWEST_SAMPLES",
     "preprocessing/data_checks.FEWEST_STEPS",
-    "preprocessing/noise.LEAST_NOISE",
-    "preprocessing/noise.FINEST_STEP",
-    "preprocessing/noise.SMALL",
-    "preprocessing/noise.LEAST_LEVELS",
-    "preprocessing/noise.GRID_TOLERANCE",
-    "preprocessing/noise.MEDIAN_TO_SIGMA",
-    "preprocessing/noise.SPIKE_LIMIT",
-    "preprocessing/noise.TRIMMED",
-    "preprocessing/noise.OF_THIRD",
-    "regressors/dataset.BY_CHANCE",
-    "preprocessing/noise.SHARE_OF_STEP",
-    "preprocessing/noise.STAYS",
-    "preprocessing/noise.LONGEST_PHASE",
-    "preprocessing/motion.SAME",
-    "estimation/findings.SHAPE_INDICES",
-    "diagnosis/acceptance.LIKELY",
-    "preprocessing/motion.PADDING",
-    "preprocessing/motion.WEIGHT_ROUNDS",
+    "preprocessing/data_checks.MOST",
+    "preprocessing/data_checks.ONWARDS",
+    "preprocessing/motion.CORNER",
     "preprocessing/motion.CORNER_SAMPLES",
+    "preprocessing/motion.PADDING",
+    "preprocessing/motion.SAME",
+    "preprocessing/motion.SHORTEST",
+    "preprocessing/motion.WEIGHT_ROUNDS",
+    "preprocessing/motion.WINDOW",
+    "preprocessing/noise.FINEST_STEP",
+    "preprocessing/noise.GRID_TOLERANCE",
+    "preprocessing/noise.LEAST_LEVELS",
+    "preprocessing/noise.LEAST_NOISE",
+    "preprocessing/noise.LONGEST_PHASE",
+    "preprocessing/noise.MEDIAN_TO_SIGMA",
+    "preprocessing/noise.OF_THIRD",
+    "preprocessing/noise.SHARE_OF_STEP",
+    "preprocessing/noise.SMALL",
+    "preprocessing/noise.STAYS",
+    "preprocessing/noise.TRIMMED",
+    "regressors/dataset.BLURRED",
+    "regressors/dataset.BY_CHANCE",
+    "regressors/dataset.COUNTED",
+    "regressors/excitation.COURSE_DRAWS",
+    "regressors/excitation.UNDER_WAY",
+    "regressors/signature.FEWEST",
     "regressors/signature.LEAST_MASS",
-    "regressors/signature.REFERENCE",
     "regressors/signature.LEAST_RATIO",
     "regressors/signature.SILENT",
-    "regressors/signature.FEWEST",
+    "selection/search.BEAM",
     "selection/search.GRID",
     "selection/search.LIKE_NOISE",
-    "estimation/findings.STEP",
-    "estimation/fit.STEP",
-    "estimation/fit.DAMPING",
-    "estimation/problem.COMMON",
-    "estimation/fit.LAW_SCALES",
-    "estimation/fit.FORM_SCALES",
     "estimation/findings.DETERMINED",
-    "diagnosis/localization.LOCATED",
-    "diagnosis/discriminating_test.DECISIVE",
-    "diagnosis/confidence.FURTHEST",
-    "diagnosis/confidence.SMALLEST",
-    "diagnosis/confidence.CREDIBLE",
-)
-
-CALIBRATED: dict[str, str] = {}
-
-BUDGET = (
-    "preprocessing/samples.ROWS",
-    "regressors/dataset.ROWS",
-    "regressors/dataset.MOST_ROWS",
-    "preprocessing/noise.FEWEST_LAGS",
-    "regressors/dataset.FEWEST_ROWS",
-    "regressors/signature.DRAWS",
-    "regressors/signature.COLUMNS",
-    "regressors/signature.ENERGY",
-    "selection/search.ROUNDS",
-    "selection/search.BEAM",
-    "selection/search.POLISHED",
-    "selection/search.MOST",
-    "selection/search.LOST",
-    "estimation/fit.REWEIGHTED",
-    "estimation/fit.OPTIONAL_GAIN",
-    "estimation/fit.ROUNDS",
-    "estimation/fit.ENOUGH",
-    "estimation/fit.PASSES",
-    "estimation/fit.TRIES",
-    "estimation/fit.TRUSTED",
-    "estimation/fit.LONGEST",
-    "regressors/signature.MOST_SURFACES",
-    "preprocessing/motion.MOST_PIECES",
-    "estimation/ranking.BEGUN",
-    "estimation/ranking.REACH",
-    "estimation/ranking.MOST_FITS",
-    "estimation/ranking.REPEATS",
-    "estimation/ranking.MOST_EFFECTS",
-    "estimation/ranking.PROMISING",
-    "estimation/ranking.SWAPPED",
-    "estimation/ranking.HOPE",
-    "preprocessing/noise.FIRST_QUANTILE",
-    "regressors/excitation.COURSES",
-    "regressors/excitation.DRAWS",
-    "estimation/fit.LAW_LOOSE",
-    "estimation/problem.AWAKE",
-    "diagnosis/acceptance.CONSIDERED",
-    "diagnosis/confidence.MOST",
-    "diagnosis/localization.MOST_SPANS",
-    "diagnosis/binning.BINS",
-    "diagnosis/binning.NARROWEST",
-    "diagnosis/residual_model.KNOTS",
-    "diagnosis/residual_model.SAMPLES_PER_KNOT",
-    "diagnosis/residual_model.FOLDS",
-    "diagnosis/diagnose.MOST_TESTED",
-    "regressors/signature.HEIGHTS",
-    "regressors/dataset.SECANTS",
-    "selection/search.SIZES",
-    "selection/search.NARROWEST",
-    "selection/search.WIDEST",
-    "diagnosis/localization.DEPTHS",
+    "estimation/findings.SHAPE_INDICES",
+    "estimation/findings.STEP",
+    "estimation/fit.DAMPING",
+    "estimation/fit.FORM_SCALES",
+    "estimation/fit.LAW_SCALES",
+    "estimation/fit.STEP",
+    "estimation/problem.COMMON",
     "estimation/problem.DEPTHS",
     "estimation/problem.WAYS",
+    "estimation/ranking.MOST_EFFECTS",
+    "estimation/ranking.SWAPPED",
+    "diagnosis/acceptance.LIKELY",
+    "diagnosis/confidence.CREDIBLE",
+    "diagnosis/confidence.FURTHEST",
+    "diagnosis/confidence.SMALLEST",
+    "diagnosis/discriminating_test.DECISIVE",
+    "diagnosis/localization.LOCATED",
 )
+
+PRIOR = tuple(f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "HEIGHT"))
+
+EFFORT = (
+    "preprocessing/motion.CUTOFFS",
+    "preprocessing/motion.LEVERAGE",
+    "preprocessing/motion.MOST_PIECES",
+    "preprocessing/noise.CANDIDATES",
+    "preprocessing/noise.FEWEST_LAGS",
+    "preprocessing/noise.FIRST_QUANTILE",
+    "preprocessing/samples.ROWS",
+    "regressors/dataset.FEWEST_ROWS",
+    "regressors/dataset.MOST_ROWS",
+    "regressors/dataset.ROWS",
+    "regressors/dataset.SECANTS",
+    "regressors/excitation.CELLS",
+    "regressors/excitation.COURSES",
+    "regressors/signature.COLUMNS",
+    "regressors/signature.DRAWS",
+    "regressors/signature.ENERGY",
+    "regressors/signature.MOST_SURFACES",
+    "regressors/signature.SMALLEST",
+    "selection/search.LOST",
+    "selection/search.MOST",
+    "selection/search.NARROWEST",
+    "selection/search.POLISHED",
+    "selection/search.ROUNDS",
+    "selection/search.SIZES",
+    "selection/search.WIDEST",
+    "estimation/findings.BINS",
+    "estimation/fit.ENOUGH",
+    "estimation/fit.LAW_LOOSE",
+    "estimation/fit.LONGEST",
+    "estimation/fit.OPTIONAL_GAIN",
+    "estimation/fit.PASSES",
+    "estimation/fit.REWEIGHTED",
+    "estimation/fit.ROUNDS",
+    "estimation/fit.TRIES",
+    "estimation/fit.TRUSTED",
+    "estimation/problem.AWAKE",
+    "estimation/ranking.BEGUN",
+    "estimation/ranking.FLOOR_MOVED",
+    "estimation/ranking.HOPE",
+    "estimation/ranking.MOST_FITS",
+    "estimation/ranking.PROMISING",
+    "estimation/ranking.REPEATS",
+    "diagnosis/acceptance.CONSIDERED",
+    "diagnosis/binning.BINS",
+    "diagnosis/binning.NARROWEST",
+    "diagnosis/confidence.MOST",
+    "diagnosis/diagnose.MOST_TESTED",
+    "diagnosis/localization.DEPTHS",
+    "diagnosis/localization.MOST_SPANS",
+    "diagnosis/residual_model.FOLDS",
+    "diagnosis/residual_model.KNOTS",
+    "diagnosis/residual_model.SAMPLES_PER_KNOT",
+)
+
+BOUNDS = (
+    "regressors/dataset.FEWEST_ROWS",
+    "regressors/dataset.MOST_ROWS",
+    "regressors/dataset.ROWS",
+    "regressors/excitation.COURSES",
+    "regressors/signature.COLUMNS",
+    "regressors/signature.DRAWS",
+    "selection/search.LOST",
+    "selection/search.MOST",
+    "selection/search.POLISHED",
+    "selection/search.ROUNDS",
+    "estimation/fit.PASSES",
+    "estimation/fit.REWEIGHTED",
+    "estimation/fit.ROUNDS",
+    "estimation/fit.TRIES",
+    "estimation/ranking.BEGUN",
+    "estimation/ranking.HOPE",
+    "estimation/ranking.MOST_FITS",
+    "estimation/ranking.PROMISING",
+    "estimation/ranking.REPEATS",
+    "diagnosis/acceptance.CONSIDERED",
+)
+"""Those of the effort of which more is better: what is halved and doubled together."""
+
+TOGETHER = "effort"
+"""Under this name they stand in the file of the sensitivities."""
 
 
 @dataclass(frozen=True)
@@ -164,9 +203,9 @@ class Constant:
         """One of KINDS."""
         if self.place in DERIVED:
             return "derived"
-        if self.place in CALIBRATED:
-            return "calibrated"
-        return "budget" if self.place in BUDGET else "chosen"
+        if self.place in PRIOR:
+            return "prior"
+        return "effort" if self.place in EFFORT else "chosen"
 
     @property
     def beside(self) -> bool:
@@ -236,27 +275,26 @@ def page() -> str:
     every = constants()
     own = [c for c in every if not c.beside]
     counts = {kind: sum(c.kind == kind for c in own) for kind in KINDS}
-    open_ones = [c for c in own if c.kind != "derived"]
-    moved = [c for c in open_ones if any(other for other, _ in c.tried.values())]
     lines = [
         "# The numbers that can change a verdict",
         "",
         "For the colleague who asks why a verdict fell as it did, or who wants to change a number. Written by",
-        "`python tests/constants.py`; a test holds that it is complete.",
+        "`python tests/constants.py`; a test holds that every named number of the rooms between a recording and its",
+        "verdict is here. A function's own arithmetic (a half, a tenth of a percent of a span) is not.",
         "",
         *(f"- **{kind}** ({counts[kind]}): {text}" for kind, text in KINDS.items() if counts[kind]),
         "",
-        *_told(len(open_ones), moved),
+        *_told(counts["chosen"]),
         "Beside these, `fmu_src/tirelab/diagnosis/calibration.json` holds the weights of the confidence with the",
         "command that made them, and each effect's file its priors and its form error.",
         "",
         "| number | value | kind | halved | doubled | what it is |",
         "|---|---|---|---|---|---|",
     ]
-    for c in sorted(own, key=lambda c: (list(KINDS).index(c.kind), -sum(o for o, _ in c.tried.values()))):
-        made = f" (`{CALIBRATED[c.place]}`)" if c.place in CALIBRATED else ""
-        halved, doubled = (_counted(c, factor) for factor in ("0.5", "2.0"))
-        lines.append(f"| `{c.place}` | {c.value} | {c.kind}{made} | {halved} | {doubled} | {_plain(c)} |")
+    order = list(KINDS)[::-1]
+    for c in sorted(own, key=lambda c: (order.index(c.kind), -sum(o for o, _ in c.tried.values()))):
+        halved, doubled = (_counted(c.tried, factor) for factor in ("0.5", "2.0"))
+        lines.append(f"| `{c.place}` | {c.value} | {c.kind} | {halved} | {doubled} | {_plain(c)} |")
     lines += [
         "",
         "## Numbers that make what is shown beside a verdict",
@@ -270,17 +308,23 @@ def page() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _told(count: int, moved: list[Constant]) -> list[str]:
+def _told(chosen: int) -> list[str]:
+    lines = [
+        f"So {chosen + 1} are not derived: the {chosen} that are set by hand, and the effort. The priors of a refitted",
+        "law stand here because no effect's file holds them.",
+        "",
+    ]
     if not SENSITIVITY.exists():
-        return []
+        return lines
     run = json.loads(SENSITIVITY.read_text(encoding="utf-8"))
-    tried = len({row["number"] for row in run["numbers"]})
+    halved, doubled = (_counted(_sensitivity().get(TOGETHER, {}), factor) for factor in ("0.5", "2.0"))
     only = "".join(f" --only {name}" for name in run["only"])
-    only += f" --kind {run['kind']}" if run.get("kind") else ""
     return [
-        f"Of the {count} that are not derived, {tried} were halved and doubled, and {run['each']} of {run['trials']}",
-        f"blind trials were diagnosed again each time: {len(moved)} of the numbers changed a verdict at all. The",
-        "columns tell how many. The others are not tried yet. The command:",
+        *lines,
+        f"Each of the {chosen} was halved and doubled, and {run['each']} of {run['trials']} blind trials were",
+        "diagnosed again each time, other ones for each number: the columns tell how many verdicts became others. The",
+        f"bounds of the effort were halved and doubled all together: {halved} and {doubled} verdicts became others.",
+        "The command:",
         "",
         "```sh",
         f"python tests/sensitivity.py --seed {run['seed']} --trials {run['trials']} --each {run['each']}{only}",
@@ -289,10 +333,10 @@ def _told(count: int, moved: list[Constant]) -> list[str]:
     ]
 
 
-def _counted(c: Constant, factor: str) -> str:
-    if factor not in c.tried:
+def _counted(tried: Mapping[str, tuple[int, int]], factor: str) -> str:
+    if factor not in tried:
         return ""
-    other, trials = c.tried[factor]
+    other, trials = tried[factor]
     return f"{other} of {trials}"
 
 

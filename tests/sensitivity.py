@@ -1,12 +1,13 @@
 """What happens to verdicts when a number of constants.md is halved or doubled.
 
-Run: python tests/sensitivity.py --seed S --trials N --each M [--kind KIND] [--only NAME ...] --out sensitivity.json
+Run: python tests/sensitivity.py --seed S --trials N --each M [--only NAME ...] --out sensitivity.json
 
-N blind trials of all kinds are drawn and diagnosed as the numbers stand. Then each number that is not derived is halved
+N blind trials of all kinds are drawn and diagnosed as the numbers stand. Then each number that is set by hand is halved
 and doubled, one at a time, and M of the trials are diagnosed again: which ones goes round, so that all numbers together
-are tried on all trials. Counted are the verdicts that name another set of effects. Counts of whole things are rounded
-and at least one. The number is changed in the module's source as it is imported, in a process of its own, so whatever
-is made of it follows. What a trial was is not asked for: this is about how firm a verdict stands, not how right it is.
+are tried on all trials. The bounds of the effort are halved and doubled all together, on all trials. Counted are the
+verdicts that name another set of effects. Counts of whole things are rounded and at least one. The number is changed in
+the module's source as it is imported, in a process of its own, so whatever is made of it follows. What a trial was is
+not asked for: this is about how firm a verdict stands, not how right it is.
 """
 
 from __future__ import annotations
@@ -25,23 +26,25 @@ from types import CodeType, ModuleType
 from typing import Any
 
 import click
-from constants import Constant, constants
+from constants import BOUNDS, TOGETHER, constants
 
 FACTORS = (0.5, 2.0)
 SCALED = "_scaled_by_the_sensitivity"
 
 
 class Changed(SourceFileLoader):
-    """Loads a module with one number of it multiplied."""
+    """Loads a module with some of its numbers multiplied."""
 
-    def __init__(self, fullname: str, path: str, name: str, factor: float) -> None:
+    def __init__(self, fullname: str, path: str, names: Sequence[str], factor: float) -> None:
         super().__init__(fullname, path)
-        self._change = name, factor
+        self._names, self._factor = names, factor
 
     def get_code(self, fullname: str) -> CodeType:
         """Return the changed module."""
         path = self.get_filename(fullname)
-        tree = changed(ast.parse(self.get_data(path)), *self._change)
+        tree = ast.parse(self.get_data(path))
+        for name in self._names:
+            tree = changed(tree, name, self._factor)
         return compile(tree, path, "exec")
 
     def exec_module(self, module: ModuleType) -> None:
@@ -51,21 +54,25 @@ class Changed(SourceFileLoader):
 
 
 class Changing(MetaPathFinder):
-    """Finds one module, to load it changed."""
+    """Finds the modules of some numbers ("room/module.NAME"), to load them changed."""
 
-    def __init__(self, module: str, name: str, factor: float) -> None:
-        self._module, self._name, self._factor = module, name, factor
+    def __init__(self, places: Sequence[str], factor: float) -> None:
+        self._factor = factor
+        self._names: dict[str, list[str]] = {}
+        for place in places:
+            module, name = place.rsplit(".", 1)
+            self._names.setdefault(f"tirelab.{module.replace('/', '.')}", []).append(name)
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Return the module's place with the loader that changes it."""
-        if fullname != self._module:
+        if fullname not in self._names:
             return None
         spec = PathFinder.find_spec(fullname, path, target)
         assert spec is not None
         assert spec.origin is not None
-        spec.loader = Changed(fullname, spec.origin, self._name, self._factor)
+        spec.loader = Changed(fullname, spec.origin, self._names[fullname], self._factor)
         return spec
 
 
@@ -116,7 +123,9 @@ def verdicts(folder: Path, keys: Sequence[str]) -> Iterator[tuple[str, list[str]
             yield key, [f"failed: {error}"]
 
 
-def _asked(folder: Path, keys: Sequence[str], change: tuple[str, float] | None) -> dict[str, list[str]]:
+def _asked(
+    folder: Path, keys: Sequence[str], change: tuple[Sequence[str], float] | None
+) -> dict[str, list[str]]:
     """Diagnose trials in a process of its own."""
     given = json.dumps({"folder": str(folder), "keys": list(keys), "change": change})
     done = subprocess.run(
@@ -131,9 +140,7 @@ def _asked(folder: Path, keys: Sequence[str], change: tuple[str, float] | None) 
 def _child() -> None:
     given = json.loads(sys.stdin.read())
     if given["change"]:
-        place, factor = given["change"]
-        module, name = place.rsplit(".", 1)
-        sys.meta_path.insert(0, Changing(f"tirelab.{module.replace('/', '.')}", name, factor))
+        sys.meta_path.insert(0, Changing(*given["change"]))
     print(json.dumps(dict(verdicts(Path(given["folder"]), given["keys"]))))
 
 
@@ -150,7 +157,7 @@ def _drawn(folder: Path, seed: int, trials: int) -> list[str]:
     return keys
 
 
-def tried(numbers: Sequence[Constant], keys: Sequence[str], each: int) -> list[tuple[Constant, list[str]]]:
+def tried(numbers: Sequence[str], keys: Sequence[str], each: int) -> list[tuple[str, list[str]]]:
     """Return of every number the trials that it is tried on, going round."""
     return [
         (number, [keys[(i * each + k) % len(keys)] for k in range(min(each, len(keys)))])
@@ -170,26 +177,20 @@ def _counts(place: str, before: dict[str, list[str]], after: dict[str, list[str]
     "--each", type=click.IntRange(min=1), default=200, show_default=True, help="Trials of a number."
 )
 @click.option(
-    "--only", multiple=True, help="Numbers by the ends of their places; all that are not derived if left out."
+    "--only", multiple=True, help="Numbers by the ends of their places; all that are set by hand if left out."
 )
-@click.option("--kind", default="", help="Numbers of this kind alone: chosen or budget.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("sensitivity.json"))
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True)
 @click.option("--child", is_flag=True, hidden=True)
-def main(
-    seed: int, trials: int, each: int, only: tuple[str, ...], kind: str, out: Path, jobs: int, child: bool
-) -> None:
-    """Halve and double every number that is not derived."""
+def main(seed: int, trials: int, each: int, only: tuple[str, ...], out: Path, jobs: int, child: bool) -> None:
+    """Halve and double every number that is set by hand, and the effort."""
     if child:
         _child()
         return
     numbers = [
-        c
-        for c in constants()
-        if c.kind != "derived" and kind in c.kind and not c.beside and c.place.endswith(only or "")
+        c.place for c in constants() if c.kind == "chosen" and not c.beside and c.place.endswith(only or "")
     ]
-    content: dict[str, Any] = {"seed": seed, "trials": trials, "each": each, "only": only, "kind": kind}
-    content["numbers"] = []
+    content: dict[str, Any] = {"seed": seed, "trials": trials, "each": each, "only": only, "numbers": []}
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(jobs) as workers:
         folder = Path(name)
         keys = _drawn(folder, seed, trials)
@@ -198,12 +199,15 @@ def main(
             lambda part: _asked(folder, part, None), [keys[i::jobs] for i in range(jobs)]
         ):
             before |= found
-        changes = [(n, own, f) for n, own in tried(numbers, keys, each) for f in FACTORS]
-        answers = workers.map(lambda c: _asked(folder, c[1], (c[0].place, c[2])), changes)
-        for (number, _, factor), after in zip(changes, answers, strict=True):
-            row = {"factor": factor, **_counts(number.place, before, after)}
+        pieces = [(place, (place,), own) for place, own in tried(numbers, keys, each)]
+        if not only:
+            pieces += [(TOGETHER, BOUNDS, keys)]
+        changes = [(*piece, factor) for piece in pieces for factor in FACTORS]
+        answers = workers.map(lambda c: _asked(folder, c[2], (c[1], c[3])), changes)
+        for (place, _, _, factor), after in zip(changes, answers, strict=True):
+            row = {"factor": factor, **_counts(place, before, after)}
             content["numbers"].append(row)
-            click.echo(f"{number.place} x {factor}: {row['other']} of {row['trials']} verdicts are others")
+            click.echo(f"{place} x {factor}: {row['other']} of {row['trials']} verdicts are others")
             out.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 

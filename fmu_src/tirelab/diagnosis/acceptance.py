@@ -26,15 +26,15 @@ from radialtire import TireModel
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
-from ..preprocessing.noise import STILL
+from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..preprocessing.samples import Dataset, Experiment, Recorded, dataset_of, is_timed
 from ..regressors.signature import MOST_SURFACES
 from ..simulation.simulate import simulate, smoothed_motion
 
-FITTED, LEAST = 0.7, 0.1
+FITTED = 0.7
 """Part of the baseline's squared misfit that is fitted where the end of a recording is held out: by time, one side
-could lack what is to be explained. It is also the part of the held-out misfit that has to be driven as what is fitted.
-And the part of its samples that is fitted at least."""
+could lack what is to be explained. It is also the part of the held-out misfit that has to be driven as what is
+fitted."""
 
 HALVINGS = int(np.ceil(-np.log2(STILL)))
 """Depths and speeds below a sixty-fourth of the largest are one: there the tire rests."""
@@ -207,7 +207,7 @@ def _beginning(before: FloatArray, way: IndexArray) -> BoolArray:
     for one in np.unique(way):
         own = way == one
         missed = np.cumsum(before[own] ** 2) / max(float(before[own] @ before[own]), 1e-300)
-        kept[own] = (missed < FITTED) | (np.arange(missed.size) < LEAST * missed.size)
+        kept[own] = (missed < FITTED) | (np.arange(missed.size) < NEGLIGIBLE * missed.size)
     return kept
 
 

@@ -39,6 +39,7 @@ from ..fmu.system import SYSTEM, write_system
 from ..identification.identify import identify
 from ..identification.part_laws import LEAST_SPRING
 from ..identification.surfaces import CM_PER_M
+from ..preprocessing.noise import NEGLIGIBLE
 from ..recordings.recording import Recording
 from ..simulation.simulate import UPSTREAM, SmoothedMotion, simulate
 from .acceptance import rmse
@@ -48,10 +49,6 @@ FloatArray = NDArray[np.float64]
 
 
 NAME = "the believed simulation"
-
-OFTEN, FAR = 0.05, 0.1
-"""A part pulls where a force is below 0 by more than this part of its largest size in at least this part of the
-samples: a tire never does, but for noise and the zero of an amplifier."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +98,7 @@ def _law_of(recordings: Sequence[Recording]) -> TireModel:
 
 def _pulls(force: FloatArray) -> bool:
     """Return whether a force [N] (n,) is one that no ground exerts, for more than noise and an amplifier's zero."""
-    return float(np.quantile(force, OFTEN)) < -FAR * float(np.max(np.abs(force)))
+    return float(np.quantile(force, NEGLIGIBLE)) < -NEGLIGIBLE * float(np.max(np.abs(force)))
 
 
 def _straight(simulated: Sequence[Recording]) -> TireModel:

@@ -18,7 +18,7 @@ from radialtire import CATALOGUE, TireModel
 from ..preprocessing.noise import NoiseFloor, noise_of
 from ..preprocessing.samples import Recorded
 from ..regressors.dataset import BLURRED, Dataset, blocking_error, dataset_of
-from ..regressors.excitation import Excitation, excitation_of
+from ..regressors.excitation import AS_GOOD, Excitation, excitation_of
 from ..regressors.signature import (
     LAW,
     SHAPE,
@@ -80,9 +80,6 @@ Progress = Callable[[str], None]
 
 NEAR = 4.0
 """Log posterior odds of the likeliest set over the median one up to which the latter is preferred."""
-
-AS_GOOD = 0.75
-"""Part of what an effect explains that another must explain to be an alternative to it."""
 
 
 @dataclass(frozen=True)

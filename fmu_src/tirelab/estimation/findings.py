@@ -15,6 +15,7 @@ from radialtire import TireModel
 
 from ..regressors.dataset import Dataset, spikes
 from ..regressors.signature import LAW
+from ..selection.search import LIKE_NOISE
 from ..simulation.simulate import Sampled, simulate
 from .fit import Fit
 from .problem import COMMON, law_surfaces
@@ -101,9 +102,11 @@ BINS = 15
 STRUCTURED = 6.0
 """Chi-square per bin of the mean remainder above which it depends on a coordinate: coloured noise reaches 2 to 3."""
 
-UNEXPLAINED_SIZE, UNEXPLAINED_SHARE = 1.0, 0.1
-"""A remainder is unexplained where it is more than the noise, and more than this share of the misfit: the error of the
-effects' forms has reached a share of 0.05."""
+UNEXPLAINED_SIZE = LIKE_NOISE
+"""Size of a remainder beyond which it is unexplained: more than the noise."""
+
+UNEXPLAINED_SHARE = 0.1
+"""Share of the misfit beyond which a remainder is unexplained: the error of the effects' forms has reached 0.05."""
 
 
 @dataclass(frozen=True)

@@ -273,8 +273,8 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
     return arranged(tire, effects)
 
 
-DEPTHS, WAYS = 6, 3
-"""Hats over the deflection, and over the deflection with the sign of the direction."""
+DEPTHS, WAYS = HEIGHTS + 1, (HEIGHTS + 1) // 2
+"""Hats over the deflection, one more than a law's shape has heights, and over it with the sign of the direction."""
 
 
 def smooth_functions(dataset: Dataset) -> FloatArray:

@@ -19,7 +19,7 @@ from scipy.linalg import solve_triangular
 
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, Signature, strengthened
-from ..selection.search import PRIOR_ODDS, Discrepancy, discrepancy_of
+from ..selection.search import LOST, MOST, PRIOR_ODDS, Discrepancy, discrepancy_of
 from .fit import Fit, fitted
 from .problem import Values, law_start, with_readings
 
@@ -117,8 +117,8 @@ BEGUN = 3
 TEMPERATURE = 2.0
 """Tempering of the posterior odds between sets: fits that stop early and forms that are not quite right."""
 
-REACH = 20.0
-"""A fitted set this far behind the best in log posterior is not followed up."""
+REACH = TEMPERATURE * LOST
+"""A fitted set this far behind the best in log posterior is not followed up, as in the search but tempered."""
 
 MOST_FITS = 40
 """Budget: fits of one diagnosis."""
@@ -126,10 +126,14 @@ MOST_FITS = 40
 REPEATS = 2
 """Budget: fits of one set, from the optima of others."""
 
-MOST_EFFECTS = 6
+MOST_EFFECTS = MOST + 1
+"""Effects of a fitted set: one may come in beside those that a search finds."""
 
-PROMISING, SWAPPED = 5, 2
-"""Candidates put in beside a fitted set, and in the place of one of its own, the most promising first."""
+PROMISING = 5
+"""Candidates put in beside a fitted set, the most promising first."""
+
+SWAPPED = PROMISING // 2
+"""Candidates put in the place of one of its own."""
 
 FLOOR_MOVED = 1.2
 """Factor to another floor from which on the sets are judged again."""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
-from .noise import deflection_noise, white_level
+from .noise import FEWEST_EVENTS, STANDS_OUT, deflection_noise, white_level
 from .samples import Dataset, Recorded
 
 FloatArray = NDArray[np.float64]
@@ -104,24 +104,19 @@ def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) 
     return float(np.linalg.norm(columns @ amounts)) / float(np.sqrt(power)) if power > 0.0 else float("nan")
 
 
-BAND = 8.0
-"""Noises of the gauge below its largest reading within which it stands still."""
-
-FEWEST = 10
-"""Samples of a stay: the peak of a quick cycle has fewer."""
-
 BEYOND = 5.0
 """Rise of the force over what the mean stiffness makes of the reading: a progressive tire is stiffer there."""
 
 MOST = 0.5
-"""Part of the samples that may stand still: where more do, the motion is hardly more than its noise. And the part of
-its stays in which a gauge at the end of its travel is seen to be there."""
+"""A majority: of the samples that stand still (the motion is hardly more than its noise then), and of the stays in
+which a gauge at the end of its travel is seen to be there."""
 
 ONWARDS = 0.5
-"""Rate of the force in the first fifth of the stay over that before it."""
+"""Rate of the force in the first fifth of the stay over that before it: between going on (1) and stopping (0)."""
 
 BROAD = 0.4
-"""Part of the stay in which the force is above half of its rise: a ring dies away sooner."""
+"""Part of the stay in which the force is above half of its rise: half of it where the motion is a triangle, more in
+a sine; a ring dies away sooner."""
 
 
 def beyond_travel(deflection: FloatArray, force: FloatArray) -> BoolArray:
@@ -146,24 +141,24 @@ def said_of(recordings: Sequence[Recorded]) -> str:
 
 def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
     """Return where the reading stands at its largest while the force rises and falls."""
-    if x.size <= FEWEST or not np.ptp(x) > 0.0:
+    if x.size <= FEWEST_EVENTS or not np.ptp(x) > 0.0:
         return np.zeros(x.size, dtype=bool)
-    band = BAND * deflection_noise(x)
-    near = x > np.partition(x, -FEWEST)[-FEWEST] - band
+    band = STANDS_OUT * deflection_noise(x)
+    near = x > np.partition(x, -FEWEST_EVENTS)[-FEWEST_EVENTS] - band
     if near.mean() > MOST:
         return np.zeros(x.size, dtype=bool)
     stiffness, noise = float(np.ptp(force)) / float(np.ptp(x)), white_level(force)
     places = np.flatnonzero(near)
     stopped = []
     # A single reading far off does not end a stay.
-    for stay in np.split(places, np.flatnonzero(np.diff(places) > FEWEST) + 1):
+    for stay in np.split(places, np.flatnonzero(np.diff(places) > FEWEST_EVENTS) + 1):
         begin, end = int(stay[0]), int(stay[-1]) + 1
         own, fifth = force[begin:end], (end - begin) // 5
-        if own.size < FEWEST or begin < fifth:
+        if own.size < FEWEST_EVENTS or begin < fifth:
             continue
         ends = float(max(own[0], own[-1]))
         rise = float(own.max()) - ends
-        allowed = BEYOND * stiffness * max(band, float(np.ptp(x[begin:end]))) + BAND * noise
+        allowed = BEYOND * stiffness * max(band, float(np.ptp(x[begin:end]))) + STANDS_OUT * noise
         onwards = own[fifth] - own[0] > ONWARDS * (own[0] - force[begin - fifth]) > 0.0
         stopped.append(bool(rise > allowed and onwards and np.mean(own > ends + 0.5 * rise) > BROAD))
     # A gauge stops each time; what else moves the force may do so now and then.

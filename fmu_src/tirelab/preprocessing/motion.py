@@ -29,19 +29,22 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.ndimage import gaussian_filter1d
 
-from .noise import deflection_noise
+from .noise import NEGLIGIBLE, TRIMMED, deflection_noise
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IndexArray = NDArray[np.intp]
 
 
-CORNER = 9.0
-"""Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by a twentieth
-of a sample's travel, the motion has a corner within a sample."""
+CORNER = TRIMMED**2
+"""Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by what
+counts of a sample's travel, the motion has a corner within a sample."""
 
-CORNER_SAMPLES, SHORTEST = 6, 13
-"""A corner shows in at most so many samples, and a piece between two corners has at least so many."""
+CORNER_SAMPLES = 6
+"""A corner shows in at most so many samples."""
+
+SHORTEST = 2 * CORNER_SAMPLES + 1
+"""Samples of a piece between two corners, at least: what both of them take, and one."""
 
 MOST_PIECES = 1000
 """Budget: pieces that are smoothed each by itself."""
@@ -109,7 +112,7 @@ def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
     basis = np.linalg.qr(np.vander(np.arange(-2.0, 3.0), 4, increasing=True))[0]
     outside = np.linalg.qr(np.eye(5) - basis @ basis.T)[0][:, 0]
     misfit = np.convolve(deflection - deflection.mean(), outside[::-1], mode="valid") ** 2
-    resolved[2:-2] = misfit < max(CORNER * noise**2, (0.05 * travel) ** 2)
+    resolved[2:-2] = misfit < max(CORNER * noise**2, (NEGLIGIBLE * travel) ** 2)
     return resolved
 
 
@@ -157,8 +160,8 @@ def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, Flo
 CUTOFFS = np.pi * np.geomspace(0.02, 2.0, 14)
 """Cut-off frequencies [1/sample]: from a hundred samples to almost the samples themselves."""
 
-WINDOW = 12.0
-"""Standard deviation [samples] of the window over which splines are weighed: some forty samples together."""
+WINDOW = 2.0 * CORNER_SAMPLES
+"""Standard deviation [samples] of the window over which splines are weighed: as wide as two corners."""
 
 WEIGHT_ROUNDS = 6
 """Rounds in which the splines' shares are found: an expectation and a maximisation each."""

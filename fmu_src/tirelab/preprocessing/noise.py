@@ -41,11 +41,17 @@ IntArray = NDArray[np.intp]
 STILL = 0.02
 """Speed over its root mean square below which the tire rests."""
 
+NEGLIGIBLE = 0.05
+"""Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior."""
+
+STANDS_OUT = 8.0
+"""Noises by which a reading stands out by itself, whatever the motion does; within them a gauge stands still."""
+
+FEWEST_EVENTS = 10
+"""Events, samples of a stay or changes undone, that are no chance."""
+
 MEDIAN_TO_SIGMA = 1.4826
 """Standard deviation of a normal law over its median absolute deviation, 1 / 0.67449."""
-
-SPIKE_LIMIT = 4.5
-"""Values beyond this many standard deviations are spikes: one in 150 000 of a normal law."""
 
 
 def robust_sigma(values: NDArray[np.float64]) -> float:
@@ -95,12 +101,6 @@ LEAST_LEVELS = 100
 GRID_TOLERANCE = 0.25
 """Largest distance of a reading from the grid of steps, as a part of a step: a file rounds what a gauge has read."""
 
-LEAST_UNDONE = 10
-"""Changes of speed undone at once (see `gauge_step`) that show a gauge's rounding: exact numbers have none."""
-
-ROUNDED_ALONE = 0.05
-"""Part of the second differences beyond one step up to which a reading has rounding and no other noise."""
-
 
 def deflection_noise(deflection: FloatArray) -> float:
     """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least 1e-9 m,
@@ -113,7 +113,7 @@ def deflection_noise(deflection: FloatArray) -> float:
     step = gauge_step(deflection)
     rounding = step / np.sqrt(12.0)
     # A smooth motion that is only rounded has second differences of -q, 0 and q.
-    if step > 0.0 and np.mean(np.abs(np.diff(deflection, 2)) > 1.5 * step) < ROUNDED_ALONE:
+    if step > 0.0 and np.mean(np.abs(np.diff(deflection, 2)) > 1.5 * step) < NEGLIGIBLE:
         return float(max(rounding, least))
     return float(max(random, rounding, least))
 
@@ -132,7 +132,7 @@ def gauge_step(deflection: FloatArray) -> float:
     changes = np.diff(np.rint(np.diff(deflection) / step))
     small = (changes != 0.0) & (np.abs(changes) <= 2.0)
     undone = small[:-1] & small[1:] & (changes[:-1] * changes[1:] < 0.0)
-    return step if np.count_nonzero(undone) >= LEAST_UNDONE else 0.0
+    return step if np.count_nonzero(undone) >= FEWEST_EVENTS else 0.0
 
 
 def _shrunk(deflection: FloatArray) -> float:
@@ -153,24 +153,19 @@ def _common_step(gaps: FloatArray, finest: float) -> float:
     return 0.0
 
 
-REPEATED = 0.3
-"""Part of neighbouring readings that are equal above which a gauge is said to step."""
+STEPPING, LEVELS = 0.3, 5
+"""Part of neighbouring readings that are equal, and part of the changes that rest before or after, or number of
+different jumps, that a stepping gauge shows at least."""
 
 CANDIDATES = (0.02, 0.1, 0.25, 0.5)
 """Quantiles of the changes of the reading that may be its step: the first and last change are often parts of one."""
-
-ON_GRID = 0.1
-"""Largest distance of a change from a whole number of steps, in steps."""
-
-RESTING, LEVELS = 0.3, 5
-"""Part of the changes that rest before or after, or number of different jumps, that a stepping gauge shows at least."""
 
 
 def staircase_step(deflection: FloatArray) -> float:
     """Return the step [m] of a gauge whose readings repeat, or 0."""
     changes = np.abs(np.diff(deflection))
     moved = changes[changes > 1e-12]
-    if moved.size == 0 or moved.size > (1.0 - REPEATED) * changes.size:
+    if moved.size == 0 or moved.size > (1.0 - STEPPING) * changes.size:
         return 0.0
     # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
     changing = changes > 1e-12
@@ -178,8 +173,8 @@ def staircase_step(deflection: FloatArray) -> float:
     # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
     for step in sorted(np.quantile(moved, CANDIDATES), reverse=True):
         multiples = np.round(moved / step)
-        if float(np.quantile(np.abs(moved / step - multiples), 0.9)) < ON_GRID:
-            return float(step) if rests >= RESTING or np.unique(multiples).size >= LEVELS else 0.0
+        if float(np.quantile(np.abs(moved / step - multiples), 0.9)) < GRID_TOLERANCE:
+            return float(step) if rests >= STEPPING or np.unique(multiples).size >= LEVELS else 0.0
     return 0.0
 
 
@@ -349,5 +344,5 @@ def noise_floor(
     through_gauge = 0.0 if step > 0.0 else gauge_noise * mean_square
     through_steps = step * SHARE_OF_STEP * mean_square
     whole = max(level, force_step * SHARE_OF_STEP)
-    amplifier = float(np.sqrt(max(whole**2 - through_gauge**2, 0.05 * whole**2)))
+    amplifier = float(np.sqrt(max(whole**2 - through_gauge**2, NEGLIGIBLE * whole**2)))
     return NoiseFloor(amplifier, through_gauge, through_steps, step)

@@ -21,7 +21,9 @@ from scipy.stats import binom
 from ..preprocessing.data_checks import beyond_travel
 from ..preprocessing.motion import followed_turns, motion_of, through_turns
 from ..preprocessing.noise import (
+    NEGLIGIBLE,
     SHARE_OF_STEP,
+    STANDS_OUT,
     Noise,
     NoiseFloor,
     destepped,
@@ -77,8 +79,9 @@ FEWEST_ROWS = 600
 TURN = 0.5
 """Phase p [rad] that a block spans at most, of a motion whose frequency is that of its acceleration over its rate."""
 
-BLURRED = 0.3
-"""Part of the noise that blocks may add: straight lines over a phase p miss p^2 / 12 of what changes."""
+BLURRED = float(np.sqrt((1.0 + NEGLIGIBLE) ** 2 - 1.0))
+"""Part of the noise that blocks may add: together they are more by what is negligible. Straight lines over a phase p
+miss p^2 / 12 of what changes."""
 
 FORMS_APART = 0.005
 """Part of a misfit to which no effect's form is known; what blocks blur below it does not matter."""
@@ -89,14 +92,14 @@ STEPS_LEFT = 0.3
 BY_CHANCE = 0.01
 """Level of the test that more single samples stand out than the part of all that may."""
 
-LONE, RARE = 8.0, 0.02
-"""A sample this many noises off both its neighbours is a spike, where less than this part of all samples is."""
+RARE = 0.02
+"""Part of all samples below which those that stand out from both their neighbours are spikes."""
 
 SECANTS = 40
 """Parts of the deflection's span over which the stiffness is taken."""
 
-COUNTED = 0.6
-"""Part of the blocks that must remain: where the motion is resolved in fewer, all count."""
+COUNTED = 0.5
+"""Part of the blocks that must remain, a majority: where the motion is resolved in fewer, all count."""
 
 
 @dataclass(frozen=True)
@@ -375,7 +378,9 @@ def spikes(misfit: FloatArray) -> BoolArray:
     level = white_level(misfit)
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
-    lone[1:-1] = (np.abs(before) > LONE * level) & (np.abs(after) > LONE * level) & (before * after > 0.0)
+    lone[1:-1] = (
+        (np.abs(before) > STANDS_OUT * level) & (np.abs(after) > STANDS_OUT * level) & (before * after > 0.0)
+    )
     # What is frequent is noise that not all of the recording has: of a gauge's steps while the tire moves.
     return lone if lone.mean() < RARE else np.zeros_like(lone)
 

@@ -20,25 +20,22 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
-from ..preprocessing.noise import STILL
+from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
-from .signature import drawn
+from .signature import DRAWS, drawn
 
 FloatArray = NDArray[np.float64]
 
 Cells = NDArray[np.int_]
 
-COURSES, DRAWS = 2, 16
-"""Courses of an effect, and the draws that they are the leading ones of."""
+COURSES, COURSE_DRAWS = 2, DRAWS // 2
+"""Courses of an effect, and the draws that they are the leading ones of: those of the plain form alone."""
 
-SEEN = 0.05
-"""Part of a channel's variance within the recordings that the courses of an effect must add."""
+AS_GOOD = 0.75
+"""Part of what an effect explains that another must explain to stand for it."""
 
-LEAST = 0.1
-"""Part of a channel's resolution that a course must have, root mean square."""
-
-ALIKE = 0.8
+ALIKE = float(np.sqrt(AS_GOOD))
 """Cosine of the leading courses of two effects beyond which either may stand for the other."""
 
 
@@ -68,7 +65,7 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
         impossible |= {
             e.name
             for e in changing
-            if not (seen[e.name][0] > SEEN and seen[e.name][1] > LEAST * channel.resolution)
+            if not (seen[e.name][0] > NEGLIGIBLE and seen[e.name][1] > NEGLIGIBLE * channel.resolution)
         }
         within, between = _spreads(value - followed, np.concatenate(cells))
         if within < max(channel.resolution, between):
@@ -113,7 +110,7 @@ def _cosine(a: FloatArray, b: FloatArray) -> float:
 
 def _courses(effect: Effect, dataset: Dataset) -> list[FloatArray]:
     """Return the leading courses of an effect's factor over all recordings, the first one in the effect's own sense."""
-    sets, _ = drawn(effect, dataset.scales, DRAWS)
+    sets, _ = drawn(effect, dataset.scales, COURSE_DRAWS)
     tire = TireModel(dataset.tire.law, tested_range=None)
     histories = [elastic_stage(tire, e, e)[0] for e in dataset.experiments]
     curves = np.array([_factor(effect, tuple(values), histories) for values in sets])
@@ -154,14 +151,12 @@ def _size(values: FloatArray) -> float:
 CELLS = 12
 """Parts of the deflection's span in which two visits are visits of the same deflection."""
 
-RETURNS = 0.02
-"""Part of the variance of time that must lie between visits of one deflection in one direction."""
-
 SPEEDS = 0.5
 """Spread of the speed, at one deflection in one direction, over its mean, below which there is one speed."""
 
-UNDER_WAY = 0.3
-"""Speed over its root mean square above which the direction is sure: a channel may change with it."""
+UNDER_WAY = 0.5
+"""Speed over its root mean square above which the direction is sure, between rest (0) and the usual speed (1): a
+channel may change with it."""
 
 NO_EVIDENCE = ChannelEvidence(frozenset(), {})
 """That of recordings whose channels were not looked at."""
@@ -192,7 +187,7 @@ class Excitation:
         traits = CATALOGUE[name].traits
         if not self.timed and {"rate", "slow"} & set(traits):
             return "the recording has no time"
-        if "slow" in traits and self.returns < RETURNS:
+        if "slow" in traits and self.returns < NEGLIGIBLE:
             return "no deflection was visited again: time cannot be told from deflection and direction"
         return ""
 

@@ -28,6 +28,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from ..names import REFITTED_LAW
+from ..preprocessing.noise import NEGLIGIBLE
 from .dataset import Dataset, Scales, arranged
 
 FloatArray = NDArray[np.float64]
@@ -98,17 +99,18 @@ LAW = REFITTED_LAW
 SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)
 """The effect in which a refitted law keeps bend and twist."""
 
-FACTOR, EXPONENT, BEND, TWIST = 0.1, 0.07, 0.03, 0.01
-"""Standard deviations of a, b, c and d at the scale 1: their proportions are what counts."""
+FACTOR, EXPONENT, BEND, TWIST, HEIGHT = 0.1, 0.07, 0.03, 0.01, 0.05
+"""Standard deviations of a, b, c, d and each height at the scale 1: their proportions are what counts, the recordings
+find the scale."""
 
-HEIGHT = 0.05
-"""Standard deviation of each height of a refitted law's shape at the scale 1."""
-
-HEIGHTS = 5
+HEIGHTS = sum(p.name.startswith("height") for p in CATALOGUE[SHAPE].parameters)
 """Heights in the shape of a refitted law."""
 
-REFERENCE, LEAST_RATIO = 2, 0.01
-"""Index of the shape's reference, and the least x / x_ref, as in `elastic_shape`."""
+REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
+"""Index of the shape's reference."""
+
+LEAST_RATIO = 0.01
+"""The least x / x_ref, as in `elastic_shape`."""
 
 MOST_SURFACES = 8
 """Beyond them (terrain) the law is refitted for all alike."""
@@ -153,9 +155,6 @@ def law_signature(dataset: Dataset) -> Signature:
 SIZES = frozenset({"force", "travel"})
 """The scales by which a recording is small or large; how long or fast it is says nothing of its size."""
 
-WITHIN = 0.05
-"""Part of a prior that must lie within the parameter's bounds."""
-
 
 def out_of_size(names: Sequence[str], scales: Scales) -> dict[str, str]:
     """Return which of the effects `names` cannot be fitted to recordings of these scales, and why."""
@@ -165,7 +164,7 @@ def out_of_size(names: Sequence[str], scales: Scales) -> dict[str, str]:
 def _why(name: str, scales: Scales) -> str:
     for p in CATALOGUE[name].parameters:
         needed = not p.optional or name == SHAPE
-        if needed and p.prior is not None and p.prior.shape == "log" and _within(p, scales) < WITHIN:
+        if needed and p.prior is not None and p.prior.shape == "log" and _within(p, scales) < NEGLIGIBLE:
             size = math.exp(centre_and_spread(p, scales)[0])
             bound = (
                 f"at least {p.minimum:g} {p.unit}" if size < p.minimum else f"at most {p.maximum:g} {p.unit}"
@@ -195,9 +194,9 @@ ENERGY = 0.999
 FEWEST = 6
 """Fewer draws with a response make no signature: the effect cannot show itself here."""
 
-SMALLEST, LARGEST = 0.1, 1.0
-"""Sizes between which curves are drawn, as parts of the misfit: where the response is not linear, the form depends on
-the size."""
+SMALLEST = 0.1
+"""Size from which on curves are drawn, up to all of the misfit: where the response is not linear, the form depends
+on the size."""
 
 SILENT = 1e-7
 """Response over the baseline force below which there is none."""
@@ -240,7 +239,7 @@ def signature_of(name: str, dataset: Dataset) -> Signature | None:
     values: list[tuple[float, ...]] = []
     sizes: list[float] = []
     for chosen, share in zip(sets, shares, strict=True):
-        wanted = min(misfit * SMALLEST * (LARGEST / SMALLEST) ** share, 0.3 * force)
+        wanted = min(misfit * SMALLEST ** (1.0 - share), 0.3 * force)
         curve, scaled = _sized(effect, chosen, dataset, wanted)
         size = size_of(curve) if curve.size else 0.0
         if not SILENT * force < size < 30.0 * max(misfit, wanted):

@@ -260,8 +260,11 @@ PRIOR_ODDS = 5.0
 """What a candidate must gain in log likelihood before it is as likely as not: one of a dozen candidates is there, or
 none; and it is worth naming."""
 
-BEAM, POLISHED, MOST = 4, 8, 5
-"""Sets kept from one size to the next, sets polished among a size's candidates, candidates of a set."""
+POLISHED, MOST = 8, 5
+"""Sets polished among a size's candidates, candidates of a set."""
+
+BEAM = POLISHED // 2
+"""Sets kept from one size to the next."""
 
 LOST = 10.0
 """A size of sets whose best is this far behind ends the search."""

@@ -17,7 +17,6 @@ from scipy.stats import norm
 from tirelab.preprocessing.noise import (
     LEAST_NOISE,
     MEDIAN_TO_SIGMA,
-    SPIKE_LIMIT,
     Noise,
     deflection_noise,
     destepped,
@@ -42,10 +41,6 @@ def test_outliers_do_not_move_it() -> None:
     values[::100] = 1e6
     # Its standard error is 1.17 sigma / sqrt(n) = 0.8 %; a hundredth of outliers adds 1.6 %.
     assert robust_sigma(values) == pytest.approx(3.0, rel=0.04)
-
-
-def test_a_spike_is_one_in_150_000() -> None:
-    assert 1.0 / (2.0 * norm.sf(SPIKE_LIMIT)) == pytest.approx(150_000, rel=0.03)
 
 
 def test_what_is_trimmed_of_a_normal_law_is_made_up_for() -> None:
