@@ -272,7 +272,7 @@ class Fit:
     residual (m,), jacobian (m, k): in units of the noise; near: what the evidence is made of
     forms (m, f): columns of the form errors, scaled
     unformed: sum of squares that the form errors leave, the parameters giving way
-    sizes: root mean squares of what each effect adds to the others; settled: whether the fit came to rest
+    sizes: root mean squares of what each effect adds to the others
     """
 
     problem: EstimationProblem
@@ -285,7 +285,6 @@ class Fit:
     forms: FloatArray
     unformed: float
     sizes: Mapping[str, float]
-    settled: bool
     evaluations: int
 
     @property
@@ -385,7 +384,6 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
         nothing,
         np.inf,
         {name: size_of(curve) for name, curve in curves.items()},
-        found.settled,
         found.evaluations,
     )
     return fit.judged(discrepancy)

@@ -1,4 +1,4 @@
-"""The motion of a recording: smoothed deflection, rate, acceleration, direction, turns and distance since reversal.
+"""The motion of a recording: smoothed deflection, rate, acceleration, direction and turns.
 
 The longest smoothing that the motion allows at each moment: a smoothing spline of order 3 (it penalises the third
 derivative) passes an angular frequency w [1/sample] by
@@ -55,9 +55,9 @@ class Motion:
     """The motion of one recording; every array has the shape of its samples.
 
     deflection [m], rate [m/s], acceleration [m/s^2]: smoothed as long as the noise and the motion allow
-    noise: standard deviation [m] of the deflection's reading; smoothed_noise: that of the smoothed deflection [m]
+    noise: standard deviation [m] of the deflection's reading
     deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
-    -1 unloading, kept through holds; since_reversal: distance [m] from the deflection of the last reversal
+    -1 unloading, kept through holds
     resolved: False where the motion has a corner within a sample, so that its rate there is not known
     """
 
@@ -65,44 +65,40 @@ class Motion:
     rate: FloatArray
     acceleration: FloatArray
     noise: float
-    smoothed_noise: FloatArray
     deepest: FloatArray
     cycle: FloatArray
     direction: FloatArray
-    since_reversal: FloatArray
     resolved: BoolArray
 
 
 def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]."""
     noise = deflection_noise(deflection)
-    smooth, rate, acceleration, smoothed_noise, resolved = _smoothed(time, deflection, noise)
+    smooth, rate, acceleration, resolved = _smoothed(time, deflection, noise)
     # Smoothing cuts a corner short: there the reading itself is nearer.
-    smooth, smoothed_noise = np.where(resolved, smooth, deflection), np.where(resolved, smoothed_noise, noise)
-    direction, cycle, since_reversal = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
+    smooth = np.where(resolved, smooth, deflection)
+    direction, cycle = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
     deepest = np.maximum.accumulate(smooth)
-    return Motion(
-        smooth, rate, acceleration, noise, smoothed_noise, deepest, cycle, direction, since_reversal, resolved
-    )
+    return Motion(smooth, rate, acceleration, noise, deepest, cycle, direction, resolved)
 
 
 def _smoothed(
     time: FloatArray, deflection: FloatArray, noise: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Return deflection, rate and acceleration, the noise left in the deflection, and where the motion is resolved."""
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return deflection, rate and acceleration, and where the motion is resolved."""
     step = float(np.median(np.diff(time)))
     if np.ptp(np.diff(time)) > 1e-3 * step:
         grid = np.linspace(time[0], time[-1], deflection.size)
         read = np.interp(grid, time, deflection)
         level, *rest, resolved = _smoothed(grid, read, noise)
-        rate, acceleration, smoothed_noise = (np.interp(time, grid, r) for r in rest)
-        return deflection - np.interp(time, grid, read - level), rate, acceleration, smoothed_noise, resolved
+        rate, acceleration = (np.interp(time, grid, r) for r in rest)
+        return deflection - np.interp(time, grid, read - level), rate, acceleration, resolved
     resolved = _resolved(deflection, noise)
-    parts = np.zeros((4, deflection.size))
+    parts = np.zeros((3, deflection.size))
     for begin, end in _pieces(resolved):
         parts[:, begin:end] = smoothed(deflection[begin:end], step, noise)
-    smooth, rate, acceleration, leverage = parts
-    return smooth, rate, acceleration, noise * np.sqrt(leverage), resolved
+    smooth, rate, acceleration = parts
+    return smooth, rate, acceleration, resolved
 
 
 def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
@@ -134,8 +130,8 @@ def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
     return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))
 
 
-def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return direction, cycle number and distance since the last reversal; one counts beyond `threshold` [m].
+def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray]:
+    """Return direction and cycle number; a reversal counts beyond `threshold` [m].
 
     It is recognised late, but counts from the turning point on.
     """
@@ -153,8 +149,7 @@ def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, Flo
     number = np.arange(lengths.size)
     direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), lengths)
     cycle = np.repeat(np.floor(number / 2.0), lengths)
-    start = np.repeat(deflection[np.maximum(np.array(turns) - 1, 0)], lengths)
-    return direction, cycle, np.abs(deflection - start)
+    return direction, cycle
 
 
 CUTOFFS = np.pi * np.geomspace(0.02, 2.0, 14)
@@ -173,10 +168,8 @@ LEVERAGE = 0.97
 """Upper bound of a spline's leverage: the shortest one would leave no residual to judge it by."""
 
 
-def smoothed(
-    values: FloatArray, step: float, noise: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return value, first and second derivative of even samples, and the part of the noise's variance left.
+def smoothed(values: FloatArray, step: float, noise: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return value, first and second derivative of even samples.
 
     values (n,) with n >= 3; step: between samples [s]; noise: standard deviation of the reading, in the values' unit
     """
@@ -199,14 +192,13 @@ def smoothed(
         left = (level - irfft(spectrum * passed, whole)[inside]) / noise
         score = 0.5 * (np.log(1.0 - leverage) - left**2 / (1.0 - leverage))
         scores[i] = gaussian_filter1d(score, WINDOW, mode="nearest") * np.sqrt(4.0 * np.pi) * WINDOW
-    sums = np.zeros((4, count))
-    for passed, leverage, weight in zip(splines, leverages, _weights(scores), strict=True):
+    sums = np.zeros((3, count))
+    for passed, weight in zip(splines, _weights(scores), strict=True):
         kept = spectrum * passed
         sums[0] += weight * irfft(kept, whole)[inside]
         sums[1] += weight * (irfft(1j * angle * kept, whole)[inside] + slope)
         sums[2] -= weight * irfft(angle**2 * kept, whole)[inside]
-        sums[3] += weight * leverage
-    return sums[0] + line, sums[1] / step, sums[2] / step**2, sums[3]
+    return sums[0] + line, sums[1] / step, sums[2] / step**2
 
 
 def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
