@@ -33,7 +33,7 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     forms = np.zeros((residual.size, 0))
     near = Linearised(residual, slopes, positions, forms, problem.groups)
     left = float(residual @ residual)
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, forms, left, {}, True, 1)
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, forms, left, {}, 1)
 
 
 def model_of(effects: Mapping[str, Mapping[str, float]], radius: float = np.inf) -> FittedModel:

@@ -24,7 +24,7 @@ import numpy as np
 from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
-from ..estimation.findings import NamedEffect
+from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
 from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.motion import BoolArray, FloatArray
@@ -54,6 +54,7 @@ OF_VERDICT = (
     "loudness",
     "least_share",
     "unknown",
+    "unknown_size",
     "nothing",
 )
 OF_EFFECT = (
@@ -75,23 +76,26 @@ LOWERING = ("remainder_share", "remainder_size", "structure", "transfer", "alike
 
 
 def grounds_of_verdict(
-    explanation: Explanation, validation: HeldOut, *, unexplained: bool
+    explanation: Explanation, validation: HeldOut, remainder: Remainder, *, unexplained: bool
 ) -> dict[str, float]:
-    """Return what the verdict's probability rests on; unexplained: whether something unknown is told.
+    """Return what the verdict's probability rests on; remainder: of the written tire, as it is told; unexplained:
+    whether something unknown is told.
 
     odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
     the noise); structure: the same of what in the remainder depends on a recorded coordinate
     transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
     it); imitated: effects beside a refitted law that could be a part of it
     effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
-    unknown, nothing: 1 where it tells of something unknown, and where it names no effect
+    unknown, nothing: 1 where it tells of something unknown, and where it names no effect; unknown_size: the
+    remainder_size of something unknown, since what is hardly more than the noise may be noise of another kind
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
     chances = -float(np.logaddexp.reduce(rest)) if rest else FURTHEST
     names = [e.name for e in explanation.effects]
+    of_fit = _of_fit(explanation, validation, remainder)
     return {
         "odds": _limited(chances),
-        **_of_fit(explanation, validation),
+        **of_fit,
         "alike": math.log1p(len(explanation.confounded)),
         "imitated": float(sum(_imitated(n, names, explanation) for n in names)),
         "law_alone": float(names == [REFITTED_LAW]),
@@ -99,6 +103,7 @@ def grounds_of_verdict(
         "loudness": _loudness(explanation),
         "least_share": min((_share(e) for e in explanation.effects), default=0.0),
         "unknown": float(unexplained),
+        "unknown_size": of_fit["remainder_size"] if unexplained else 0.0,
         "nothing": float(not names),
     }
 
@@ -121,7 +126,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     return {
         "odds": _limited(odds),
         "share": _share(effect),
-        **_of_fit(explanation, validation),
+        **_of_fit(explanation, validation, explanation.remainder),
         "alike": math.log1p(alike),
         "imitated": float(not law and REFITTED_LAW in names and of_deflection(effect.name)),
         "effects": float(len(names)),
@@ -156,8 +161,8 @@ def _share(effect: NamedEffect) -> float:
     return math.log(max(effect.share, SMALLEST))
 
 
-def _of_fit(explanation: Explanation, validation: HeldOut) -> dict[str, float]:
-    left, remainder = max(rmse(explanation.residuals), 1e-300), explanation.remainder
+def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder) -> dict[str, float]:
+    left = max(rmse(explanation.residuals), 1e-300)
     depending = max((d.share for d in remainder.depends), default=0.0)
     return {
         "remainder_share": remainder.share,

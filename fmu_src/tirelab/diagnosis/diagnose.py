@@ -90,7 +90,7 @@ def diagnose(
     )
     left = _remainder_told(written, timed)
     unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
-    grounds = grounds_of_verdict(explanation, validation, unexplained=bool(unexplained))
+    grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)

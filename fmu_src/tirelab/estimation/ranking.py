@@ -28,11 +28,10 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Addition:
-    """A candidate beside a fit: values to begin at, and what it may gain in log likelihood by them."""
+    """A candidate beside a fit: values to begin at."""
 
     name: str
     values: tuple[float, ...]
-    gain: float
 
 
 def additions(
@@ -49,13 +48,9 @@ def additions(
     def beside(columns: FloatArray) -> FloatArray:
         return np.asarray(columns - across.T @ (across @ columns))
 
-    target = beside(missing)
     if signature.name == LAW:
-        basis = signature.basis
-        gram = basis.T @ beside(basis) / variance + np.eye(basis.shape[1])
-        right = basis.T @ target / variance
-        gain = 0.5 * float(right @ np.linalg.solve(gram, right))
-        return [Addition(LAW, law_start(dataset), gain)]
+        return [Addition(LAW, law_start(dataset))]
+    target = beside(missing)
     curves = signature.curves.T
     power = np.maximum(np.einsum("ij,ij->j", curves, beside(curves)), 1e-12 * curves.shape[0])
     size = curves.T @ target / power
@@ -76,9 +71,7 @@ def additions(
         kinds.add(optional)
         factor_on = float(size[k] / signature.sizes[k]) if gains[k] > 0.0 else 0.02
         scaled = strengthened(effect, values, factor_on)
-        found.append(
-            Addition(signature.name, with_readings(signature.name, scaled, dataset), float(gains[k]))
-        )
+        found.append(Addition(signature.name, with_readings(signature.name, scaled, dataset)))
         if len(kinds) == 2:
             break
     return found

@@ -47,7 +47,7 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         effects=tuple(NamedEffect(n, {}, 0.5, 0.9) for n in names.split()),
         evidence=tuple(Evidence(tuple(n.split()), log, 1.0, (), 0.1) for n, log in sets),
         confounded=more.get("confounded", ()),
-        remainder=SimpleNamespace(share=0.1, size=3.0, depends=(SimpleNamespace(share=0.25),)),
+        remainder=LEFT,
         residuals=(np.full(10, 2.0),),
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
@@ -59,6 +59,9 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
 
 HELD_OUT: Any = SimpleNamespace(after=6.0)
 
+# A quarter of its power depends on a coordinate.
+LEFT: Any = SimpleNamespace(share=0.1, size=3.0, depends=(SimpleNamespace(share=0.25),))
+
 
 def test_a_refitted_law_that_stands_alone_is_a_ground_of_its_own() -> None:
     for names, expected in (
@@ -67,12 +70,14 @@ def test_a_refitted_law_that_stands_alone_is_a_ground_of_its_own() -> None:
         ("inertia", 0.0),
         ("", 0.0),
     ):
-        assert grounds_of_verdict(explained(names), HELD_OUT, unexplained=False)["law_alone"] == expected
+        assert (
+            grounds_of_verdict(explained(names), HELD_OUT, LEFT, unexplained=False)["law_alone"] == expected
+        )
 
 
 def test_grounds_of_a_verdict_are_those_of_its_definition() -> None:
     one = explained("viscous_damping", ("inertia", -2.0), ("force_lag", -2.0), confounded=(("inertia",),))
-    found = grounds_of_verdict(one, HELD_OUT, unexplained=True)
+    found = grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=True)
     assert set(found) == set(OF_VERDICT)
     # Two others of e^-2 each; 6 N held out against 2 N fitted; a misfit of twenty noises.
     assert found["odds"] == pytest.approx(2.0 - np.log(2.0))
@@ -84,10 +89,19 @@ def test_grounds_of_a_verdict_are_those_of_its_definition() -> None:
     assert found["structure"] == pytest.approx(np.log(2.5))
     assert found["least_share"] == pytest.approx(np.log(0.5))
     assert (found["unknown"], found["nothing"]) == (1.0, 0.0)
+    assert found["unknown_size"] == found["remainder_size"]
+
+
+def test_the_remainder_that_counts_is_the_told_one() -> None:
+    """That of the averaged samples is three noises, that of the written tire ten."""
+    told: Any = SimpleNamespace(share=0.9, size=10.0, depends=())
+    found = grounds_of_verdict(explained("inertia"), HELD_OUT, told, unexplained=False)
+    assert (found["remainder_share"], found["remainder_size"]) == (0.9, pytest.approx(np.log(11.0)))
+    assert (found["structure"], found["unknown_size"]) == (0.0, 0.0)
 
 
 def test_that_nothing_is_named_is_a_ground() -> None:
-    found = grounds_of_verdict(explained(""), HELD_OUT, unexplained=False)
+    found = grounds_of_verdict(explained(""), HELD_OUT, LEFT, unexplained=False)
     assert (found["unknown"], found["nothing"]) == (0.0, 1.0)
 
 
@@ -114,14 +128,14 @@ def test_an_effect_in_every_set_has_the_largest_odds_that_count() -> None:
 )
 def test_a_refitted_law_imitates_what_it_could_be(names: str, imitated: float) -> None:
     one = explained(names)
-    assert grounds_of_verdict(one, HELD_OUT, unexplained=False)["imitated"] == imitated
+    assert grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=False)["imitated"] == imitated
     assert sum(grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects) == imitated
 
 
 def test_on_several_surfaces_a_law_of_another_form_can_still_be_an_effect_of_the_deflection() -> None:
     """The verdict is not doubted for it: on several surfaces the catalogue's own law could not be all of it."""
     one = explained("recalibration gas_compression", one_surface=False)
-    assert grounds_of_verdict(one, HELD_OUT, unexplained=False)["imitated"] == 0.0
+    assert grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=False)["imitated"] == 0.0
     assert [grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects] == [0.0, 1.0]
 
 

@@ -1,4 +1,4 @@
-"""What a remainder costs.
+"""What a remainder costs, and the search over sets.
 
 Against the density of a multivariate normal law written out in full.
 """
@@ -13,10 +13,12 @@ from scipy.stats import multivariate_normal, norm
 from tirelab.regressors.signature import Signature
 from tirelab.selection.search import (
     Discrepancy,
+    Selection,
     discrepancy_of,
     evidence_of,
     normal_equations,
     parts_of,
+    search,
     usual_form_error,
 )
 
@@ -107,3 +109,39 @@ def test_parts_add_up_to_the_projection_where_there_is_no_basis() -> None:
     equations = normal_equations((only,), misfit)
     part = parts_of(evidence_of(("a",), equations, discrepancy), equations, discrepancy)["a"]
     assert part == pytest.approx(mean * (mean @ misfit) / (mean @ mean), rel=1e-3)
+
+
+def drawn(seed: int, names: str, amounts: dict[str, float]) -> Selection:
+    """A search over candidates of one column each, in a misfit of some of them and white noise."""
+    rng = np.random.default_rng(seed)
+    rows, none = 400, np.zeros((0, 400))
+    columns = {name: rng.normal(size=rows) for name in names}
+    many = [
+        Signature(name, column, np.zeros((rows, 0)), True, none, (), np.zeros(0))
+        for name, column in columns.items()
+    ]
+    misfit = rng.normal(size=rows) + sum(a * columns[name] for name, a in amounts.items())
+    return search(normal_equations(many, misfit), discrepancy_of(misfit, 0.0))
+
+
+def test_the_set_that_is_there_is_the_likeliest() -> None:
+    found = drawn(1, "abcdefg", {"b": 0.8, "e": -1.5})
+    assert set(found.ranked[0].names) == {"b", "e"}
+    # Amounts of a column are known to 1 / sqrt(400).
+    sizes = dict(zip(found.ranked[0].names, found.ranked[0].sizes, strict=True))
+    assert sizes == {"b": pytest.approx(0.8, abs=0.15), "e": pytest.approx(-1.5, abs=0.15)}
+
+
+def test_in_noise_alone_nothing_is_the_likeliest_of_all_but_a_few() -> None:
+    found = [drawn(seed, "abcdefg", {}).ranked[0].names for seed in range(2, 12)]
+    assert found.count(()) >= 9
+
+
+def test_a_fit_begins_with_the_best_sets_and_the_best_of_each_size() -> None:
+    found = drawn(1, "abcdefg", {"b": 0.8, "e": -1.5})
+    starts = found.starts(2)
+    assert starts[:2] == found.ranked[:2]
+    assert {len(e.names) for e in starts} == {len(e.names) for e in found.ranked}
+    for evidence in starts[2:]:
+        same = [found.posterior(e) for e in found.ranked if len(e.names) == len(evidence.names)]
+        assert found.posterior(evidence) == max(same)

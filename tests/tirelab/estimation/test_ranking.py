@@ -1,0 +1,96 @@
+"""Fitted sets against each other, on a ride of 500 N s/m of damping under 5 N of noise."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from drives import damped
+from radialtire import TireModel
+from tirelab.estimation.fit import fitted
+from tirelab.estimation.ranking import TEMPERATURE, Ranking, additions, promises, ranked
+from tirelab.regressors.dataset import Dataset, dataset_of
+from tirelab.regressors.signature import Signature, law_signature, signatures_of
+from tirelab.selection.search import Discrepancy, discrepancy_of
+
+NAMES = ("viscous_damping", "rate_independent_hysteresis", "inertia")
+
+
+@pytest.fixture(scope="module")
+def dataset() -> Dataset:
+    return dataset_of([damped(1, samples=2000)], TireModel())
+
+
+@pytest.fixture(scope="module")
+def signatures(dataset: Dataset) -> tuple[Signature, ...]:
+    return (law_signature(dataset), *signatures_of(NAMES, dataset))
+
+
+@pytest.fixture(scope="module")
+def noise(dataset: Dataset) -> Discrepancy:
+    return discrepancy_of(dataset.misfit, 0.0)
+
+
+@pytest.fixture(scope="module")
+def ranking(dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy) -> Ranking:
+    return ranked(dataset, signatures, noise, [], lambda name: ())
+
+
+def by_hand(*sets: tuple[str, float]) -> Ranking:
+    fits: Any = [SimpleNamespace(names=tuple(names.split())) for names, _ in sets]
+    return Ranking(tuple(fits), tuple(posterior for _, posterior in sets))
+
+
+def test_odds_are_those_of_the_posteriors_tempered() -> None:
+    ranking = by_hand(("a b", 7.0), ("a", 5.0), ("", 1.0))
+    first, second, third = ranking.weights()
+    assert first + second + third == pytest.approx(1.0)
+    assert first / second == pytest.approx(np.exp(2.0 / TEMPERATURE))
+    assert ranking.inclusion() == {"a": pytest.approx(1.0 - third), "b": pytest.approx(first)}
+    assert [ranking.behind(fit) for fit in ranking.fits] == [0.0, 2.0, 6.0]
+
+
+def test_a_set_is_found_by_its_names_in_any_order() -> None:
+    ranking = by_hand(("a b", 2.0), ("", 1.0))
+    assert ranking.of(frozenset(("b", "a"))) is ranking.best
+    assert ranking.of(frozenset(("b",))) is None
+
+
+def test_what_is_there_wins_although_nothing_was_begun_with(ranking: Ranking) -> None:
+    assert ranking.best.names == ("viscous_damping",)
+    (damping,) = ranking.best.values["viscous_damping"][:1]
+    assert damping == pytest.approx(500.0, rel=0.05)
+    assert list(ranking.posteriors) == sorted(ranking.posteriors, reverse=True)
+
+
+def test_no_set_within_reach_leaves_more_than_a_subset_of_it(ranking: Ranking) -> None:
+    """A larger set can do what a smaller one does; a thousandth is what a fit that stops may miss."""
+    powers = {frozenset(fit.names): fit.power for fit in ranking.fits if ranking.behind(fit) < 15.0}
+    assert len(powers) > 2
+    for names, power in powers.items():
+        for less, left in powers.items():
+            assert not less < names or power <= 1.002 * left
+
+
+def test_the_largest_promise_is_that_of_what_is_there(
+    dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy
+) -> None:
+    nothing = fitted(dataset, [{}], noise, noise.highest, -np.inf)
+    found = dict(zip([s.name for s in signatures], promises(signatures, nothing, noise), strict=True))
+    assert max(found, key=found.__getitem__) == "viscous_damping"
+    # A law of the deflection follows nothing of a force of the rate, and may not gain by that.
+    assert found["recalibration"] < 0.1 * found["viscous_damping"]
+
+
+def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
+    dataset: Dataset, signatures: tuple[Signature, ...]
+) -> None:
+    damper = next(s for s in signatures if s.name == "viscous_damping")
+    drawn = 3
+    missing = 2.0 * damper.sizes[drawn] * damper.curves[drawn]
+    first = additions(damper, missing, np.zeros((missing.size, 0)), 1.0, dataset)[0]
+    # Damping is linear: twice the response has twice the coefficient, and the same form beside it.
+    assert first.values[0] == pytest.approx(2.0 * damper.values[drawn][0], rel=1e-6)
+    assert first.values[1:] == pytest.approx(damper.values[drawn][1:])
