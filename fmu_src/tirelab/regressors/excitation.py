@@ -23,7 +23,7 @@ from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
-from .signature import DRAWS, drawn
+from .signature import DRAWS, drawn, size_of
 
 FloatArray = NDArray[np.float64]
 
@@ -100,7 +100,7 @@ def _followed(
         others = [n for n in columns if n != name and abs(_cosine(columns[n][:, 0], own[:, 0])) < ALIKE]
         less, (more, parts) = fitted(others)[0], fitted([*others, name])
         onward = float(parts[name] @ own[:, 0]) > 0.0
-        seen[name] = ((less - more) / total, _size(parts[name]) if onward else 0.0)
+        seen[name] = ((less - more) / total, size_of(parts[name]) if onward else 0.0)
     return sum(fitted(list(columns))[1].values(), np.zeros_like(value)), seen
 
 
@@ -141,11 +141,7 @@ def _spreads(values: FloatArray, cell: Cells) -> tuple[float, float]:
         return 0.0, 0.0
     own, place = values[inside], cell[inside]
     mean = (np.bincount(place, own) / np.maximum(np.bincount(place), 1))[place]
-    return _size(own - mean), float(np.std(mean))
-
-
-def _size(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+    return size_of(own - mean), float(np.std(mean))
 
 
 CELLS = 12
