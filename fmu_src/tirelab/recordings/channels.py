@@ -128,6 +128,10 @@ def may_be(header: Header, channel: Channel) -> bool:
     name = header.name
     if not channel.words:
         return False
+    parts = name_and_unit(name)
+    if header.unit is None and parts is not None and len(parts[0]) == 1:
+        # ISO 80000: a column of numbers is headed by the quantity over its unit, `s / mm`.
+        return may_be(Header(*parts, header.text, header.dated), channel)
     if len(name) == 1:
         if header.unit:
             symbols = (channel.symbol.lower(), _GERMAN_SYMBOL.get(channel.name, ""))

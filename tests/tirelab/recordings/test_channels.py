@@ -35,6 +35,14 @@ class TestColumns:
 
 
 class TestUnitsOfColumns:
+    def test_a_column_may_be_headed_by_a_quantity_over_its_unit(self, tmp_path: Path) -> None:
+        """As ISO 80000 and German machines write it: s is the way here and not the seconds below t."""
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "t / s,s / mm,F / kN", time, 10.0 * deflection, 1e-3 * force)
+        read = read_recording(path, radius="flat")
+        np.testing.assert_allclose(read.deflection, 1e-2 * deflection, rtol=1e-5)
+        np.testing.assert_allclose(read.force, force, rtol=1e-5)
+
     def test_a_unit_may_end_the_name(self, tmp_path: Path) -> None:
         path = write_rows(tmp_path / "a.csv", "time_s,deflection_cm,force_N", *loading())
         assert read_recording(path, radius="flat").deflection.max() == pytest.approx(0.025)
