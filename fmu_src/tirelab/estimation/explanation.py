@@ -58,24 +58,6 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 
-def with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
-    """Return the dataset with the noise that all signatures together leave, block by block."""
-    equations = normal_equations(signatures, dataset.misfit)
-    left = dataset.apart(dataset.misfit - _saturated(equations))
-    found = []
-    for e, own in zip(dataset.experiments, left, strict=True):
-        noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
-        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
-    return dataset.with_noise(found)
-
-
-def _saturated(equations: NormalEquations) -> np.ndarray:
-    """Return the misfit as all columns follow it, each with a weak prior of the misfit's own size."""
-    size = equations.power / equations.columns.shape[0]
-    gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
-    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))
-
-
 Progress = Callable[[str], None]
 
 NEAR = 4.0
@@ -202,11 +184,11 @@ def _signatures(
 ) -> tuple[Dataset, tuple[Signature, ...], Dataset]:
     """Return the dataset in blocks as long as its noise remembers, its signatures, and it with its noise."""
     raw = _raw(dataset, shown, catalogue)
-    quiet = with_saturated_noise(dataset, raw)
+    quiet = _with_saturated_noise(dataset, raw)
     if any(e.reading.memory > e.size for e in quiet.experiments):
         dataset = dataset_of(recordings, dataset.tire, [e.reading for e in quiet.experiments])
         raw = _raw(dataset, shown, catalogue)
-        quiet = with_saturated_noise(dataset, raw)
+        quiet = _with_saturated_noise(dataset, raw)
     return dataset, raw, quiet
 
 
@@ -319,7 +301,7 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
 def _quiet(dataset: Dataset) -> Dataset:
     """Return a dataset in units of the noise that all signatures together leave."""
     raw = (law_signature(dataset), *signatures_of(candidates(), dataset))
-    return with_saturated_noise(dataset, raw)
+    return _with_saturated_noise(dataset, raw)
 
 
 def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
@@ -332,3 +314,21 @@ def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
 
 def _residuals(tire: TireModel, recordings: Sequence[Recorded]) -> tuple[FloatArray, ...]:
     return tuple(r.force - simulate(tire, r) for r in recordings)
+
+
+def _with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
+    """Return the dataset with the noise that all signatures together leave, block by block."""
+    equations = normal_equations(signatures, dataset.misfit)
+    left = dataset.apart(dataset.misfit - _saturated(equations))
+    found = []
+    for e, own in zip(dataset.experiments, left, strict=True):
+        noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
+        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
+    return dataset.with_noise(found)
+
+
+def _saturated(equations: NormalEquations) -> np.ndarray:
+    """Return the misfit as all columns follow it, each with a weak prior of the misfit's own size."""
+    size = equations.power / equations.columns.shape[0]
+    gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
+    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))
