@@ -70,7 +70,8 @@ class Explanation:
 
     effects: of the set, the largest share first; probability: of the set
     evidence: all sets, this one first, then the likeliest
-    confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place
+    confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place, or the
+    refitted law in that of effects which a law of another shape could be
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     within_law: names of effects that leave no trace beside the refitted law of the set
     model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
@@ -285,7 +286,9 @@ def _alike(excitation: Excitation, name: str) -> tuple[str, ...]:
 
 
 def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[tuple[str, ...], ...]:
-    """Return the sets with an effect that the motion cannot tell from one of the chosen ones in that one's place."""
+    """Return the sets with an effect that the motion cannot tell from one of the chosen ones in that one's place, and
+    the one in which the refitted law stands for all effects beside it that a law of another shape could be.
+    """
     found = []
     for name in chosen.names:
         less = ranking.of(frozenset(chosen.names) - {name})
@@ -295,7 +298,9 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
                 continue
             if less.power - fit.power > AS_GOOD * (less.power - chosen.power):
                 found.append(fit.names)
-    return tuple(found)
+    shape = frozenset(n for n in chosen.names if n == LAW or not excitation.within_law(n))
+    law_alone = ranking.of(shape) if LAW in shape and len(shape) < len(chosen.names) else None
+    return (*found, law_alone.names) if law_alone is not None else tuple(found)
 
 
 def _quiet(dataset: Dataset) -> Dataset:

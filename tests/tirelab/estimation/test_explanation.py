@@ -132,3 +132,19 @@ def test_beside_a_refitted_law_of_one_slow_press_an_offset_leaves_no_trace_but_a
 
 def test_a_misfit_far_above_the_noise_shows_what_a_law_cannot_follow(found: Explanation) -> None:
     assert not {"viscous_damping", "inertia"} & set(found.within_law)
+
+
+@pytest.mark.parametrize("surfaces", [1, 2])
+def test_on_one_surface_a_law_of_another_shape_is_told_beside_a_knee(surfaces: int) -> None:
+    """Another stiffness below 10 mm and a steeper one beyond: the tire's own law, or a rim under another law."""
+    presses = []
+    for n, radius in enumerate((np.inf, 0.127)[:surfaces]):
+        time, deflection = triangle(samples=600, step=0.05)
+        knee = 5e4 * 1e-3 * np.logaddexp(0.0, (deflection - 0.010) / 1e-3)
+        A, B = TireModel().law.coefficients(radius)
+        press = read(f"press {n}", time, deflection, 0.85 * A * (100.0 * deflection) ** B + knee, n)
+        presses.append(replace(press, surface_radius=np.full(time.size, radius)))
+    found = explain_misfit(presses, TireModel(), catalogue_names(), lambda stage: None)
+    both = found.of(("recalibration", "bottoming"))
+    assert (("recalibration",) in both.confounded) == (surfaces == 1)
+    assert found.of(("recalibration",)).confounded == ()
