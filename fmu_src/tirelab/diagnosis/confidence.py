@@ -53,6 +53,7 @@ OF_VERDICT = (
     "effects",
     "loudness",
     "least_share",
+    "significance",
     "unknown",
     "unknown_size",
     "nothing",
@@ -66,6 +67,7 @@ OF_EFFECT = (
     "transfer",
     "alike",
     "imitated",
+    "significance",
     "effects",
     "loudness",
 )
@@ -86,6 +88,7 @@ def grounds_of_verdict(
     transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
     it); imitated: effects beside a refitted law that could be a part of it
     effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
+    significance: of the effect that has the least, see `grounds_of_effect`
     unknown, nothing: 1 where it tells of something unknown, and where it names no effect; unknown_size: the
     remainder_size of something unknown, since what is hardly more than the noise may be noise of another kind
     """
@@ -102,6 +105,7 @@ def grounds_of_verdict(
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
         "least_share": min((_share(e) for e in explanation.effects), default=0.0),
+        "significance": min((_significance(e) for e in explanation.effects), default=1.0),
         "unknown": float(unexplained),
         "unknown_size": of_fit["remainder_size"] if unexplained else 0.0,
         "nothing": float(not names),
@@ -114,6 +118,8 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     odds: log odds of all sets with it against all without; share: ln of its share of the misfit
     alike: ln(1 + effects that this motion cannot tell from it); imitated: whether it depends on the deflection alone
     and stands beside a refitted law, which may have another form than the catalogue's on several surfaces too
+    significance: normal probability, two-sided, with which that of its parameters which the recordings determine best
+    differs from its neutral value; its standard deviation counts the errors of the forms
     """
     with_it = [e.log_evidence for e in explanation.evidence if effect.name in e.names]
     without = [e.log_evidence for e in explanation.evidence if effect.name not in e.names]
@@ -129,6 +135,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
         **_of_fit(explanation, validation, explanation.remainder),
         "alike": math.log1p(alike),
         "imitated": float(not law and REFITTED_LAW in names and of_deflection(effect.name)),
+        "significance": _significance(effect),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
     }
@@ -159,6 +166,19 @@ def _loudness(explanation: Explanation) -> float:
 
 def _share(effect: NamedEffect) -> float:
     return math.log(max(effect.share, SMALLEST))
+
+
+def _significance(effect: NamedEffect) -> float:
+    """Return the significance of an effect; 1 of a refitted law, whose columns are judged together by its odds."""
+    if effect.name == REFITTED_LAW:
+        return 1.0
+    own = ((p, effect.parameters.get(p.name)) for p in CATALOGUE[effect.name].parameters if not p.optional)
+    apart = [
+        abs(e.value - p.neutral) / max(e.std, 1e-300)
+        for p, e in own
+        if e is not None and p.neutral is not None
+    ]
+    return max((math.erf(z / math.sqrt(2.0)) for z in apart), default=1.0)
 
 
 def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder) -> dict[str, float]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from importlib.resources import files
 from types import SimpleNamespace
 from typing import Any
@@ -30,7 +31,7 @@ from tirelab.diagnosis.confidence import (
     shared,
     unshared,
 )
-from tirelab.estimation.findings import Evidence, NamedEffect
+from tirelab.estimation.findings import Estimate, Evidence, NamedEffect
 from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.samples import Dataset, dataset_of
 
@@ -323,3 +324,26 @@ def test_what_leaves_no_trace_beside_the_refitted_law_is_told_once_with_the_reas
     assert not math.isnan(found[0].probability)
     assert math.isnan(found[1].probability)
     assert found[1].reason == "they depend on deflection and surface only: repeat at a second pressure"
+
+
+@pytest.mark.parametrize(("deviations", "probability"), [(0.0, 0.0), (1.0, 0.6827), (1.96, 0.95), (8.0, 1.0)])
+def test_an_effect_is_as_significant_as_its_best_determined_parameter(
+    deviations: float, probability: float
+) -> None:
+    """The normal distribution's own table; a lag that is not determined takes nothing from a delay that is."""
+    parameters = {
+        "lag": Estimate(1e-4, 1.0, "s"),
+        "delay": Estimate(deviations * 2e-3, 2e-3, "s"),
+        "quality": Estimate(5.0, 0.1, "1"),
+    }
+    one = explained("force_lag viscous_damping")
+    one.effects = (replace(one.effects[0], parameters=parameters), one.effects[1])
+    found = grounds_of_effect(one.effects[0], one, HELD_OUT)["significance"]
+    assert found == pytest.approx(probability, abs=1e-4)
+    assert grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=False)["significance"] == found
+
+
+def test_a_refitted_law_and_nothing_are_judged_by_their_odds() -> None:
+    for names in ("recalibration", ""):
+        found = grounds_of_verdict(explained(names), HELD_OUT, LEFT, unexplained=False)
+        assert found["significance"] == 1.0
