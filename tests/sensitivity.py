@@ -5,9 +5,12 @@ Run: python tests/sensitivity.py --seed S --trials N --each M [--only NAME ...] 
 N blind trials of all kinds are drawn and diagnosed as the numbers stand. Then each number that is set by hand is halved
 and doubled, one at a time, and M of the trials are diagnosed again: which ones goes round, so that all numbers together
 are tried on all trials. The bounds of the effort are halved and doubled all together, on all trials. Counted are the
-verdicts that name another set of effects. Counts of whole things are rounded and at least one. The number is changed in
-the module's source as it is imported, in a process of its own, so whatever is made of it follows. What a trial was is
-not asked for: this is about how firm a verdict stands, not how right it is.
+verdicts that name another set of effects. Counts of whole things are rounded and at least one. Of a number between a
+half and two that is compared with a ratio (0.9, 1.01), the distance from one is halved and doubled: twice 0.9 is no
+share. The number is changed in the module's source as it is imported, in a process of its own, so whatever is made of
+it follows. What a trial was is not asked for: this is about how firm a verdict stands, not how right it is.
+
+A run that was stopped goes on where FILE ends, if it was asked for the same.
 """
 
 from __future__ import annotations
@@ -101,10 +104,14 @@ def _call(value: ast.expr, factor: float) -> ast.expr:
 
 
 def scaled(value: Any, factor: float) -> Any:
-    """Return a number, or each of several, times a factor; whole ones rounded, and at least one."""
+    """Return a number, or each of several, times a factor: whole ones rounded and at least one, the distance from one
+    of those near it."""
     if isinstance(value, tuple):
         return tuple(scaled(v, factor) for v in value)
-    return max(1, round(value * factor)) if isinstance(value, int) else value * factor
+    if isinstance(value, int):
+        return max(1, round(value * factor))
+    near_one = isinstance(value, float) and 0.5 < value < 2.0 and value != 1.0
+    return 1.0 + (value - 1.0) * factor if near_one else value * factor
 
 
 def verdicts(folder: Path, keys: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
@@ -187,10 +194,19 @@ def main(seed: int, trials: int, each: int, only: tuple[str, ...], out: Path, jo
     if child:
         _child()
         return
-    numbers = [
-        c.place for c in constants() if c.kind == "chosen" and not c.beside and c.place.endswith(only or "")
-    ]
-    content: dict[str, Any] = {"seed": seed, "trials": trials, "each": each, "only": only, "numbers": []}
+    numbers = [c.place for c in constants() if c.kind == "chosen" and not c.beside]
+    content: dict[str, Any] = {
+        "seed": seed,
+        "trials": trials,
+        "each": each,
+        "only": list(only),
+        "numbers": [],
+    }
+    if out.exists():
+        kept = json.loads(out.read_text(encoding="utf-8"))
+        if {**kept, "numbers": []} == content:
+            content = kept
+    done = {(row["number"], row["factor"]) for row in content["numbers"]}
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(jobs) as workers:
         folder = Path(name)
         keys = _drawn(folder, seed, trials)
@@ -200,9 +216,13 @@ def main(seed: int, trials: int, each: int, only: tuple[str, ...], out: Path, jo
         ):
             before |= found
         pieces = [(place, (place,), own) for place, own in tried(numbers, keys, each)]
-        if not only:
-            pieces += [(TOGETHER, BOUNDS, keys)]
-        changes = [(*piece, factor) for piece in pieces for factor in FACTORS]
+        pieces += [(TOGETHER, BOUNDS, keys)]
+        changes = [
+            (*piece, factor)
+            for piece in pieces
+            for factor in FACTORS
+            if piece[0].endswith(only or "") and (piece[0], factor) not in done
+        ]
         answers = workers.map(lambda c: _asked(folder, c[2], (c[1], c[3])), changes)
         for (place, _, _, factor), after in zip(changes, answers, strict=True):
             row = {"factor": factor, **_counts(place, before, after)}

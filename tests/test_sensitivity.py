@@ -37,6 +37,12 @@ def test_whole_numbers_stay_whole_and_above_nothing() -> None:
     assert scaled(1, 0.5) == 1
 
 
+def test_of_a_number_near_one_the_distance_from_one_is_changed() -> None:
+    assert scaled(0.9, 2.0) == pytest.approx(0.8)
+    assert scaled(1.01, 0.5) == pytest.approx(1.005)
+    assert (scaled(1.0, 2.0), scaled(0.5, 2.0), scaled(2.0, 0.5)) == (2.0, 1.0, 1.0)
+
+
 def test_arrays_are_changed_as_a_whole() -> None:
     assert np.array_equal(_after("GRID", 0.5)["GRID"], [1.0, 2.0])  # type: ignore[arg-type]
 
