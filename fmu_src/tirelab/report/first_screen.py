@@ -120,7 +120,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
     clean = not verdict["unexplained"] and not titles.more_than_noise(max(errors), fit["noise"])
     if words.told(verdict["confidence"]) >= SURE and clean:
-        return NextStep(given.use if verdict["effects"] else given.leave)
+        return NextStep(given.use if verdict["effects"] else given.leave, _left_in_order(verdict))
     if test is not None:
         return NextStep(_drive(test), _decides(test, verdict), drive=True)
     if verdict["unexplained"]:
@@ -139,6 +139,15 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
             "The error left is more than the noise: what comes back is the rig's.",
         )
     return NextStep(given.use if verdict["effects"] else given.leave)
+
+
+def _left_in_order(verdict: Mapping[str, Any]) -> str:
+    """Return what is left beside the noise though the tire can be used, if that depends on anything."""
+    left = verdict.get("remainder", {})
+    by = [titles.dependence(d["by"]) for d in left.get("depends_on", [])]
+    if not by:
+        return ""
+    return f"It leaves {left['size']:.2g} times the noise beside it, which depends on {titles.listed(by)}."
 
 
 def actions(reasons: Sequence[str]) -> list[str]:

@@ -198,6 +198,20 @@ def test_what_a_recording_decides_is_told_by_what_differs(between: list[list[str
     assert first_screen.next_step(given).why == why
 
 
+def test_a_tire_that_can_be_used_tells_what_it_leaves_in_order() -> None:
+    given = diagnosis({"inertia": 9.0}, 0.95)
+    remainder = {"size": 0.8, "depends_on": [{"by": "rate"}, {"by": "time"}]}
+    given["verdict"]["remainder"] = remainder
+    step = first_screen.next_step(given)
+    assert step.action == "Nothing: use this tire."
+    assert (
+        step.why
+        == "It leaves 0.8 times the noise beside it, which depends on the rate of deflection and time."
+    )
+    given["verdict"]["remainder"] = {**remainder, "depends_on": []}
+    assert first_screen.next_step(given).why == ""
+
+
 def test_what_is_unknown_is_not_called_nothing() -> None:
     test = {**TEST, "between": [[], ["saturation"]], "surfaces": [-0.6]}
     step = first_screen.next_step(
