@@ -27,7 +27,7 @@ from .output import Output, example, output_options
 def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output, reading: Reading) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
     from ..computing.staging import staged
-    from ..fmu.replay import replay
+    from ..fmu.replay import description_of, replay
     from ..report.comparison import compare, plot
 
     if fmu is not None and tire is not None:
@@ -42,6 +42,7 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
             file, against = _packed(believed, Path(folder)), believed.name
         else:
             file, against = believed, str(believed)
+            description_of(file)  # a file that is no FMU is refused before anything is said to run
             output.stage(f"{file} is native code: it now runs with your rights")
         output.stage(f"replaying {against} on {recorded.name}")
         result = compare(recorded, replay(file, recorded))

@@ -16,6 +16,7 @@ import fmpy
 import numpy as np
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 from radialtire import CHANNELS
 
@@ -52,23 +53,14 @@ class OpenFmu:
     messages: Callable[[], tuple[str, ...]]
 
 
-@contextmanager
-def opened(fmu: Path) -> Iterator[OpenFmu]:
-    """Unpack, load and instantiate `fmu`, and leave nothing behind.
+def description_of(fmu: Path) -> ModelDescription:
+    """Return what an FMU says of itself; nothing of it is run.
 
-    An FMU is native code and runs with the rights of this process: open only FMUs that you trust.
-    Raises TirelabError where it cannot be read, is not FMI 2.0 Co-Simulation, or does not load here.
+    Raises TirelabError where it cannot be read, or is not FMI 2.0 Co-Simulation.
     """
     try:
-        with open(
-            fmu, "rb"
-        ) as file:  # opened here, since fmpy leaves it open where it refuses the description
+        with open(fmu, "rb") as file:  # fmpy would leave it open where it refuses the description
             description = fmpy.read_model_description(file)
-        kind = description.coSimulation
-        if description.fmiVersion != "2.0" or kind is None:
-            raise TirelabError(f"{fmu} is not an FMI 2.0 Co-Simulation unit; export it as one")
-    except TirelabError:
-        raise
     except FileNotFoundError:
         raise TirelabError(f"{fmu} does not exist; build it with build_fmu.py or name another") from None
     except (OSError, zipfile.BadZipFile, KeyError) as error:
@@ -76,7 +68,20 @@ def opened(fmu: Path) -> Iterator[OpenFmu]:
     except Exception as error:  # fmpy raises plain Exception for a description that breaks the standard
         first = " ".join(str(error).splitlines()[:2])
         raise TirelabError(f"{fmu} breaks the FMI standard ({first}); build it again") from None
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        raise TirelabError(f"{fmu} is not an FMI 2.0 Co-Simulation unit; export it as one")
+    return description
 
+
+@contextmanager
+def opened(fmu: Path) -> Iterator[OpenFmu]:
+    """Unpack, load and instantiate `fmu`, and leave nothing behind.
+
+    An FMU is native code and runs with the rights of this process: open only FMUs that you trust.
+    Raises TirelabError where it cannot be read, is not FMI 2.0 Co-Simulation, or does not load here.
+    """
+    description = description_of(fmu)
+    kind = description.coSimulation
     folder = tempfile.mkdtemp(prefix="tirelab_")
     messages: list[str] = []
     try:

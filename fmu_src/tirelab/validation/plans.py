@@ -3,11 +3,12 @@
 Run: python -m tirelab.validation.plans --seed SEED --trials N
 
 The independent rig hides something in a tire. On its surfaces and within its depth a plan is made from the baseline
-tire and the noise alone; the rig drives it, and it drives slow triangles of the same number, lengths and surfaces. Both
-sets are diagnosed. A verdict is right where it is the hidden set or one that the independent rig cannot tell from it
-with all motions of both sets together (`concealed.derived_right`), wrong where it is another one, and undecided where
-its confidence is below a half. What no motion of both sets shows at all, such as a stop beyond the stroke, is no
-question that a plan can answer: another trial is drawn.
+tire and the noise alone; the rig drives it. In the same time it drives slow triangles twice: in one recording on its
+flattest surface, as without a plan, and in recordings of the plan's number, lengths and surfaces, which shows what the
+motions alone are worth. All three sets are diagnosed. A verdict is right where it is the hidden set or one that the
+independent rig cannot tell from it with all motions of the three sets together (`concealed.derived_right`), wrong where
+it is another one, and undecided where its confidence is below a half. What none of these motions shows at all, such as
+a stop beyond the stroke, is no question that a plan can answer: another trial is drawn.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import json
 import math
 import tempfile
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -34,7 +35,7 @@ from ..names import UNKNOWN
 from ..planning.menu import Drive
 from ..planning.plan import RecordingPlan, plan_recordings
 from ..planning.rig import Rig
-from ..planning.waveforms import slow_triangles
+from ..planning.waveforms import sample_times, slow_triangles
 from ..recordings.recording import Recording
 from .baseline import baseline_tire
 from .folders import read_json
@@ -51,6 +52,13 @@ MOST_SURFACES = 2
 DECIDED = 0.5
 """Least confidence of a verdict that decides."""
 
+ARMS = {
+    "planned": "after the plan",
+    "triangles": "after slow triangles of its lengths on its surfaces",
+    "one surface": "after slow triangles on one surface",
+}
+"""What is compared, in the same time."""
+
 Outcome = Literal["right", "wrong", "undecided"]
 
 Names = frozenset[str]
@@ -58,12 +66,12 @@ Names = frozenset[str]
 
 @dataclass(frozen=True)
 class Compared:
-    """A trial with the baseline tire, the plan for it, as much time of slow triangles, and the sets that are right."""
+    """A trial with the baseline tire, the plan for it, what is driven in each of ARMS, and the sets that are right."""
 
     trial: concealed.Trial
     tire: TireModel
     plan: RecordingPlan
-    slow: tuple[Drive, ...]
+    arms: Mapping[str, tuple[Drive, ...]]
     right: tuple[Names, ...]
     draw: int
 
@@ -74,13 +82,11 @@ def compare_plan(seed: int, number: int, kind: str | None) -> dict[str, Any]:
     Raises RuntimeError where no draw of the trial shows within the limits of its rig.
     """
     asked = _asked(seed, number, kind)
-    first, second = (_verdict(asked, drives) for drives in (asked.plan.drives, asked.slow))
     return {
         "truth": sorted(asked.right[0]),
         "right": [sorted(names) for names in asked.right],
         "draw": asked.draw,
-        "planned": first,
-        "triangles": second,
+        **{arm: _verdict(asked, drives) for arm, drives in asked.arms.items()},
         "seconds": asked.plan.seconds,
         "motions": [drive.name for drive in asked.plan.drives],
     }
@@ -92,10 +98,11 @@ def _asked(seed: int, number: int, kind: str | None) -> Compared:
         tire, rig = _baseline(trial), rig_of(trial)
         plan = plan_recordings(tire, rig)
         slow = tuple(slow_instead(drive, rig) for drive in plan.drives)
-        right = right_sets(trial, (*plan.drives, *slow))
+        arms = dict(zip(ARMS, (plan.drives, slow, (slow_on_one(rig, plan.seconds),)), strict=True))
+        right = right_sets(trial, [drive for drives in arms.values() for drive in drives])
         hidden = trial.answer.kind != "none"
         if not (hidden and frozenset() in right):
-            return Compared(trial, tire, plan, slow, right, draw)
+            return Compared(trial, tire, plan, arms, right, draw)
     raise RuntimeError(f"trial {number}: nothing of {DRAWS} draws shows within the limits of its rig")
 
 
@@ -134,6 +141,13 @@ def slow_instead(drive: Drive, rig: Rig) -> Drive:
     return replace(drive, name="slow triangles", deflection=np.resize(path, drive.time.size))
 
 
+def slow_on_one(rig: Rig, seconds: float) -> Drive:
+    """Return one recording of slow triangles on the first surface of a rig."""
+    limits = rig.limits(seconds)
+    time = sample_times(limits)
+    return Drive("slow triangles", time, slow_triangles(limits), np.full(time.size, rig.surfaces[0]))
+
+
 def _verdict(asked: Compared, drives: Sequence[Drive]) -> tuple[list[str], float, Outcome]:
     trial, recordings = asked.trial, []
     for number, drive in enumerate(drives):
@@ -150,19 +164,19 @@ def _verdict(asked: Compared, drives: Sequence[Drive]) -> tuple[list[str], float
 
 
 def summary(found: Sequence[dict[str, Any]]) -> list[str]:
-    """Return the counts of both sets, and how many of the missed verdicts the plan leaves."""
-    lines, missed = [], {}
-    for arm in ("planned", "triangles"):
-        counts = Counter(row[arm][2] for row in found)
-        missed[arm] = counts["wrong"] + counts["undecided"]
+    """Return the counts of every set, and how many of the missed verdicts of each the plan leaves."""
+    counted = {arm: Counter(row[arm][2] for row in found) for arm in ARMS}
+    missed = {arm: counts["wrong"] + counts["undecided"] for arm, counts in counted.items()}
+    lines = [
+        f"{counts['right']} right, {counts['wrong']} wrong, {counts['undecided']} undecided of {len(found)} {ARMS[arm]}"
+        for arm, counts in counted.items()
+    ]
+    planned, *others = ARMS
+    for other in others:
+        ratio = missed[planned] / missed[other] if missed[other] else math.nan
         lines.append(
-            f"{arm:10s} {counts['right']} right, {counts['wrong']} wrong, {counts['undecided']} undecided "
-            f"of {len(found)}"
+            f"wrong or undecided after the plan over {ARMS[other]}: {ratio:.2f} (wanted: at most 0.33)"
         )
-    ratio = missed["planned"] / missed["triangles"] if missed["triangles"] else math.nan
-    lines.append(
-        f"wrong or undecided after the plan over after the triangles: {ratio:.2f} (wanted: at most 0.33)"
-    )
     return lines
 
 
@@ -173,7 +187,7 @@ def summary(found: Sequence[dict[str, Any]]) -> list[str]:
 @click.option("--jobs", type=int, default=1, show_default=True, help="Number of processes.")
 @click.option("--out", type=click.Path(path_type=Path), help="File for the trials, one JSON line each.")
 def main(seed: int, trials: int, kind: str, jobs: int, out: Path | None) -> None:
-    """Print the verdicts of every trial after a planned set and after slow triangles, and their counts."""
+    """Print the verdicts of every trial after a planned set and after two of slow triangles, and their counts."""
     found = []
     tasks = {str(n): (seed, n, kind) for n in range(trials)}
     for done in work(compare_plan, tasks, Cores(jobs, None), "comparing plans"):

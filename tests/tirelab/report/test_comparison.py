@@ -83,4 +83,5 @@ def test_bad_input_gets_one_sentence(
     assert status == 2
     assert sentence in printed
     assert "Traceback" not in printed
+    assert "is native code" not in printed
     assert len([line for line in printed.splitlines() if line.startswith("Error:")]) == 1

@@ -1,12 +1,14 @@
 """The score of recording plans."""
 
+import math
+
 import concealed
 import numpy as np
 import pytest
 from concealed.__main__ import trial_seed
 from tirelab.planning.menu import drive_of
 from tirelab.planning.rig import Rig
-from tirelab.validation.plans import TIME, rig_of, right_sets, slow_instead, summary
+from tirelab.validation.plans import TIME, rig_of, right_sets, slow_instead, slow_on_one, summary
 
 
 def test_slow_triangles_take_the_same_time_on_the_same_surface() -> None:
@@ -44,12 +46,22 @@ def test_a_stop_beyond_the_stroke_counts_as_nothing_hidden() -> None:
         assert (frozenset() not in sets) is hidden
 
 
+def test_slow_triangles_on_one_surface_are_one_recording() -> None:
+    rig = Rig(surfaces=(math.inf, 0.254), time=60.0)
+    slow = slow_on_one(rig, 45.0)
+    assert slow.duration == pytest.approx(45.0, abs=2.0 * rig.sampling)
+    assert set(slow.surface_radius) == {math.inf}
+    assert slow.fastest < 0.1 * rig.speed
+
+
 def test_the_summary_counts() -> None:
+    outcomes = (("right", "wrong"), ("right", "undecided"), ("wrong", "wrong"), ("right", "right"))
     rows = [
-        {"planned": ([], 0.9, one), "triangles": ([], 0.9, other)}
-        for one, other in (("right", "wrong"), ("right", "undecided"), ("wrong", "wrong"), ("right", "right"))
+        {"planned": ([], 0.9, one), "triangles": ([], 0.9, other), "one surface": ([], 0.9, "wrong")}
+        for one, other in outcomes
     ]
-    first, second, ratio = summary(rows)
-    assert "3 right, 1 wrong, 0 undecided of 4" in first
-    assert "1 right, 2 wrong, 1 undecided of 4" in second
-    assert pytest.approx(1 / 3, abs=0.01) == float(ratio.split(": ")[1].split()[0])
+    planned, triangles, alone, *ratios = summary(rows)
+    assert "3 right, 1 wrong, 0 undecided of 4 after the plan" in planned
+    assert "1 right, 2 wrong, 1 undecided of 4 after slow triangles of its lengths" in triangles
+    assert "0 right, 4 wrong, 0 undecided of 4" in alone
+    assert [float(r.split(": ")[1].split()[0]) for r in ratios] == [0.33, 0.25]
