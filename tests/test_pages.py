@@ -16,8 +16,9 @@ from tirelab.cli import main
 
 FIVE_MINUTES = "examples/docs/five_minutes.md"
 
-INSTALLING = "python3 -m venv"
-"""The README's two commands begin with it: test_readme.py runs the first from a clean clone; the second runs us."""
+INSTALLING = ("python3 -m venv", "python -m pip")
+"""The README's two commands begin with the first: test_readme.py runs one from a clean clone; the other runs us. Lines
+for pip are run by test_release.py."""
 
 PLACEHOLDERS = {"N": "1", "S": "1"}
 """Words of a page that stand for numbers."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -182,3 +183,17 @@ def test_the_wheel_works(
 def test_the_source_archive_installs(built: Built, version: str, tmp_path: Path) -> None:
     python = installed(Path(sys.executable), built.source, tmp_path)
     assert done(python, "-I", "-m", "tirelab", "--version", cwd=tmp_path).split()[-1] == version
+
+
+def test_the_pages_words_install_and_uninstall(built: Built, version: str, tmp_path: Path) -> None:
+    """The lines of the page, one after the other, in a fresh environment: from the files, by the wheel, and out."""
+    page = (built.tree / "examples" / "docs" / "five_minutes.md").read_text(encoding="utf-8")
+    section = page.partition("## Into an environment of your own")[2].partition("\n## ")[0]
+    from_clone, by_wheel, out = re.findall(r"```sh\n(.*?)\n```", section, re.DOTALL)
+    done(sys.executable, "-m", "venv", tmp_path / "venv", cwd=tmp_path)
+    python = tmp_path / "venv" / "bin" / "python"
+    for line in (from_clone, by_wheel):
+        done("sh", "-c", f"export PATH={python.parent}:$PATH; {line}", cwd=built.tree)
+        assert done(python, "-I", "-m", "tirelab", "--version", cwd=tmp_path).split()[-1] == version
+        done("sh", "-c", f"export PATH={python.parent}:$PATH; {out}", cwd=built.tree)
+        assert "tirelab" not in done(python, "-m", "pip", "list", cwd=tmp_path)
