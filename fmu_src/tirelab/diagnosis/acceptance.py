@@ -25,6 +25,7 @@ from radialtire import TireModel
 
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
+from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..preprocessing.samples import Dataset, Experiment, Recorded, dataset_of, is_timed
@@ -100,15 +101,19 @@ def given(
     before: Sequence[FloatArray],
     explanation: Explanation,
 ) -> HeldOut:
-    """Return the errors on the held-out recordings; before [N]: residuals of the fitted ones."""
+    """Return the errors on the held-out recordings; before [N]: residuals of the fitted ones.
+
+    Samples at which a gauge does not follow count nowhere.
+    """
     corrected, baseline = explanation.model.tire, explanation.model.baseline
-    fitted = zip(dataset.experiments, recordings, before, explanation.residuals, strict=True)
-    others = zip(dataset_of(held_out, baseline).experiments, held_out, strict=True)
+    fitted = zip(
+        dataset.experiments, recordings, before, explanation.residuals, explanation.compared, strict=True
+    )
+    others = zip(dataset_of(held_out, baseline).experiments, held_out, compared(held_out), strict=True)
     return HeldOut(
         "recordings given",
         tuple(
-            Part(e, b, a, noise_free_residual(corrected, r, e.motion), np.ones(b.size, dtype=bool))
-            for e, r, b, a in fitted
+            Part(e, b, a, noise_free_residual(corrected, r, e.motion), seen) for e, r, b, a, seen in fitted
         ),
         tuple(
             Part(
@@ -116,9 +121,9 @@ def given(
                 r.force - simulate(baseline, r),
                 r.force - simulate(corrected, r),
                 noise_free_residual(corrected, r, e.motion),
-                np.ones(r.time.size, dtype=bool),
+                seen,
             )
-            for e, r in others
+            for e, r, seen in others
         ),
     )
 
@@ -137,12 +142,11 @@ def split(
         noise_free_residual(refitted.tire, r, e.motion)
         for e, r in zip(dataset.experiments, recordings, strict=True)
     ]
-    parts = list(zip(dataset.experiments, before, refitted.residuals, noise_free, kept, strict=True))
-    return HeldOut(
-        by,
-        tuple(Part(e, b, a, n, k) for e, b, a, n, k in parts if k.any()),
-        tuple(Part(e, b, a, n, ~k) for e, b, a, n, k in parts if not k.all()),
-    )
+    parts = list(zip(dataset.experiments, before, refitted.residuals, noise_free, strict=True))
+    masks = list(zip(kept, explanation.compared, strict=True))
+    fitted = [Part(*part, k & seen) for part, (k, seen) in zip(parts, masks, strict=True)]
+    others = [Part(*part, ~k & seen) for part, (k, seen) in zip(parts, masks, strict=True)]
+    return HeldOut(by, *(tuple(p for p in side if p.chosen.any()) for side in (fitted, others)))
 
 
 def _ways(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
@@ -234,7 +238,7 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
     """
     order = explanation.in_order(CONSIDERED)
     likely = [_plainer(explanation, names) for names in (order if () in order else (*order, ()))]
-    left = [rmse(e.residuals) for e in likely]
+    left = [e.error for e in likely]
     for chosen, own in zip(likely, left, strict=True):
         smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))
         if min(smaller) < NO_WORSE * own:
@@ -256,11 +260,11 @@ def without_unlikely(
     """
     likely = [n for n, p in probabilities.items() if p >= LIKELY]
     unlikely = sorted((n for n in probabilities if n not in likely), key=lambda n: -probabilities[n])
-    most = rmse(accepted.residuals) / NO_WORSE
+    most = accepted.error / NO_WORSE
     for count in range(len(unlikely)):
         for kept in combinations(unlikely, count):
             names = (*likely, *kept)
-            if not accepted.compared(names) or rmse(accepted.of(names).residuals) > most:
+            if not accepted.was_fitted(names) or accepted.of(names).error > most:
                 continue
             found = validate(accepted.of(names))
             if not is_worse(found):
@@ -272,10 +276,10 @@ def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
     """Return a set without effects that the refitted law beside them could be, if it leaves as little; else the set."""
     chosen, static = explanation.of(names), explanation.excitation.within_law
     less = [n for n in names if n == REFITTED_LAW or not static(n)]
-    if REFITTED_LAW not in names or len(less) == len(names) or not explanation.compared(less):
+    if REFITTED_LAW not in names or len(less) == len(names) or not explanation.was_fitted(less):
         return chosen
     plainer = explanation.of(less)
-    return plainer if rmse(plainer.residuals) * NO_WORSE <= rmse(chosen.residuals) else chosen
+    return plainer if plainer.error * NO_WORSE <= chosen.error else chosen
 
 
 def is_worse(validation: HeldOut) -> bool:

@@ -31,7 +31,7 @@ from ..preprocessing.motion import BoolArray, FloatArray
 from ..preprocessing.noise import STILL
 from ..preprocessing.samples import Dataset
 from ..regressors.excitation import of_deflection
-from .acceptance import HeldOut, rmse
+from .acceptance import HeldOut
 
 Grounds = Mapping[str, float]
 
@@ -182,7 +182,7 @@ def _significance(effect: NamedEffect) -> float:
 
 
 def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder) -> dict[str, float]:
-    left = max(rmse(explanation.residuals), 1e-300)
+    left = max(explanation.error, 1e-300)
     depending = max((d.share for d in remainder.depends), default=0.0)
     return {
         "remainder_share": remainder.share,

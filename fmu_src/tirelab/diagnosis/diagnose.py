@@ -12,7 +12,7 @@ from ..computing.threads import one_thread
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..planning.waveforms import Limits
-from ..preprocessing.data_checks import PoorRecording, beyond_travel, check_recordings, check_signal, said_of
+from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal, not_compared
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, Dataset, Recorded, dataset_of, is_timed
 from ..simulation.simulate import simulate
@@ -81,15 +81,17 @@ def diagnose(
     explanation, validation = without_unlikely(explanation, validation, likely, validate)
     effects, doubted = _named_and_doubted(explanation, considered)
     fit = _figures(before, explanation, validation)
-    followed = [~beyond_travel(r.deflection, r.force) for r in fitted]
     written = of_the_written_tire(
         explanation.remainder,
-        [values[seen] for values, seen in zip(before, followed, strict=True)],
-        [values[seen] for values, seen in zip(explanation.residuals, followed, strict=True)],
+        [values[seen] for values, seen in zip(before, explanation.compared, strict=True)],
+        [values[seen] for values, seen in zip(explanation.residuals, explanation.compared, strict=True)],
         fit.noise,
     )
     left = _remainder_told(written, timed)
-    unexplained = tuple(by for by in unexplained_by(left) if timed or by not in OF_TIME)
+    shown = _places_told(
+        localize(fitted, dataset, explanation.residuals, levels, explanation.residuals), timed
+    )
+    unexplained = tuple(by for by in unexplained_by(left, shown) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
@@ -102,6 +104,7 @@ def diagnose(
         None if unexplained else explanation.residuals,
     )
     contradiction = contradiction_of(explanation, fitted)
+    missing = not_compared(fitted)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset, timed))
     return Verdict(
@@ -117,8 +120,9 @@ def diagnose(
             summarise(effects, alternatives, remainder, confidence, fit, test),
             QUICK if unexplained and left.uncompared > 0.5 else "",
             "" if contradiction is None else contradiction.sentence,
-            said_of(fitted),
+            *missing,
         ),
+        not_compared=missing,
         where=_places_told(places, timed),
         fit=fit,
         tire=_named(explanation.model.tire, baseline, fitted),
@@ -181,8 +185,8 @@ def _figures(before: Sequence[FloatArray], explanation: Explanation, validation:
     levels = np.array([f.level for f in explanation.floors])
     return Fit(
         float(np.sqrt(np.sum(sizes * levels**2) / sizes.sum())),
-        rmse(before),
-        rmse(explanation.residuals),
+        rmse([b[seen] for b, seen in zip(before, explanation.compared, strict=True)]),
+        explanation.error,
         validation.before,
         validation.after,
         validation.by,

@@ -24,8 +24,10 @@ import numpy as np
 from radialtire import TireModel
 from scipy.stats import chi2
 
-from ..preprocessing.motion import FloatArray, IndexArray
+from ..preprocessing.data_checks import compared
+from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import Dataset, Experiment, Recorded
+from ..regressors.dataset import spikes
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 
@@ -58,7 +60,8 @@ class Span:
     from 1; radius [m]: infinite is flat); label: its name where numbers do not say it; recording: the one
     whose time it is, where there are several
     share: part of the squared error beyond the noise, 0 to 1; samples: part of the samples, 0 to 1
-    mean_residual [N]: recording less simulation; chance: that noise alone shows such a place anywhere, 0 to 1
+    mean_residual [N]: recording less simulation; size: root mean square of the error beyond the noise, over the noise
+    chance: that noise alone shows such a place anywhere, 0 to 1
     concentration: rank of the place, 0 to 1
     """
 
@@ -71,6 +74,7 @@ class Span:
     share: float
     samples: float
     mean_residual: float
+    size: float
     chance: float
     concentration: float
 
@@ -85,6 +89,7 @@ class Span:
             "share": self.share,
             "samples": self.samples,
             "mean_residual": self.mean_residual,
+            "size": self.size,
             "chance": self.chance,
         }
         return entry if self.recording is None else {**entry, "recording": self.recording}
@@ -108,7 +113,7 @@ def localize(
     levels [N]: noise floor of each recording
     left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
     """
-    samples = _samples(dataset, residuals, levels, left)
+    samples = _samples(dataset, residuals, levels, left, compared(recordings))
     axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, dataset, samples.kept)]
     looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
     # Where the noise was taken for too large, the densest span has more than all samples together.
@@ -166,10 +171,11 @@ def _samples(
     residuals: Sequence[FloatArray],
     levels: Sequence[float],
     left: Sequence[FloatArray] | None,
+    followed: Sequence[BoolArray],
 ) -> _Samples:
     parts, kept = [], []
-    for record, residual, level in zip(dataset.experiments, residuals, levels, strict=True):
-        chosen = np.arange(record.rows.size)
+    for record, residual, level, seen in zip(dataset.experiments, residuals, levels, followed, strict=True):
+        chosen = np.flatnonzero((seen & ~spikes(residual))[record.rows])
         variance = np.full(chosen.size, level**2)
         own = residual[record.rows][chosen]
         excess = own**2 - variance
@@ -270,6 +276,11 @@ class _Bins:
         """Return the part of the excess error in the bins [a, b)."""
         return float(np.clip(np.sum(self.excess[a:b]) / self.whole, 0.0, 1.0))
 
+    def size(self, a: int, b: int) -> float:
+        """Return the root mean square of the error beyond the noise in the bins [a, b), over that of the noise."""
+        excess, variance = float(np.sum(self.excess[a:b])), float(np.sum(self.variance[a:b]))
+        return float(np.sqrt(max(excess, 0.0) / max(variance, 1e-300)))
+
     def concentration(self, a: int, b: int) -> float:
         """Return the rank of the bins [a, b) as a place; 0 where they are none."""
         share, usual = self.share(a, b), float(np.sum(self.usual[a:b])) / self.whole
@@ -331,6 +342,7 @@ def _spans(axis: Axis, bins: _Bins, looked_at: int) -> list[Span]:
                     bins.share(a, b),
                     number / float(np.sum(bins.numbers)),
                     float(np.sum(bins.total[a:b])) / number,
+                    bins.size(a, b),
                     float(np.exp(bins.log_chance(a, b) + np.log(looked_at))),
                     concentration,
                 )

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..estimation.findings import Evidence
 from ..fmu.foreign import Simulation
+from ..preprocessing.data_checks import compared
 from ..recordings.metadata import read_sidecar
 from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
@@ -94,10 +95,14 @@ class Replayed:
     after: tuple[FloatArray, ...]
 
     def rmse(self, forces: Sequence[FloatArray]) -> float | None:
-        """Return the root mean square error [N] of `forces` over all recordings together; None without any."""
+        """Return the root mean square error [N] of `forces` over all recordings together; None without any.
+
+        Samples at which the deflection's gauge does not follow are left out, as in the diagnosis.
+        """
         if not self.recordings:
             return None
-        squares = [np.square(r.force - f) for r, f in zip(self.recordings, forces, strict=True)]
+        followed = zip(self.recordings, forces, compared(self.recordings), strict=True)
+        squares = [np.square(r.force - f)[seen] for r, f, seen in followed]
         return float(np.sqrt(np.mean(np.concatenate(squares))))
 
 

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..estimation.explanation import Explanation
-from ..estimation.findings import Remainder
+from ..estimation.findings import UNEXPLAINED_SHARE, UNEXPLAINED_SIZE, Remainder
 from ..names import REFITTED_LAW
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import Dataset, Experiment, Recorded
 from .acceptance import HeldOut, rmse
+from .localization import Span
 
 KNOTS = 120
 SAMPLES_PER_KNOT = 30
@@ -68,11 +69,23 @@ class ResidualModel:
         }
 
 
-def unexplained_by(remainder: Remainder) -> tuple[str, ...]:
-    """Return the coordinates on which an unexplained remainder depends: none where it is noise or an error of form."""
-    if not remainder.unexplained:
-        return ()
-    return tuple(d.coordinate for d in remainder.depends) or ("time",)
+def unexplained_by(remainder: Remainder, places: Sequence[Span]) -> tuple[str, ...]:
+    """Return the coordinates on which an unexplained remainder depends: none where it is noise or an error of form.
+
+    places: those of the remainder that noise alone does not show. Something short is less than the noise over the whole
+    recording; in its own place it is judged by the same bounds.
+    """
+    if remainder.unexplained:
+        return tuple(d.coordinate for d in remainder.depends) or ("time",)
+    return tuple(
+        dict.fromkeys(
+            place.by
+            for place in places
+            if place.by in (*COORDINATES, "time")
+            and place.size > UNEXPLAINED_SIZE
+            and place.share * remainder.share > UNEXPLAINED_SHARE
+        )
+    )
 
 
 def residual_models(

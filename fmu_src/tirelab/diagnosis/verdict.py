@@ -61,8 +61,9 @@ class Verdict:
     likely there than not, and is not named; confidence: 0 to 1; grounds: what it rests on
     alternatives: other sets, likeliest first
     unexplained_by: coordinates on which something depends that no effect explains; residual_models: regressions of it
-    summary: sentences for a reader; where: places of the misfit before the correction, or of what the refitted law
-    leaves of it where other effects are missing too; tire: the corrected one
+    summary: sentences for a reader; not_compared: those of them on samples that were left out
+    where: places of the misfit before the correction, or of what the refitted law leaves of it where other effects are
+    missing too; tire: the corrected one
     evidence: all sets that were compared to the end; test: the one that separates an alternative from the verdict, None
     where no motion within the rig's limits does (the summary then says so)
     compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
@@ -78,6 +79,7 @@ class Verdict:
     unexplained_by: tuple[str, ...]
     residual_models: tuple[ResidualModel, ...]
     summary: str
+    not_compared: tuple[str, ...]
     where: tuple[Span, ...]
     fit: Fit
     tire: TireModel
@@ -152,6 +154,7 @@ class Verdict:
                     "unexplained": self.unexplained,
                     "remainder": self.remainder.to_dict(),
                     "summary": self.summary,
+                    "not_compared": list(self.not_compared),
                     "separating_test": None if self.test is None else self.test.to_dict(),
                     **regressed,
                 },

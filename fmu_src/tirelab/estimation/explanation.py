@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel
 
+from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor, noise_of
 from ..preprocessing.samples import Recorded
 from ..regressors.dataset import BLURRED, Dataset, blocking_error, dataset_of
@@ -75,6 +76,7 @@ class Explanation:
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     within_law: names of effects that leave no trace beside the refitted law of the set
     model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
+    compared: samples of each recording at which its gauges follow
     """
 
     effects: tuple[NamedEffect, ...]
@@ -87,6 +89,7 @@ class Explanation:
     model: FittedModel
     residuals: tuple[FloatArray, ...]
     floors: tuple[NoiseFloor, ...]
+    compared: tuple[BoolArray, ...]
     excitation: Excitation
     _ranking: Ranking = field(repr=False)
     _recordings: tuple[Recorded, ...] = field(repr=False)
@@ -97,7 +100,13 @@ class Explanation:
         """Simulations of the final fit."""
         return self.model.fit.evaluations
 
-    def compared(self, names: Sequence[str]) -> bool:
+    @property
+    def error(self) -> float:
+        """Root mean square [N] of what the set leaves of all compared samples."""
+        left = [r[c] for r, c in zip(self.residuals, self.compared, strict=True)]
+        return float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
+
+    def was_fitted(self, names: Sequence[str]) -> bool:
         """Whether a set was fitted."""
         return self._ranking.of(frozenset(names)) is not None
 
@@ -255,6 +264,7 @@ def _explanation(
         FittedModel(chosen),
         _residuals(chosen.tire, recordings),
         tuple(e.floor for e in chosen.problem.dataset.experiments),
+        compared(recordings),
         excitation,
         ranking,
         recordings,

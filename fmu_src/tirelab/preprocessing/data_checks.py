@@ -124,11 +124,16 @@ def beyond_travel(deflection: FloatArray, force: FloatArray) -> BoolArray:
     return _stopped(deflection, force) | _stopped(-deflection, -force)
 
 
-def said_of(recordings: Sequence[Recorded]) -> str:
+def compared(recordings: Sequence[Recorded]) -> tuple[BoolArray, ...]:
+    """Return which samples of each recording are compared: those at which the deflection's gauge follows."""
+    return tuple(~beyond_travel(r.deflection, r.force) for r in recordings)
+
+
+def not_compared(recordings: Sequence[Recorded]) -> tuple[str, ...]:
     """Return a sentence on each recording whose gauge reached an end of its travel."""
     sentences = []
-    for r in recordings:
-        lost = beyond_travel(r.deflection, r.force)
+    for r, followed in zip(recordings, compared(recordings), strict=True):
+        lost = ~followed
         if lost.any():
             place = 1e3 * float(np.median(r.deflection[lost]))
             sentences.append(
@@ -136,7 +141,7 @@ def said_of(recordings: Sequence[Recorded]) -> str:
                 "while the force rises and falls: its gauge is at the end of its travel, and these samples were not "
                 "compared; record with more travel."
             )
-    return " ".join(sentences)
+    return tuple(sentences)
 
 
 def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:

@@ -18,7 +18,7 @@ from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
 from scipy.stats import binom
 
-from ..preprocessing.data_checks import beyond_travel
+from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import followed_turns, motion_of, through_turns
 from ..preprocessing.noise import (
     NEGLIGIBLE,
@@ -284,7 +284,7 @@ def _experiment(
     force_step = staircase_step(recording.force)
     lone = spikes(misfit)
     resolved = motion.resolved & ~lone
-    followed = ~beyond_travel(recording.deflection, recording.force)
+    (followed,) = compared([recording])
     interval = float(np.median(np.diff(recording.time)))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
     slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))

@@ -87,6 +87,10 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
         if delivered_of(diagnosis).beside:
             return "The part is as elastic as the simulation's law with other coefficients: no physics is missing."
         return "The tire is elastic as the law says, with other coefficients: no physics is missing."
+    if verdict.get("not_compared"):
+        return "Where the gauges follow, the difference between simulation and recordings is noise."
+    if _left_over(diagnosis):
+        return "But for single samples that stand out, the difference between simulation and recordings is noise."
     return "The difference between simulation and recordings is noise."
 
 
@@ -120,7 +124,8 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
     clean = not verdict["unexplained"] and not titles.more_than_noise(max(errors), fit["noise"])
     if words.told(verdict["confidence"]) >= SURE and clean:
-        return NextStep(given.use if verdict["effects"] else given.leave, _left_in_order(verdict))
+        said = [_left_in_order(verdict), *verdict.get("not_compared", [])]
+        return NextStep(given.use if verdict["effects"] else given.leave, " ".join(filter(None, said)))
     if test is not None:
         return NextStep(_drive(test), _decides(test, verdict), drive=True)
     if verdict["unexplained"]:

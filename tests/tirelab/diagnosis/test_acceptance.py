@@ -183,6 +183,14 @@ class Made:
     def residuals(self) -> tuple[Any, ...]:
         return (np.full(FITTED.time.size, self.left),)
 
+    @property
+    def compared(self) -> tuple[Any, ...]:
+        return (np.ones(FITTED.time.size, dtype=bool),)
+
+    @property
+    def error(self) -> float:
+        return self.left
+
 
 @dataclass(frozen=True)
 class Ranked:
@@ -195,7 +203,7 @@ class Ranked:
     def excitation(self) -> Excitation:
         return Excitation(0.0, 1.0, surfaces=self.surfaces)
 
-    def compared(self, names: Sequence[str]) -> bool:
+    def was_fitted(self, names: Sequence[str]) -> bool:
         return any(set(s.names) == set(names) for s in self.sets)
 
     def in_order(self, most: int) -> list[tuple[str, ...]]:
@@ -299,8 +307,8 @@ class Accepted(Made):
 
     ranked: Ranked
 
-    def compared(self, names: Sequence[str]) -> bool:
-        return self.ranked.compared(names)
+    def was_fitted(self, names: Sequence[str]) -> bool:
+        return self.ranked.was_fitted(names)
 
     def of(self, names: Sequence[str]) -> Made:
         found = self.ranked.of(names)

@@ -132,6 +132,7 @@ def test_a_verdict_is_json(alike_verdict):
         "unexplained",
         "remainder",
         "summary",
+        "not_compared",
         "separating_test",
     }
     assert set(content["fit"]) == {

@@ -1,4 +1,4 @@
-"""A gauge at the end of its travel is said, and no physics is made of it."""
+"""A gauge at the end of its travel is said, and no physics is made of it; what is short is not nothing."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.recordings.recording import Recording
+from tirelab.report import first_screen
 
 TIRE = TireModel(PowerLaw(550.0, 1.42), tested_range=None)
 
@@ -21,3 +22,23 @@ def test_no_bottoming_is_made_of_a_clipped_reading() -> None:
     assert verdict.names == ()
     assert "In clipped the deflection's reading stands still at 19 mm" in verdict.summary
     assert "record with more travel" in verdict.summary
+    # 6 mm beyond the end would leave 400 N; what is compared leaves its noise alone, known to 3 % from 1200 samples.
+    assert abs(verdict.fit.before - 4.0) < 0.5
+    told = verdict.to_dict()
+    assert first_screen.lead(told).startswith("Where the gauges follow")
+    assert first_screen.next_step(told).why.endswith("record with more travel.")
+
+
+def test_a_short_disturbance_is_not_called_nothing() -> None:
+    """20 cycles of exactly that tire with 4 N of noise; once, for 0.6 s of 200, a cable pulls with 20 N."""
+    rng = np.random.default_rng(2)
+    time = np.linspace(0.0, 200.0, 10_000)
+    x = 0.011 * (1.0 - np.cos(2.0 * np.pi * time / 10.0))
+    pulled = np.where((time > 81.0) & (time < 81.6), 20.0, 0.0)
+    force = 550.0 * (100.0 * x) ** 1.42 + pulled + rng.normal(0.0, 4.0, time.size)
+    reading = x + rng.normal(0.0, 1e-6, time.size)
+    verdict = diagnose(Recording("pulled", time, reading, np.full(time.size, np.inf), force), TIRE)
+    assert verdict.names == ("unknown",)
+    where = next(place for place in verdict.where if place.by == "time")
+    assert 80.8 < where.start < 81.2
+    assert 81.4 < where.stop < 81.8

@@ -255,9 +255,24 @@ def test_noise_that_wanders_is_no_place_where_the_correction_leaves_it():
     assert found[True] <= 1
 
 
+def test_single_samples_that_stand_out_are_no_place():
+    def added(time, deflection, rate):
+        force = np.zeros(time.size)
+        force[[700, 2100, 4400]] = 20.0 * LEVEL
+        return force
+
+    assert not located(added)
+
+
+def test_the_size_of_a_place_is_its_error_beyond_the_noise_over_that():
+    spans = located(lambda t, x, v: np.where((t > 4.0) & (t < 5.0), 4.0 * LEVEL, 0.0))
+    # The error's square is 16 + 1 noises there, known to 10 % from 200 samples.
+    assert abs(first(spans, "time").size - 4.0) < 0.4
+
+
 def test_the_contract_of_a_place():
     entry = located(lambda t, x, v: 300.0 * v)[0].to_dict()
-    keys = {"by", "from", "to", "unit", "label", "share", "samples", "mean_residual", "chance"}
+    keys = {"by", "from", "to", "unit", "label", "share", "samples", "mean_residual", "size", "chance"}
     assert set(entry) == keys
     json.dumps(entry, allow_nan=False)
 

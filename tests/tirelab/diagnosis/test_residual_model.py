@@ -5,13 +5,17 @@ A recording of another tire among others is named.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import flat_force, read, ride
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.acceptance import HeldOut, Part
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.diagnosis.residual_model import residual_models
+from tirelab.diagnosis.localization import Span
+from tirelab.diagnosis.residual_model import residual_models, unexplained_by
+from tirelab.estimation.findings import Remainder
 from tirelab.preprocessing.samples import dataset_of
 from tirelab.recordings.recording import Recording
 
@@ -54,6 +58,20 @@ def test_a_coordinate_without_a_name_is_time():
     assert found.unit == "s"
     assert found.force[found.at < 10.0] == pytest.approx(0.0, abs=3.0)
     assert found.force[found.at > 14.0] == pytest.approx(20.0, abs=3.0)
+
+
+def place(by: str = "time", share: float = 0.8, size: float = 3.0) -> Span:
+    return Span(by, 1.0, 2.0, "s", "", None, share, 0.01, 9.0, size, 1e-9, 0.5)
+
+
+def test_what_is_short_is_unexplained_where_it_is_more_than_the_noise() -> None:
+    small = Remainder(1.0, 0.4, 2.0, ())
+    assert not small.unexplained
+    assert unexplained_by(small, [place(), place("history"), place("force", share=0.3)]) == ("time", "force")
+    assert unexplained_by(small, []) == ()
+    assert unexplained_by(small, [place(size=0.9), place(share=0.09)]) == ()
+    # Of a misfit that effects explain but for a tenth, no place holds a tenth.
+    assert unexplained_by(replace(small, share=0.1), [place()]) == ()
 
 
 def test_the_entry_of_diagnosis_json_keeps_its_keys():

@@ -19,7 +19,7 @@ from tirelab.preprocessing.data_checks import (
     beyond_travel,
     check_recordings,
     check_signal,
-    said_of,
+    not_compared,
 )
 from tirelab.preprocessing.samples import dataset_of
 from tirelab.recordings.recording import Recording
@@ -181,6 +181,6 @@ class Read:
 
 
 def test_it_is_said_with_recording_and_place() -> None:
-    said = said_of([Read(), Read("whole", deflection=noisy(MOTION))])
+    (said,) = not_compared([Read(), Read("whole", deflection=noisy(MOTION))])
     assert said.startswith("In clipped the deflection's reading stands still at 21 mm in ")
     assert "whole" not in said

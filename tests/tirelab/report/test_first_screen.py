@@ -212,6 +212,21 @@ def test_a_tire_that_can_be_used_tells_what_it_leaves_in_order() -> None:
     assert first_screen.next_step(given).why == ""
 
 
+def test_samples_that_were_not_compared_are_told() -> None:
+    given = diagnosis({}, 0.95)
+    given["verdict"]["not_compared"] = [
+        "In a the gauge is at the end of its travel; record with more travel."
+    ]
+    assert first_screen.lead(given).startswith("Where the gauges follow, the difference")
+    assert first_screen.next_step(given).why == given["verdict"]["not_compared"][0]
+
+
+def test_single_samples_that_stand_out_are_told() -> None:
+    given = diagnosis({}, 0.95)
+    given["fit"]["after"] = 1.6 * given["fit"]["noise"]
+    assert first_screen.lead(given).startswith("But for single samples that stand out, the difference")
+
+
 def test_what_is_unknown_is_not_called_nothing() -> None:
     test = {**TEST, "between": [[], ["saturation"]], "surfaces": [-0.6]}
     step = first_screen.next_step(
