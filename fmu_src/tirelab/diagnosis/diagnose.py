@@ -16,7 +16,7 @@ from ..preprocessing.data_checks import PoorRecording, check_recordings, check_s
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, Dataset, Recorded, dataset_of, is_timed
 from ..simulation.simulate import simulate
-from .acceptance import HeldOut, accept, rmse, validation_on, without_unlikely
+from .acceptance import HeldOut, accept, noise_free_residual, rmse, validation_on, without_unlikely
 from .confidence import (
     REACHED,
     Alternative,
@@ -80,17 +80,16 @@ def diagnose(
     likely = {e.name: e.probability for e in considered}
     explanation, validation = without_unlikely(explanation, validation, likely, validate)
     effects, doubted = _named_and_doubted(explanation, considered)
-    fit = _figures(before, explanation, validation)
+    residuals = _not_of_the_reading(explanation, dataset, fitted)
+    fit = _figures(before, residuals, explanation, validation)
     written = of_the_written_tire(
         explanation.remainder,
         [values[seen] for values, seen in zip(before, explanation.compared, strict=True)],
-        [values[seen] for values, seen in zip(explanation.residuals, explanation.compared, strict=True)],
+        [values[seen] for values, seen in zip(residuals, explanation.compared, strict=True)],
         fit.noise,
     )
     left = _remainder_told(written, timed)
-    shown = _places_told(
-        localize(fitted, dataset, explanation.residuals, levels, explanation.residuals), timed
-    )
+    shown = _places_told(localize(fitted, dataset, residuals, levels, residuals), timed)
     unexplained = tuple(by for by in unexplained_by(left, shown) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
@@ -140,6 +139,20 @@ def _said(*sentences: str) -> str:
     return " ".join(sentence for sentence in sentences if sentence)
 
 
+def _not_of_the_reading(
+    explanation: Explanation, dataset: Dataset, fitted: Sequence[Recorded]
+) -> list[FloatArray]:
+    """Return what the written tire leaves of each recording [N], as read or with the noise-free deflection.
+
+    Whichever is less: what goes with the noise of the reading is no physics.
+    """
+    tire, found = explanation.model.tire, []
+    for recording, e, read in zip(fitted, dataset.experiments, explanation.residuals, strict=True):
+        noise_free = noise_free_residual(tire, recording, e.motion)
+        found.append(min(read, noise_free, key=lambda left: float(left @ left)))
+    return found
+
+
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
     grounds = grounds_of_effect(effect, explanation, validation)
     return replace(effect, probability=probability("effect", grounds), grounds=grounds)
@@ -180,17 +193,26 @@ def _check_names(catalogue: Sequence[str]) -> None:
         )
 
 
-def _figures(before: Sequence[FloatArray], explanation: Explanation, validation: HeldOut) -> Fit:
+def _figures(
+    before: Sequence[FloatArray],
+    noise_free: Sequence[FloatArray],
+    explanation: Explanation,
+    validation: HeldOut,
+) -> Fit:
+    def error(residuals: Sequence[FloatArray]) -> float:
+        return rmse([r[seen] for r, seen in zip(residuals, explanation.compared, strict=True)])
+
     sizes = np.array([b.size for b in before], dtype=float)
     levels = np.array([f.level for f in explanation.floors])
     return Fit(
         float(np.sqrt(np.sum(sizes * levels**2) / sizes.sum())),
-        rmse([b[seen] for b, seen in zip(before, explanation.compared, strict=True)]),
+        error(before),
         explanation.error,
         validation.before,
         validation.after,
         validation.by,
         validation.noise_free,
+        error(noise_free),
     )
 
 

@@ -32,7 +32,7 @@ def summarise(
     regressions: of something unknown, none where nothing is; test: the best one against the alternatives
     """
     names = [e.name for e in effects]
-    left = more_than_noise(fit.after, fit.noise)
+    left = more_than_noise(fit.left, fit.noise)
     said = [headline(names, bool(regressions), bool(alternatives), left)]
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -41,7 +42,7 @@ SCHEMA = 2
 class Fit:
     """Noise and root mean square errors [N]; held_out_by: what was held out (see `held_out.HeldOut`).
 
-    held_out_noise_free: held_out_after where the tire is given the noise-free deflection
+    held_out_noise_free, after_noise_free: held_out_after and after where the tire is given the noise-free deflection
     """
 
     noise: float
@@ -51,6 +52,12 @@ class Fit:
     held_out_after: float
     held_out_by: str
     held_out_noise_free: float = float("nan")
+    after_noise_free: float = float("nan")
+
+    @property
+    def left(self) -> float:
+        """What the tire leaves [N] beside the noise of the reading."""
+        return min(error for error in (self.after, self.after_noise_free) if not math.isnan(error))
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,7 @@ class Verdict:
 
     def __repr__(self) -> str:
         fit = self.fit
-        left = more_than_noise(fit.after, fit.noise)
+        left = more_than_noise(fit.left, fit.noise)
         said = headline([e.name for e in self.effects], self.unexplained, False, left).removesuffix(".")
         alternatives = f", {len(self.alternatives)} alternative" if self.alternatives else ""
         return (
@@ -165,6 +172,8 @@ class Verdict:
                     "after": self.fit.after,
                     "held_out_before": self.fit.held_out_before,
                     "held_out_after": self.fit.held_out_after,
+                    "after_noise_free": self.fit.after_noise_free,
+                    "held_out_noise_free": self.fit.held_out_noise_free,
                     "load": load_of(self.recordings),
                 },
                 "held_out_by": self.fit.held_out_by,

@@ -28,6 +28,10 @@ WORSE = 1.05
 """A held-out error that grows by more than this factor is told as worse."""
 
 
+NOISE_FREE = {"after": "after_noise_free", "held_out_after": "held_out_noise_free"}
+"""Of an error, the name of the one with the noise-free deflection."""
+
+
 @dataclass(frozen=True)
 class Figure:
     """One error [N] with its title; alarm: why it is a bad one, empty where it is not; note: what it was."""
@@ -101,16 +105,16 @@ def figures(diagnosis: Mapping[str, Any]) -> list[Figure]:
     if verdict["effects"]:
         shown = [
             Figure("Error before", fit["before"]),
-            Figure("Error after", fit["after"], _left(fit["after"], noise)),
+            Figure("Error after", fit["after"], *_told(fit, "after")),
         ]
     else:
         shown = [Figure("Error", fit["before"], _left(fit["before"], noise))]
     if fit["held_out_after"] is not None:
-        alarm, was = _left(fit["held_out_after"], noise), fit["held_out_before"]
+        (alarm, own), was = _told(fit, "held_out_after"), fit["held_out_before"]
         if was is not None and fit["held_out_after"] > WORSE * was:
             alarm = "worse than before"
         note = f"from {words.number(was)} N" if was is not None and verdict["effects"] else ""
-        shown.append(Figure("Held-out", fit["held_out_after"], alarm, note))
+        shown.append(Figure("Held-out", fit["held_out_after"], alarm, "; ".join(filter(None, (note, own)))))
     return [*shown, Figure("Noise floor", noise)]
 
 
@@ -121,7 +125,9 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     """
     verdict, fit, given = diagnosis["verdict"], diagnosis["fit"], delivered_of(diagnosis)
     test = verdict["separating_test"]
-    errors = [e for e in (fit["after"], fit["held_out_after"]) if e is not None]
+    errors = [
+        e for e in (_beside_reading(fit, "after"), _beside_reading(fit, "held_out_after")) if e is not None
+    ]
     clean = not verdict["unexplained"] and not titles.more_than_noise(max(errors), fit["noise"])
     if words.told(verdict["confidence"]) >= SURE and clean:
         said = [_left_in_order(verdict), *verdict.get("not_compared", [])]
@@ -198,7 +204,15 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
 
 def _left_over(diagnosis: Mapping[str, Any]) -> bool:
     fit = diagnosis["fit"]
-    return titles.more_than_noise(fit["after"], fit["noise"])
+    return titles.more_than_noise(_beside_reading(fit, "after") or 0.0, fit["noise"])
+
+
+def _beside_reading(fit: Mapping[str, Any], error: str) -> float | None:
+    """Return an error [N], or what is left of it where the tire is given the noise-free deflection, if that is less."""
+    noise_free = fit.get(NOISE_FREE[error])
+    if fit[error] is None or noise_free is None:
+        return fit[error]  # type: ignore[no-any-return]
+    return float(min(fit[error], noise_free))
 
 
 def _by_size(effects: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -244,6 +258,15 @@ def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]
         more = [f"{others} other{'s' if others > 1 else ''}"] if others else []
         yield f"{found}; undecided whether also {titles.listed([*also[:shown], *more], 'or')}"
     yield f"{found}; undecided what else acts"
+
+
+def _told(fit: Mapping[str, Any], error: str) -> tuple[str, str]:
+    """Return the alarm of an error, and a note where it is noise of the reading alone."""
+    noise = fit["noise"]
+    noise_free = _beside_reading(fit, error)
+    if _left(fit[error], noise) and not _left(noise_free, noise) and noise_free is not None:
+        return "", f"{words.number(noise_free)} N but for the reading's noise"
+    return _left(noise_free, noise), ""
 
 
 def _left(after: float | None, noise: float) -> str:

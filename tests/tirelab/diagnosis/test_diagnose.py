@@ -141,6 +141,8 @@ def test_a_verdict_is_json(alike_verdict):
         "after",
         "held_out_before",
         "held_out_after",
+        "after_noise_free",
+        "held_out_noise_free",
         "load",
     }
     assert content["verdict"]["effects"][0]["parameters"]["damping"]["unit"] == "N.s/m"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
+from tirelab.planning.menu import drive_of
+from tirelab.planning.rig import Rig
 from tirelab.recordings.recording import Recording
 from tirelab.report import first_screen
 
@@ -27,6 +29,25 @@ def test_no_bottoming_is_made_of_a_clipped_reading() -> None:
     told = verdict.to_dict()
     assert first_screen.lead(told).startswith("Where the gauges follow")
     assert first_screen.next_step(told).why.endswith("record with more travel.")
+
+
+def test_noise_of_the_reading_is_nothing_unknown() -> None:
+    """A mass of 15 kg through the corners of fast triangles, read with 6 um of noise.
+
+    The tire in its FMU has to average that noise and follows the corners late; with the noise-free motion it does not.
+    """
+    rng = np.random.default_rng(3)
+    recordings = []
+    for waveform, radius in (("fast triangles", 0.254), ("small sines about two means", np.inf)):
+        drive = drive_of(waveform, 0.25, radius, Rig(stroke=0.02, speed=0.2, surfaces=(radius,), time=60.0))
+        x, time = drive.deflection, drive.time
+        acceleration = np.gradient(np.gradient(x, time), time)
+        force = 550.0 * (100.0 * x) ** 1.42 + 15.0 * acceleration + rng.normal(0.0, 6.0, time.size)
+        reading = x + rng.normal(0.0, 6e-6, time.size)
+        recordings.append(Recording(waveform, time, reading, drive.surface_radius, force))
+    verdict = diagnose(recordings, TIRE)
+    assert verdict.names == ("inertia",)
+    assert verdict.fit.after > 1.5 * verdict.fit.noise > verdict.fit.left
 
 
 def test_a_short_disturbance_is_not_called_nothing() -> None:

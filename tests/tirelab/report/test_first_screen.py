@@ -227,6 +227,24 @@ def test_single_samples_that_stand_out_are_told() -> None:
     assert first_screen.lead(given).startswith("But for single samples that stand out, the difference")
 
 
+def test_the_noise_of_the_reading_is_no_error_of_the_tire() -> None:
+    """A mass of 15 kg multiplies the noise of a gauge; given the noise-free deflection the tire leaves the force's."""
+    given = diagnosis({"inertia": 9.0}, 0.95)
+    given["fit"] |= {
+        "after": 24.0,
+        "after_noise_free": 6.5,
+        "held_out_after": 11.0,
+        "held_out_noise_free": 9.8,
+    }
+    after, held_out = first_screen.figures(given)[1:3]
+    assert (after.alarm, after.note) == ("", "6.50 N but for the reading's noise")
+    assert held_out.alarm == "1.6 × the noise"
+    given["fit"]["held_out_noise_free"] = 6.4
+    assert first_screen.next_step(given).action == "Nothing: use this tire."
+    given["fit"]["after_noise_free"] = None
+    assert not first_screen.next_step(given).action.startswith("Nothing")
+
+
 def test_what_is_unknown_is_not_called_nothing() -> None:
     test = {**TEST, "between": [[], ["saturation"]], "surfaces": [-0.6]}
     step = first_screen.next_step(
