@@ -153,17 +153,24 @@ class Remainder:
 
 
 def remainder_of(fit: Fit) -> Remainder:
-    """Return what a fitted set leaves beyond the noise of the averaged misfit."""
+    """Return what a fitted set leaves beyond the noise of the averaged misfit, each block for its samples."""
     dataset = fit.problem.dataset
-    left = fit.residual
-    n = left.size
-    beyond = max(fit.power - n, 0.0)
-    missed = max(float(dataset.misfit @ dataset.misfit) - n, 1e-12)
-    noise = np.concatenate([np.full(int(e.counts.sum()), e.noise) for e in dataset.experiments])
-    level = float(np.sqrt(np.mean([e.floor.level**2 for e in dataset.experiments])))
-    force = float(np.sqrt(beyond / n) * np.sqrt(np.mean(noise**2)))
+    counts, sizes, noises, levels = np.array(
+        [(e.counts.sum(), e.size, e.noise, e.floor.level) for e in dataset.experiments]
+    ).T
+    samples = np.repeat(sizes, counts.astype(int))
+    variance = np.repeat(noises**2, counts.astype(int))
+    left, missed = (
+        max(float(samples @ (variance * (values**2 - 1.0)) / samples.sum()), 0.0)
+        for values in (fit.residual, dataset.misfit)
+    )
+    level = float(np.sqrt(counts * sizes @ levels**2 / samples.sum()))
+    force = float(np.sqrt(left))
     return Remainder(
-        min(beyond / missed, 1.0), force / max(level, 1e-300), force, _dependences(dataset, left)
+        min(left / max(missed, 1e-300), 1.0) if left else 0.0,
+        force / max(level, 1e-300),
+        force,
+        _dependences(dataset, fit.residual),
     )
 
 

@@ -5,6 +5,7 @@ What is left beyond the noise: its size and share by definition, and what it dep
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -58,6 +59,20 @@ def test_share_and_size_are_those_of_what_is_beyond_the_noise() -> None:
     (e,) = DATASET.experiments
     assert found.force == pytest.approx(np.sqrt(8.0) * e.noise)
     assert found.size == pytest.approx(np.sqrt(8.0) * e.noise / e.floor.level)
+
+
+def test_a_remainder_is_counted_in_newtons_over_all_samples() -> None:
+    """Of two recordings alike but for a tenth of the noise, a quarter of the block, what the quiet one leaves is small.
+
+    Ten noises left in a quiet block are one of a loud one: of its samples, a fifth of all, the mean square is 99/100.
+    """
+    (loud,) = DATASET.experiments
+    quiet = replace(loud, noise=0.1 * loud.noise, size=loud.size // 4)
+    dataset = replace(DATASET, experiments=(loud, quiet))
+    values = np.concatenate([np.ones(SIZE), np.full(SIZE, 10.0)])
+    fit: Any = SimpleNamespace(problem=SimpleNamespace(dataset=dataset), residual=values)
+    part = quiet.size / (quiet.size + loud.size)
+    assert remainder_of(fit).force == pytest.approx(np.sqrt(part * 0.99) * loud.noise)
 
 
 def test_a_remainder_that_follows_the_deflection_is_said_to_depend_on_it_where_it_is() -> None:
