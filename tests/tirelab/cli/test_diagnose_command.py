@@ -72,6 +72,7 @@ def check_contract(content: Any) -> None:
         "doubted",
         "grounds",
         "alternative_details",
+        "not_compared",
     }
     assert all(map(math.isfinite, verdict["grounds"].values()))
     assert len(verdict["alternative_details"]) == len(verdict["alternatives"])
@@ -106,7 +107,7 @@ def check_contract(content: Any) -> None:
 
     for place in content["where"]:
         keys = {"by", "from", "to", "unit", "share", "mean_residual"}
-        assert place.keys() - {"recording"} == keys | {"label", "samples", "chance"}
+        assert place.keys() - {"recording"} == keys | {"label", "samples", "chance", "size"}
         assert isinstance(place["by"], str)
         assert isinstance(place["unit"], str)
         assert all(
@@ -116,7 +117,15 @@ def check_contract(content: Any) -> None:
         assert math.isfinite(place["mean_residual"])
 
     fit = content["fit"]
-    assert fit.keys() == {"noise", "before", "after", "held_out_before", "held_out_after", "load"}
+    errors = {
+        "before",
+        "after",
+        "held_out_before",
+        "held_out_after",
+        "after_noise_free",
+        "held_out_noise_free",
+    }
+    assert fit.keys() == {"noise", "load"} | errors
     for name, value in fit.items():
         assert (value is None and name.startswith("held_out")) or value >= 0.0
 

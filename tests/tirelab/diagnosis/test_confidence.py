@@ -50,6 +50,7 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         confounded=more.get("confounded", ()),
         remainder=LEFT,
         residuals=(np.full(10, 2.0),),
+        error=2.0,
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
             within_law=lambda name: one_surface and name == "gas_compression",
