@@ -317,13 +317,17 @@ def _told(chosen: int) -> list[str]:
     if not SENSITIVITY.exists():
         return lines
     run = json.loads(SENSITIVITY.read_text(encoding="utf-8"))
-    halved, doubled = (_counted(_sensitivity().get(TOGETHER, {}), factor) for factor in ("0.5", "2.0"))
+    effort = _sensitivity().get(TOGETHER, {})
+    ways = (("halved", "0.5"), ("doubled", "2.0"))
+    changed = [f"{way}, {count}" for way, factor in ways if (count := _counted(effort, factor))]
     only = "".join(f" --only {name}" for name in run["only"])
     return [
         *lines,
         f"Each of the {chosen} was halved and doubled, and {run['each']} of {run['trials']} blind trials were",
         "diagnosed again each time, other ones for each number: the columns tell how many verdicts became others. The",
-        f"bounds of the effort were halved and doubled all together: {halved} and {doubled} verdicts became others.",
+        "bounds of the effort were changed all together: "
+        + " and ".join(changed)
+        + " verdicts became others.",
         "The command:",
         "",
         "```sh",
