@@ -196,7 +196,7 @@ class Dataset:
         """Return the dataset with another noise [N] of each averaged misfit."""
         found = []
         for e, noise in zip(self.experiments, noises, strict=True):
-            reading = Noise(noise.level, noise.memory * e.size) if noise.memory > 1 else e.reading
+            reading = Noise(_of_samples(noise, e), noise.memory * e.size) if noise.memory > 1 else e.reading
             found.append(replace(e, noise=max(noise.level, e.least_noise), reading=reading))
         return replace(self, experiments=tuple(found))
 
@@ -209,6 +209,13 @@ class Dataset:
             counts = e.counts & k[: e.counts.size * e.size].reshape(-1, e.size).all(axis=1)
             found.append(replace(e, counts=counts))
         return replace(self, experiments=tuple(e for e in found if e.counts.any()))
+
+
+def _of_samples(averaged: Noise, experiment: Experiment) -> float:
+    """Return the noise [N] of a sample, from that of the averages and what averaging took out of it."""
+    reading = experiment.reading
+    taken_out = 1.0 - min(reading.memory / experiment.size, 1.0)
+    return float(np.hypot(averaged.level, reading.level * np.sqrt(taken_out)))
 
 
 def dataset_of(

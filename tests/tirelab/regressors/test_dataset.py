@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from radialtire import CATALOGUE, TireModel
+from tirelab.preprocessing.noise import Noise
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import arranged, blocking_error, dataset_of
 from tirelab.simulation.simulate import simulate
@@ -31,6 +33,18 @@ def test_no_block_that_touches_a_turn_or_follows_one_is_compared() -> None:
     for turn in at:
         assert not experiment.counts[turn - 1 : turn + 2].any()
     assert experiment.counts.mean() > 0.95
+
+
+def test_a_noise_that_blocks_remember_is_no_smaller_than_that_of_the_samples() -> None:
+    """Averaging takes the quick part of a noise out, not out of the readings: it belongs to their floor."""
+    dataset = dataset_of([triangle(16_000, 8)], TireModel())
+    (before,) = dataset.experiments
+    slow = 0.8 * FORCE_NOISE
+    (after,) = dataset.with_noise([Noise(slow, 3)]).experiments
+    assert after.reading.memory == 3 * before.size
+    # White noise of 5 N and slow noise: the mean of n samples holds a variance of 25 / n of the former.
+    slow_part = slow**2 - FORCE_NOISE**2 / before.size
+    assert after.reading.level == pytest.approx(np.sqrt(slow_part + FORCE_NOISE**2), rel=0.02)
 
 
 def test_samples_beside_a_turn_are_compared_where_nothing_is_averaged() -> None:
