@@ -145,34 +145,36 @@ LAW_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 PASSES = 2
 """Rounds in which the groups' scales are found one after the other."""
 
-FORM_SCALES = (1.0, 3.0, 10.0)
-"""Scales of the form errors that are tried (type II)."""
+FORM_SCALES = (1.0, 3.0, 10.0, 30.0, 100.0)
+"""Scales of the form errors that are tried (type II), of each effect as far as its form is still one."""
 
 
 @dataclass(frozen=True)
 class Linearised:
     """A fitted set near its optimum, in units of the noise.
 
-    residual (m,); slopes (m, k); positions (k,) on the priors' axes; forms (m, f): columns of the form errors
+    residual (m,); slopes (m, k); positions (k,) on the priors' axes; forms: columns (m, f) of each effect's form errors
+    errors: of each form, as declared
     groups (k,): numbers from 1 on of parameters whose prior has a scale to be found, 0: the prior is as declared
     """
 
     residual: FloatArray
     slopes: FloatArray
     positions: FloatArray
-    forms: FloatArray
+    forms: tuple[FloatArray, ...]
+    errors: tuple[float, ...]
     groups: IntArray
 
 
 @dataclass(frozen=True)
 class LaplaceEvidence:
-    """log_likelihood: marginal; variance: V of the discrepancy; scale: of the form errors
+    """log_likelihood: marginal; variance: V of the discrepancy; scales: of the form errors of each effect
     unformed (m,): residual less what the form errors and the parameters that give way explain of it.
     """
 
     log_likelihood: float
     variance: float
-    scale: float
+    scales: FloatArray
     unformed: FloatArray
 
 
@@ -189,8 +191,8 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
                 value = _of_parameters(power, own, fit.positions, trial, discrepancy)
                 if value[0] > best[0]:
                     best, width = value, trial
-    if not fit.forms.size:
-        return LaplaceEvidence(*best, 1.0, fit.residual)
+    if not fit.forms:
+        return LaplaceEvidence(*best, np.zeros(0), fit.residual)
     return _beside_forms(fit, width, discrepancy)
 
 
@@ -208,28 +210,39 @@ def _of_parameters(
 
 
 def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:
-    """Return the evidence where the form errors explain what they can, and the parameters give way to them."""
+    """Return the evidence where the form errors explain what they can, and the parameters give way to them.
+
+    The scales of all effects are found together first, then one after the other.
+    """
     variances = discrepancy.grid()
-    k = width.size
-    columns = np.concatenate([fit.slopes, fit.forms], axis=1)
+    k, counts = width.size, [f.shape[1] for f in fit.forms]
+    columns = np.concatenate([fit.slopes, *fit.forms], axis=1)
     gram, moment = columns.T @ columns, columns.T @ fit.residual
     # The slopes are those of the residual: a step along them takes the positions the other way.
-    pull = np.concatenate([-fit.positions / width, np.zeros(fit.forms.shape[1])])
+    pull = np.concatenate([-fit.positions / width, np.zeros(sum(counts))])
     power = float(fit.residual @ fit.residual)
     fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.beside(variances)
     # What the parameters alone would still gain is not counted: a fit that stopped early must not win by it.
     alone, _, _ = _gained(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
-    found = []
-    for scale in FORM_SCALES:
-        wide = np.concatenate([width, np.full(fit.forms.shape[1], scale)])
+    most = 1.0 / np.array(fit.errors)
+
+    def of(scales: FloatArray) -> tuple[float, FloatArray, int, FloatArray]:
+        wide = np.concatenate([width, np.repeat(scales, counts)])
         gained, determinant, given_way = _gained(gram * np.outer(wide, wide), moment * wide, pull, variances)
         values = fixed + 0.5 * (gained - alone - determinant)
         best = int(np.argmax(values))
-        cost = math.log1p(scale**2) - math.log(2.0)
-        found.append((float(values[best]) - cost, best, scale, given_way(best) * wide))
-    likelihood, best, scale, coefficients = max(found, key=lambda f: f[0])
+        cost = float(np.sum(np.log1p(scales**2) - math.log(2.0)))
+        return float(values[best]) - cost, scales, best, given_way(best) * wide
+
+    best = max((of(np.minimum(scale, most)) for scale in FORM_SCALES), key=lambda f: f[0])
+    for i in range(len(counts)) if len(counts) > 1 else ():
+        own = [np.where(np.arange(len(counts)) == i, scale, best[1]) for scale in FORM_SCALES]
+        best = max(
+            (best, *(of(s) for s in own if s[i] <= most[i] and s[i] != best[1][i])), key=lambda f: f[0]
+        )
+    likelihood, scales, index, coefficients = best
     unformed = fit.residual - columns @ coefficients
-    return LaplaceEvidence(likelihood, float(variances[best]), scale, unformed)
+    return LaplaceEvidence(likelihood, float(variances[index]), scales, unformed)
 
 
 def _gained(
@@ -324,7 +337,7 @@ class Fit:
             self,
             log_likelihood=evidence.log_likelihood,
             variance=evidence.variance,
-            forms=self.near.forms * evidence.scale,
+            forms=_scaled(self.near.forms, evidence.scales, self.residual.size),
             unformed=float(evidence.unformed @ evidence.unformed),
         )
 
@@ -370,7 +383,12 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
     forms = form_errors(curves, problem.dataset, smooth_functions(problem.dataset))
     held = _held(problem, found)
     near = Linearised(
-        found.residual, found.jacobian[:, ~held], found.positions[~held], forms, problem.groups[~held]
+        found.residual,
+        found.jacobian[:, ~held],
+        found.positions[~held],
+        tuple(forms.values()),
+        tuple(form_error(name) for name in forms),
+        problem.groups[~held],
     )
     nothing = np.zeros((found.residual.size, 0))
     fit = Fit(
@@ -387,6 +405,12 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
         found.evaluations,
     )
     return fit.judged(discrepancy)
+
+
+def _scaled(forms: Sequence[FloatArray], scales: FloatArray, rows: int) -> FloatArray:
+    """Return all columns (rows, f) of the form errors at their scales."""
+    scaled = [f * scale for f, scale in zip(forms, scales, strict=True)]
+    return np.concatenate([np.zeros((rows, 0)), *scaled], axis=1)
 
 
 def _held(problem: EstimationProblem, found: Minimum) -> NDArray[np.bool_]:

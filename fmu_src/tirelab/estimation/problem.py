@@ -3,13 +3,14 @@
 A free parameter is counted on the axis of its prior: 0 at the prior's centre, 1 one standard deviation beyond. What the
 form of a fitted effect may miss is its own response, modulated smoothly by what the recording shows:
 
-    discrepancy = sum_e c_e f_e scale sum_j z_j phi_j,   z_j ~ N(0, 1)
+    discrepancy = sum_e c_e f_e scale_e sum_j z_j phi_j,   z_j ~ N(0, 1)
 
 c_e: response of effect e as fitted; f_e: its form error, declared from measurements; phi_j: smooth functions of
-deflection, direction, speed, time and surface, together of mean square 1. An effect beside another one that only mends
-the other one's form explains nothing that these do not. The law's discrepancy is the law times functions of the
-deflection, on each surface. `scale` is found by the evidence under a half-Cauchy prior (A. Gelman, Bayesian Analysis 1
-(2006) 515), since real forms may be further from the catalogue's than the measured ones.
+deflection, direction, way since the last turn, speed, time and surface, together of mean square 1. An effect beside
+another one that only mends the other one's form explains nothing that these do not. The law's discrepancy is the law
+times functions of the deflection, on each surface. Each `scale` is found by the evidence under a half-Cauchy prior (A.
+Gelman, Bayesian Analysis 1 (2006) 515), since real forms may be further from the catalogue's than the measured ones;
+no form misses more than its whole effect.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
@@ -24,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Parameter, Recalibrated, TireModel
 
+from ..preprocessing.motion import branches
 from ..regressors.dataset import Dataset, Scales, arranged
 from ..regressors.signature import (
     BEND,
@@ -286,26 +288,30 @@ def smooth_functions(dataset: Dataset) -> FloatArray:
     radius = dataset.gathered([e.surface_radius for e in many])
     depth = (x - x.min()) / max(float(np.ptp(x)), 1e-300)
     speed = np.log(np.maximum(np.abs(rate) / dataset.scales.rate, 1e-2))
+    since_turn = dataset.gathered([_since_turn(e.deflection, e.gauge) for e in many]) / max(
+        float(np.ptp(x)), 1e-300
+    )
     groups = [_hats(depth, DEPTHS), np.sign(rate)[:, None] * _hats(depth, WAYS)]
-    groups += [_polynomial(time), _polynomial(speed)]
+    groups += [_hats(np.sqrt(np.minimum(since_turn, 1.0)), WAYS), _polynomial(time), _polynomial(speed)]
     if 1 < len(dataset.radii) <= DEPTHS:
         groups.append(np.column_stack([(radius == r).astype(float) for r in dataset.radii]))
     parts = [g / np.sqrt(max(float(np.mean(np.sum(g**2, axis=1))), 1e-300)) for g in groups]
     return np.asarray(np.concatenate(parts, axis=1) / np.sqrt(len(parts)))
 
 
-def form_errors(curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray) -> FloatArray:
-    """Return the columns (m, k) of the discrepancy at scale 1, in units of the noise.
+def form_errors(
+    curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray
+) -> dict[str, FloatArray]:
+    """Return for each effect the columns (m, k) of its discrepancy at scale 1, in units of the noise.
 
     curves (m,): what each effect adds to the others
     """
-    columns = []
-    for name, curve in curves.items():
-        if name == LAW:
-            columns.append(form_error(name) * size_of(curve) * _of_law(dataset))
-        else:
-            columns.append(form_error(name) * curve[:, None] * functions)
-    return np.concatenate(columns, axis=1) if columns else np.zeros((dataset.misfit.size, 0))
+    return {
+        name: form_error(name) * size_of(curve) * _of_law(dataset)
+        if name == LAW
+        else form_error(name) * curve[:, None] * functions
+        for name, curve in curves.items()
+    }
 
 
 def _of_law(dataset: Dataset) -> FloatArray:
@@ -320,6 +326,14 @@ def _of_law(dataset: Dataset) -> FloatArray:
         columns += [hats * (radius == r)[:, None] for r in dataset.radii]
     whole = np.concatenate(columns, axis=1)
     return np.asarray(whole / np.sqrt(max(float(np.mean(np.sum(whole**2, axis=1))), 1e-300)))
+
+
+def _since_turn(deflection: FloatArray, noise: float) -> FloatArray:
+    """Return how far [m] the tire is from where its direction last changed; noise [m]: of the deflection."""
+    direction, _ = branches(deflection, noise)
+    begin = np.append(0, np.flatnonzero(np.diff(direction)) + 1)
+    turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
+    return np.asarray(np.abs(deflection - deflection[turn]))
 
 
 def _hats(place: FloatArray, count: int) -> FloatArray:

@@ -77,7 +77,7 @@ def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
     smooth, rate, acceleration, resolved = _smoothed(time, deflection, noise)
     # Smoothing cuts a corner short: there the reading itself is nearer.
     smooth = np.where(resolved, smooth, deflection)
-    direction, cycle = _branches(smooth, max(6.0 * noise, 0.02 * float(np.ptp(smooth))))
+    direction, cycle = branches(smooth, noise)
     deepest = np.maximum.accumulate(smooth)
     return Motion(smooth, rate, acceleration, noise, deepest, cycle, direction, resolved)
 
@@ -130,11 +130,12 @@ def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
     return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))
 
 
-def _branches(deflection: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray]:
-    """Return direction and cycle number; a reversal counts beyond `threshold` [m].
+def branches(deflection: FloatArray, noise: float) -> tuple[FloatArray, FloatArray]:
+    """Return direction and cycle number; a reversal counts beyond six noises [m] and a fiftieth of the span.
 
     It is recognised late, but counts from the turning point on.
     """
+    threshold = max(6.0 * noise, 0.02 * float(np.ptp(deflection)))
     turns, sign, best = [0], 1.0, 0
     extreme = deflection[0]
     values = deflection.tolist()

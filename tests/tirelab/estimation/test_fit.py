@@ -6,6 +6,7 @@ The evidence of a fitted set against the dense Gaussian law of what it leaves: e
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,10 +41,15 @@ def test_minimum_respects_a_bound_and_fits_the_rest() -> None:
     assert found.positions[1] == pytest.approx(rest @ left / (rest @ rest + 0.09), abs=1e-5)
 
 
-def linearised(forms: np.ndarray) -> Linearised:
-    """The linear model at its optimum, beside the columns of form errors."""
+ERROR = 1e-4
+"""A form error so small that no scale is cut short."""
+
+
+def linearised(*forms: np.ndarray) -> Linearised:
+    """The linear model at its optimum, beside the columns of each effect's form errors."""
     found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-14)
-    return Linearised(found.residual, found.jacobian, found.positions, forms, np.zeros(3, dtype=int))
+    errors = (ERROR,) * len(forms)
+    return Linearised(found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int))
 
 
 FIXED = Discrepancy(ROWS, float(ROWS), 0.09, 0.0900001)
@@ -58,7 +64,7 @@ def density(covariance: np.ndarray) -> float:
 
 
 def test_laplace_evidence_of_a_linear_model_is_exact() -> None:
-    evidence = laplace_evidence(linearised(np.zeros((ROWS, 0))), FIXED)
+    evidence = laplace_evidence(linearised(), FIXED)
     expected = density(0.09 * np.eye(ROWS) + COLUMNS @ COLUMNS.T)
     assert evidence.log_likelihood == pytest.approx(expected, abs=1e-4)
 
@@ -69,14 +75,14 @@ def test_form_errors_are_one_more_covariance_under_a_half_cauchy_scale() -> None
     linear = 0.09 * np.eye(ROWS) + COLUMNS @ COLUMNS.T
     expected = [density(linear + s**2 * forms @ forms.T) + np.log(2.0 / (1.0 + s**2)) for s in FORM_SCALES]
     assert evidence.log_likelihood == pytest.approx(max(expected), abs=1e-4)
-    assert evidence.scale == FORM_SCALES[int(np.argmax(expected))]
+    assert evidence.scales == pytest.approx([FORM_SCALES[int(np.argmax(expected))]])
 
 
 def test_what_only_mends_a_form_explains_nothing_that_the_form_errors_do_not() -> None:
     shape = np.linspace(-1.0, 1.0, ROWS)
     forms = np.column_stack([shape, np.ones(ROWS)])
     near = linearised(forms)
-    wrong = Linearised(near.residual + 2.0 * shape, near.slopes, near.positions, forms, near.groups)
+    wrong = replace(near, residual=near.residual + 2.0 * shape)
     unformed = laplace_evidence(wrong, FIXED).unformed
     assert unformed @ unformed < 1.2 * (near.residual @ near.residual)
     assert wrong.residual @ wrong.residual > 5.0 * (near.residual @ near.residual)
@@ -85,11 +91,14 @@ def test_what_only_mends_a_form_explains_nothing_that_the_form_errors_do_not() -
 N, EFFECTIVE = 60, 10.0
 
 
-def at_the_optimum(slopes: np.ndarray, forms: np.ndarray, misfit: np.ndarray, variance: float) -> Linearised:
+def at_the_optimum(
+    slopes: np.ndarray, forms: tuple[np.ndarray, ...], misfit: np.ndarray, variance: float
+) -> Linearised:
     """The fit r = misfit - slopes q that minimises |r|^2 / V + |q|^2."""
     k = slopes.shape[1]
     q = np.linalg.solve(slopes.T @ slopes / variance + np.eye(k), slopes.T @ misfit / variance)
-    return Linearised(misfit - slopes @ q, -slopes, q, forms, np.zeros(k, dtype=int))
+    errors = (ERROR,) * len(forms)
+    return Linearised(misfit - slopes @ q, -slopes, q, forms, errors, np.zeros(k, dtype=int))
 
 
 def dense(misfit: np.ndarray, columns: np.ndarray, variance: float) -> float:
@@ -121,7 +130,7 @@ def test_without_forms_it_is_the_gaussian_law(
     drawn: tuple[np.ndarray, np.ndarray, np.ndarray], variance: float
 ) -> None:
     slopes, _, misfit = drawn
-    found = laplace_evidence(at_the_optimum(slopes, np.zeros((N, 0)), misfit, variance), fixed(variance))
+    found = laplace_evidence(at_the_optimum(slopes, (), misfit, variance), fixed(variance))
     assert found.log_likelihood == pytest.approx(dense(misfit, slopes, variance) + beside(variance), rel=1e-9)
     assert found.variance == pytest.approx(variance)
 
@@ -131,21 +140,40 @@ def test_with_forms_it_is_the_gaussian_law_at_the_likeliest_scale(
     drawn: tuple[np.ndarray, np.ndarray, np.ndarray], variance: float
 ) -> None:
     slopes, forms, misfit = drawn
-    found = laplace_evidence(at_the_optimum(slopes, forms, misfit, variance), fixed(variance))
+    found = laplace_evidence(at_the_optimum(slopes, (forms,), misfit, variance), fixed(variance))
     # Half-Cauchy over the scale: its density at s, over that at 1.
     each = {
         s: dense(misfit, np.hstack([slopes, s * forms]), variance) - math.log((1.0 + s**2) / 2.0)
         for s in FORM_SCALES
     }
     assert found.log_likelihood == pytest.approx(max(each.values()) + beside(variance), rel=1e-9)
-    assert found.scale == max(each, key=lambda s: each[s])
+    assert found.scales == pytest.approx([max(each, key=lambda s: each[s])])
+
+
+def test_each_form_finds_its_own_scale(drawn: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+    """What one effect's form misses widely is no reason to believe less of another's."""
+    slopes, forms, _ = drawn
+    far, near = forms[:, :2], forms[:, 2:]
+    misfit = 30.0 * far @ np.array([1.0, -1.0]) + np.random.default_rng(9).normal(size=N)
+    found = laplace_evidence(at_the_optimum(slopes, (far, near), misfit, 1.0), fixed(1.0))
+    assert found.scales == pytest.approx([30.0, 1.0])
+    scaled = np.hstack([slopes, 30.0 * far, near])
+    expected = dense(misfit, scaled, 1.0) - math.log((1.0 + 30.0**2) / 2.0) + beside(1.0)
+    assert found.log_likelihood == pytest.approx(expected, rel=1e-9)
+
+
+def test_no_form_misses_more_than_its_effect(drawn: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+    slopes, forms, _ = drawn
+    misfit = 300.0 * forms @ np.ones(5)
+    fit = replace(at_the_optimum(slopes, (forms,), misfit, 1.0), errors=(0.05,))
+    assert laplace_evidence(fit, fixed(1.0)).scales == pytest.approx([20.0])
 
 
 def test_what_forms_cannot_explain_is_left(drawn: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
     slopes, forms, _ = drawn
     everything = np.hstack([slopes, forms])
     outside = np.linalg.svd(everything)[0][:, -1]
-    found = laplace_evidence(at_the_optimum(slopes, forms, 5.0 * outside, 1.0), fixed(1.0))
+    found = laplace_evidence(at_the_optimum(slopes, (forms,), 5.0 * outside, 1.0), fixed(1.0))
     np.testing.assert_allclose(found.unformed, 5.0 * outside, atol=1e-9)
 
 
@@ -154,8 +182,8 @@ def test_a_scale_of_the_laws_prior_is_found() -> None:
     numbers = np.random.default_rng(3)
     column = numbers.normal(size=(N, 1))
     misfit = 40.0 * column[:, 0] + numbers.normal(size=N)
-    fit = at_the_optimum(column, np.zeros((N, 0)), misfit, 1.0)
-    grouped = Linearised(fit.residual, fit.slopes, fit.positions, fit.forms, np.array([1]))
+    fit = at_the_optimum(column, (), misfit, 1.0)
+    grouped = replace(fit, groups=np.array([1]))
     gained = (
         laplace_evidence(grouped, fixed(1.0)).log_likelihood
         - laplace_evidence(fit, fixed(1.0)).log_likelihood
