@@ -3,15 +3,15 @@
 Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so it may leave more. What is
 ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of no
 more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted. An effect
-of the deflection alone is not named beside a refitted law on one surface, where that law alone leaves as little; nor is
-an effect that is less likely than not, where the others leave as little without it.
+of the deflection alone is not named beside a refitted law on one surface, where that law is nearly as likely alone; nor
+is an effect that is less likely than not, where the others leave as little without it.
 
 Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
 part, simulated from its true history: a recording, the last one first, or of each recording the end that holds the last
 part of the misfit. Such a part has to be driven as what stays fitted, or its error is one of extrapolation and refutes
-nothing: on the surfaces, and at depths and speeds within a factor of two. Where no part is, the end of each way of
-driving is held out, surface by surface. The effects were chosen on all of the data; the parameters were fitted without
-the held-out part.
+nothing: on the surfaces, at depths and speeds within a factor of two, and where the baseline misses at least half as
+much. Where no part is, the end of each way of driving is held out, surface by surface. The effects were chosen on all
+of the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -36,6 +36,9 @@ FITTED = 0.7
 """Part of the baseline's squared misfit that is fitted where the end of a recording is held out: by time, one side
 could lack what is to be explained. It is also the part of the held-out misfit that has to be driven as what is
 fitted."""
+
+WITHIN = 2.0
+"""Factor within which depths, speeds and root mean square misfits are alike: `_halvings` counts in it."""
 
 HALVINGS = int(np.ceil(-np.log2(STILL)))
 """Depths and speeds below a sixty-fourth of the largest are one: there the tire rests."""
@@ -196,11 +199,18 @@ def _parts(
 def _is_driven_alike(
     kept: Sequence[BoolArray], before: Sequence[FloatArray], ways: Sequence[IndexArray]
 ) -> bool:
-    """Return whether most of the misfit that is held out belongs to ways of driving that stay fitted."""
-    fitted = np.unique(np.concatenate([w[k] for w, k in zip(ways, kept, strict=True)]))
-    misfit = np.concatenate([b[~k] ** 2 for b, k in zip(before, kept, strict=True)])
-    alike = np.isin(np.concatenate([w[~k] for w, k in zip(ways, kept, strict=True)]), fitted)
-    return float(misfit[alike].sum()) >= FITTED * float(misfit.sum())
+    """Return whether most of the misfit that is held out belongs to ways of driving that stay fitted, and is missed
+    there too: what shows in the held-out part alone cannot be fitted without it.
+    """
+    fits, way = np.concatenate(kept), np.concatenate(ways)
+    misfit = np.concatenate(before) ** 2
+    count = int(way.max()) + 1
+    fitted, held_out = (
+        np.bincount(way[own], misfit[own], count) / np.maximum(np.bincount(way[own], minlength=count), 1)
+        for own in (fits, ~fits)
+    )
+    alike = (fitted >= held_out / WITHIN**2)[way] & ~fits
+    return float(misfit[alike].sum()) >= FITTED * float(misfit[~fits].sum())
 
 
 def _beginning(before: FloatArray, way: IndexArray) -> BoolArray:
@@ -273,13 +283,14 @@ def without_unlikely(
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
-    """Return a set without effects that the refitted law beside them could be, if it leaves as little; else the set."""
+    """Return a set without effects that the refitted law beside them could be, if that is nearly as likely; else the
+    set.
+    """
     chosen, static = explanation.of(names), explanation.excitation.within_law
     less = [n for n in names if n == REFITTED_LAW or not static(n)]
-    if REFITTED_LAW not in names or len(less) == len(names) or not explanation.was_fitted(less):
+    if REFITTED_LAW not in names or len(less) == len(names):
         return chosen
-    plainer = explanation.of(less)
-    return plainer if plainer.error * NO_WORSE <= chosen.error else chosen
+    return explanation.of(less) if explanation.is_near(less, names) else chosen
 
 
 def is_worse(validation: HeldOut) -> bool:

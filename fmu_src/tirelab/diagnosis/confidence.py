@@ -43,6 +43,7 @@ SMALLEST = 1e-4
 
 OF_VERDICT = (
     "odds",
+    "contested",
     "remainder_share",
     "remainder_size",
     "structure",
@@ -60,6 +61,7 @@ OF_VERDICT = (
 )
 OF_EFFECT = (
     "odds",
+    "contested",
     "share",
     "remainder_share",
     "remainder_size",
@@ -67,13 +69,17 @@ OF_EFFECT = (
     "transfer",
     "alike",
     "imitated",
+    "beside_law",
     "significance",
     "effects",
     "loudness",
 )
 """Grounds of the verdict and of one effect; each is explained in `grounds_of_verdict`."""
 
-LOWERING = ("remainder_share", "remainder_size", "structure", "transfer", "alike", "imitated", "law_alone")
+LOWERING = (
+    *("contested", "remainder_share", "remainder_size", "structure", "transfer"),
+    *("alike", "imitated", "beside_law", "law_alone"),
+)
 """Grounds that may only lower a probability."""
 
 
@@ -83,10 +89,10 @@ def grounds_of_verdict(
     """Return what the verdict's probability rests on; remainder: of the written tire, as it is told; unexplained:
     whether something unknown is told.
 
-    odds: log posterior odds against all other sets; remainder_share: of the misfit; remainder_size: ln(1 + size over
-    the noise); structure: the same of what in the remainder depends on a recorded coordinate
+    odds: log posterior odds against all other sets; contested: tempered probability of these
+    remainder_share: of the misfit; remainder_size: ln(1 + size over the noise); structure: the same of what in the remainder depends on a recorded coordinate
     transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
-    it); imitated: effects beside a refitted law that could be a part of it
+    it); imitated: effects that a refitted law could be, see `grounds_of_effect`
     effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
     significance: of the effect that has the least, see `grounds_of_effect`
     unknown, nothing: 1 where it tells of something unknown, and where it names no effect; unknown_size: the
@@ -98,9 +104,10 @@ def grounds_of_verdict(
     of_fit = _of_fit(explanation, validation, remainder)
     return {
         "odds": _limited(chances),
+        "contested": 1.0 - explanation.probability,
         **of_fit,
         "alike": math.log1p(len(explanation.confounded)),
-        "imitated": float(sum(_imitated(n, names, explanation) for n in names)),
+        "imitated": sum(_imitated(n, names, explanation) for n in names),
         "law_alone": float(names == [REFITTED_LAW]),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
@@ -115,9 +122,11 @@ def grounds_of_verdict(
 def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> dict[str, float]:
     """Return what the probability of one named effect rests on, see `grounds_of_verdict`.
 
-    odds: log odds of all sets with it against all without; share: ln of its share of the misfit
-    alike: ln(1 + effects that this motion cannot tell from it); imitated: whether it depends on the deflection alone
-    and stands beside a refitted law, which may have another form than the catalogue's on several surfaces too
+    odds: log odds of all sets with it against all without; contested: tempered probability of these
+    share: ln of its share of the misfit; alike: ln(1 + effects that this motion cannot tell from it)
+    imitated: of an effect that a law of another shape could be, on one surface: 1 beside the refitted law, else the
+    odds, at most 1, of that law in the place of all such effects, tempered; beside_law: whether it depends on the
+    deflection alone and stands beside a refitted law, which may have another form than the catalogue's
     significance: normal probability, two-sided, with which that of its parameters which the recordings determine best
     differs from its neutral value; its standard deviation counts the errors of the forms
     """
@@ -131,10 +140,12 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     alike = 0 if law else len(explanation.excitation.alike(effect.name))
     return {
         "odds": _limited(odds),
+        "contested": sum(e.probability for e in explanation.evidence if effect.name not in e.names),
         "share": _share(effect),
         **_of_fit(explanation, validation, explanation.remainder),
         "alike": math.log1p(alike),
-        "imitated": float(not law and REFITTED_LAW in names and of_deflection(effect.name)),
+        "imitated": _imitated(effect.name, names, explanation),
+        "beside_law": float(not law and REFITTED_LAW in names and of_deflection(effect.name)),
         "significance": _significance(effect),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),
@@ -192,9 +203,16 @@ def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder)
     }
 
 
-def _imitated(name: str, names: list[str], explanation: Explanation) -> bool:
-    """Whether a law of another shape could be what an effect is, and stands beside it."""
-    return name != REFITTED_LAW and REFITTED_LAW in names and explanation.excitation.within_law(name)
+def _imitated(name: str, names: Sequence[str], explanation: Explanation) -> float:
+    """Return how well a law of another shape could be what an effect is, see `grounds_of_effect`."""
+    within_law = explanation.excitation.within_law
+    if name == REFITTED_LAW or not within_law(name):
+        return 0.0
+    if REFITTED_LAW in names:
+        return 1.0
+    own = {n for n in names if not within_law(n)} | {REFITTED_LAW}
+    instead = next((e for e in explanation.evidence if set(e.names) == own), None)
+    return 0.0 if instead is None else min(instead.probability / max(explanation.probability, 1e-300), 1.0)
 
 
 def _limited(odds: float) -> float:

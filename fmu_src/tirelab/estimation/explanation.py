@@ -62,7 +62,7 @@ BoolArray = NDArray[np.bool_]
 Progress = Callable[[str], None]
 
 NEAR = 4.0
-"""Log posterior odds of the likeliest set over the median one up to which the latter is preferred."""
+"""Log posterior odds of a set over the median or a plainer one up to which the latter is preferred."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +109,14 @@ class Explanation:
     def was_fitted(self, names: Sequence[str]) -> bool:
         """Whether a set was fitted."""
         return self._ranking.of(frozenset(names)) is not None
+
+    def is_near(self, names: Sequence[str], other: Sequence[str]) -> bool:
+        """Whether a set was fitted and is nearly as likely as another one, or likelier."""
+        ranking = self._ranking
+        fits = [ranking.of(frozenset(n)) for n in (names, other)]
+        if fits[0] is None or fits[1] is None:
+            return False
+        return ranking.behind(fits[0]) - ranking.behind(fits[1]) < NEAR
 
     def of(self, names: Sequence[str]) -> Explanation:
         """Return the explanation by another set that was fitted; raises ValueError where it was not."""

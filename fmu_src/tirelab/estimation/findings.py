@@ -106,7 +106,7 @@ UNEXPLAINED_SIZE = LIKE_NOISE
 """Size of a remainder beyond which it is unexplained: more than the noise."""
 
 UNEXPLAINED_SHARE = 0.1
-"""Share of the misfit beyond which a remainder is unexplained: the error of the effects' forms has reached 0.05."""
+"""Share of the misfit beyond which a remainder is unexplained, whatever the forms of the named effects may miss."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,8 @@ class Dependence:
 class Remainder:
     """share: of the misfit's power beyond the noise; size: root mean square over the noise of the recorded samples;
     force [N]; depends: coordinates, the strongest first; uncompared: share of its power that lies where no set is
-    compared with another, at sharp turns of the motion or quicker than the blocks.
+    compared with another, at sharp turns of the motion or quicker than the blocks; of_forms: share of its power that
+    the errors of the named effects' forms account for.
     """
 
     share: float
@@ -133,6 +134,7 @@ class Remainder:
     force: float
     depends: tuple[Dependence, ...]
     uncompared: float = 0.0
+    of_forms: float = 0.0
 
     def to_dict(self) -> dict[str, object]:
         """Return the entry `remainder` of diagnosis.json."""
@@ -141,6 +143,7 @@ class Remainder:
             "size": self.size,
             "rms": self.force,
             "uncompared": self.uncompared,
+            "of_forms": self.of_forms,
             "depends_on": [
                 {"by": d.coordinate, "share": d.share, "from": d.begin, "to": d.end} for d in self.depends
             ],
@@ -149,7 +152,8 @@ class Remainder:
     @property
     def unexplained(self) -> bool:
         """Whether it is something that no named effect explains, and not the error of their forms."""
-        return self.size > UNEXPLAINED_SIZE and self.share > UNEXPLAINED_SHARE
+        beyond_forms = self.size * np.sqrt(1.0 - self.of_forms) > UNEXPLAINED_SIZE
+        return bool(beyond_forms or (self.size > UNEXPLAINED_SIZE and self.share > UNEXPLAINED_SHARE))
 
 
 def remainder_of(fit: Fit) -> Remainder:
@@ -171,7 +175,15 @@ def remainder_of(fit: Fit) -> Remainder:
         force / max(level, 1e-300),
         force,
         _dependences(dataset, fit.residual),
+        of_forms=_of_forms(fit),
     )
+
+
+def _of_forms(fit: Fit) -> float:
+    """Return the share of what a fitted set leaves beyond the noise that the errors of its forms account for."""
+    count = fit.residual.size
+    beyond = fit.unformed - count * (1.0 + fit.form_error**2)
+    return float(1.0 - np.clip(beyond / max(fit.power - count, 1e-300), 0.0, 1.0))
 
 
 def of_the_written_tire(
@@ -187,9 +199,15 @@ def of_the_written_tire(
     force = float(np.sqrt(beyond))
     if force <= compared.force:
         return compared
-    hidden = 1.0 - (compared.force / force) ** 2
-    size = force / max(noise, 1e-300)
-    return replace(compared, share=min(beyond / missed, 1.0), size=size, force=force, uncompared=hidden)
+    part = (compared.force / force) ** 2
+    return replace(
+        compared,
+        share=min(beyond / missed, 1.0),
+        size=force / max(noise, 1e-300),
+        force=force,
+        uncompared=1.0 - part,
+        of_forms=part * compared.of_forms,
+    )
 
 
 def _dependences(dataset: Dataset, left: FloatArray) -> tuple[Dependence, ...]:

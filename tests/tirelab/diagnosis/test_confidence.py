@@ -48,6 +48,7 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         effects=tuple(NamedEffect(n, {}, 0.5, 0.9) for n in names.split()),
         evidence=tuple(Evidence(tuple(n.split()), log, 1.0, (), 0.1) for n, log in sets),
         confounded=more.get("confounded", ()),
+        probability=0.1,
         remainder=LEFT,
         residuals=(np.full(10, 2.0),),
         error=2.0,
@@ -83,6 +84,7 @@ def test_grounds_of_a_verdict_are_those_of_its_definition() -> None:
     assert set(found) == set(OF_VERDICT)
     # Two others of e^-2 each; 6 N held out against 2 N fitted; a misfit of twenty noises.
     assert found["odds"] == pytest.approx(2.0 - np.log(2.0))
+    assert found["contested"] == pytest.approx(0.9)
     assert found["transfer"] == pytest.approx(np.log(3.0))
     assert found["loudness"] == pytest.approx(np.log(20.0))
     assert found["alike"] == pytest.approx(np.log(2.0))
@@ -138,7 +140,24 @@ def test_on_several_surfaces_a_law_of_another_form_can_still_be_an_effect_of_the
     """The verdict is not doubted for it: on several surfaces the catalogue's own law could not be all of it."""
     one = explained("recalibration gas_compression", one_surface=False)
     assert grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=False)["imitated"] == 0.0
-    assert [grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects] == [0.0, 1.0]
+    found = [grounds_of_effect(e, one, HELD_OUT) for e in one.effects]
+    assert [f["imitated"] for f in found] == [0.0, 0.0]
+    assert [f["beside_law"] for f in found] == [0.0, 1.0]
+
+
+def test_a_refitted_law_in_an_effects_place_imitates_it_as_far_as_it_is_likely() -> None:
+    """All sets have the tempered probability 0.1 here: the law is as likely as the air's compression."""
+    one = explained("gas_compression inertia", ("recalibration inertia", 0.0))
+    assert grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=False)["imitated"] == 1.0
+    assert [grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects] == [1.0, 0.0]
+    another = explained("gas_compression inertia", ("recalibration", 0.0))
+    assert grounds_of_verdict(another, HELD_OUT, LEFT, unexplained=False)["imitated"] == 0.0
+
+
+def test_what_speaks_for_sets_without_an_effect_contests_it() -> None:
+    one = explained("inertia viscous_damping", ("inertia", -1.0), ("force_lag", -3.0))
+    inertia, damping = (grounds_of_effect(e, one, HELD_OUT)["contested"] for e in one.effects)
+    assert (inertia, damping) == (pytest.approx(0.1), pytest.approx(0.2))
 
 
 def test_sets_that_are_alike_share_the_odds_of_a_verdict() -> None:
