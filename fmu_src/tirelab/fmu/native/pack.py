@@ -173,6 +173,9 @@ def described(tire: TireModel) -> Element:
     _add_states(variables, states)
     _add_units(root)
 
+    experiment = root.find("DefaultExperiment")
+    assert experiment is not None
+    experiment.set("tolerance", "1e-6")  # of a solver
     simulation.set("providesDirectionalDerivative", "true")
     exchange = Element(
         "ModelExchange",
