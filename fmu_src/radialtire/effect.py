@@ -133,12 +133,14 @@ class Flow:
     respond: as that of the effect, but the numbers `states` of the state are the solver's, and in the state after it
     stand their rates [per s], or their values at the first sample; the others are memory, kept at accepted steps
     states: their indices in the effect's state; names: their names; units: their units
+    whole: index of the number from which those of steps are subtracted to have the solver's; None: they are the same
     """
 
     respond: Response
     states: tuple[int, ...]
     names: tuple[str, ...]
     units: tuple[str, ...]
+    whole: int | None = None
 
 
 @dataclass(frozen=True)

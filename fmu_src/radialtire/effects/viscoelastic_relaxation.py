@@ -206,6 +206,7 @@ VISCOELASTIC_RELAXATION = Effect(
         (1, 2, 3, 4, 5),
         ("relaxed_1", "relaxed_2", "relaxed_3", "relaxed_4", "relaxed_5"),
         ("N", "N", "N", "N", "N"),
+        whole=0,
     ),
     statement="the force relaxes: it is higher after a fast deflection and decays while it is held",
     tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",

@@ -18,6 +18,9 @@ typedef enum {
     TERMINATED = 32
 } State;
 
+/* Beside the states: of one kind of simulation only. */
+enum { OF_EXCHANGE = 64, OF_STEPS = 128 };
+
 enum {
     ANY = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | EVENT | CONTINUOUS | TERMINATED,
     RUNNING = STEP_COMPLETE | EVENT | CONTINUOUS,
@@ -33,18 +36,18 @@ enum {
     MAY_Set = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | EVENT,
     MAY_FMUstate = ANY,
     MAY_GetDirectionalDerivative = INITIALIZATION | RUNNING | TERMINATED,
-    MAY_SetRealInputDerivatives = INSTANTIATED | INITIALIZATION | STEP_COMPLETE,
-    MAY_GetRealOutputDerivatives = STEP_COMPLETE | TERMINATED,
+    MAY_SetRealInputDerivatives = OF_STEPS | INSTANTIATED | INITIALIZATION | STEP_COMPLETE,
+    MAY_GetRealOutputDerivatives = OF_STEPS | STEP_COMPLETE | TERMINATED,
     MAY_DoStep = STEP_COMPLETE,
     MAY_CancelStep = 0,
-    MAY_GetStatus = STEP_COMPLETE | TERMINATED,
+    MAY_GetStatus = OF_STEPS | STEP_COMPLETE | TERMINATED,
     MAY_EnterEventMode = EVENT | CONTINUOUS,
     MAY_NewDiscreteStates = EVENT,
     MAY_EnterContinuousTimeMode = EVENT,
     MAY_CompletedIntegratorStep = CONTINUOUS,
     MAY_SetTime = EVENT | CONTINUOUS,
     MAY_SetContinuousStates = CONTINUOUS,
-    MAY_GetContinuous = INITIALIZATION | EVENT | CONTINUOUS | TERMINATED,
+    MAY_GetContinuous = OF_EXCHANGE | INITIALIZATION | EVENT | CONTINUOUS | TERMINATED,
     MAY_GetNominalsOfContinuousStates = INSTANTIATED | MAY_GetContinuous
 };
 

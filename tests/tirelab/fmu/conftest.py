@@ -20,6 +20,7 @@ from loader_bench import HERE, Bench, unpacked
 from radialtire import TireModel
 from tirelab.fmu.build import build_fmu
 from tirelab.fmu.loader import NO_COMPILER, Compiler, compile_loader, find_compiler
+from tirelab.fmu.native.pack import build_native_fmu
 
 HOSTS = Path(__file__).parent / "hosts"
 
@@ -28,6 +29,16 @@ HOSTS = Path(__file__).parent / "hosts"
 def article_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The FMU of the article's tire, with the loader where there is a compiler."""
     return build_fmu(TireModel(), tmp_path_factory.mktemp("article")).path
+
+
+@pytest.fixture(scope="session", params=["Python", "native"])
+def either_fmu(
+    request: pytest.FixtureRequest, article_fmu: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
+    """The article's tire as each kind of FMU, FMI 2.0."""
+    if request.param == "Python":
+        return article_fmu
+    return build_native_fmu(TireModel(), tmp_path_factory.mktemp("native")).path
 
 
 @pytest.fixture(scope="session")

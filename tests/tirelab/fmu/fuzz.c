@@ -93,8 +93,10 @@ int main(int argc, char **argv)
                     void *copy = NULL;
                     status = fmi2SerializeFMUstate(tire, state, bytes, size);
                     if (draw(2))
-                        bytes[draw((unsigned)size)] ^= (char)draw(256);
-                    status |= fmi2DeSerializeFMUstate(tire, bytes, draw(3) ? size : draw((unsigned)size), &copy);
+                        change((unsigned char *)bytes, size);
+                    status |= fmi2DeSerializeFMUstate(tire, bytes, draw(9) ? size : draw((unsigned)size), &copy);
+                    if (copy && draw(2))
+                        counted(fmi2SetFMUstate(tire, copy));
                     fmi2FreeFMUstate(tire, &copy);
                     free(bytes);
                 }

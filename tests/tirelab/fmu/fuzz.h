@@ -33,6 +33,21 @@ static double real(void)
 /* A value reference: most often an input, now and then a parameter, seldom any number at all. */
 static unsigned reference(void) { return draw(20) ? draw(4) ? draw(2) : draw(120) : draw(1u << 31) * 2; }
 
+/* Change the bytes of a state, most often in one place or a double; half of the times the sum at their end is right. */
+static void change(unsigned char *bytes, size_t size)
+{
+    unsigned long long sum = 14695981039346656037u;
+    const double value = real();
+    if (draw(2))
+        bytes[draw((unsigned)size)] ^= (unsigned char)draw(256);
+    else
+        memcpy(bytes + 8 * draw((unsigned)(size / 8)), &value, sizeof value);
+    for (size_t i = 0; i < size - sizeof sum; i++)
+        sum = (sum ^ bytes[i]) * 1099511628211u;
+    if (draw(2))
+        memcpy(bytes + size - sizeof sum, &sum, sizeof sum);
+}
+
 static long calls, taken, refused, messages;
 static void counted(int status)
 {

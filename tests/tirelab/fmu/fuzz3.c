@@ -88,9 +88,9 @@ static int written(void *tire, void *state)
     uint8_t *bytes = malloc(size);
     status = fmi3SerializeFMUState(tire, state, bytes, size);
     if (draw(2))
-        bytes[draw((unsigned)size)] ^= (uint8_t)draw(256);
+        change(bytes, size);
     counted(status);
-    status = fmi3DeserializeFMUState(tire, bytes, draw(3) ? size : draw((unsigned)size), &copy);
+    status = fmi3DeserializeFMUState(tire, bytes, draw(9) ? size : draw((unsigned)size), &copy);
     if (copy && draw(2))
         counted(fmi3SetFMUState(tire, copy));
     fmi3FreeFMUState(tire, &copy);

@@ -30,9 +30,14 @@ class Callbacks(Structure):
 
 
 class Unit:
-    """One instance in Continuous-Time Mode; `inputs` are its input variables in the order of their references."""
+    """One instance in Continuous-Time Mode; `start` are its inputs in the order of their references.
 
-    def __init__(self, folder: Path, start: Sequence[float], *, exchange: bool = True) -> None:
+    exchange: whether in Model Exchange; begun: whether it has left Initialization Mode
+    """
+
+    def __init__(
+        self, folder: Path, start: Sequence[float], *, exchange: bool = True, begun: bool = True
+    ) -> None:
         self.library = CDLL(str(folder / "binaries" / "linux64" / "BicycleTire.so"))
         self.messages: list[str] = []
         self._log = LOGGER(lambda _e, _n, _s, _c, text: self.messages.append(text.decode()))
@@ -53,8 +58,9 @@ class Unit:
         self("SetupExperiment", 0, c_double(0), c_double(0), 0, c_double(0))
         self("EnterInitializationMode")
         self.set(start)
-        self("ExitInitializationMode")
-        if exchange:
+        if begun:
+            self("ExitInitializationMode")
+        if begun and exchange:
             self("NewDiscreteStates", byref((c_double * 4)()))
             self("EnterContinuousTimeMode")
 
@@ -87,6 +93,14 @@ class Unit:
         row = (c_double * max(self.states, 1))()
         self("GetContinuousStates", row, c_size_t(self.states))
         return list(row[: self.states])
+
+    def indicator(self) -> float:
+        value = c_double()
+        self("GetEventIndicators", byref(value), c_size_t(1))
+        return value.value
+
+    def step(self, time: float, width: float) -> None:
+        self("DoStep", c_double(time), c_double(width), 1)
 
     def accept(self) -> None:
         self("CompletedIntegratorStep", 1, byref(c_int()), byref(c_int()))

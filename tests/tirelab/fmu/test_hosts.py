@@ -40,6 +40,14 @@ def test_co_simulation_masters(run_host: Run, article_fmu: Path, package: str) -
     assert forces(printed) == pytest.approx(FORCES, rel=1e-12)
 
 
+def test_pyfmi(run_host: Run, article_fmu: Path) -> None:
+    if importlib.util.find_spec("pyfmi") is None:
+        pytest.skip("PyFMI is not installed; PyPI has only its source, which wants the FMI Library")
+    assert forces(run_host("with_pyfmi.py", article_fmu, "CS", job=INPUTS)) == pytest.approx(
+        FORCES, rel=1e-12
+    )
+
+
 def test_fmutool_finds_it_compliant(run_host: Run, article_fmu: Path) -> None:
     pytest.importorskip("fmutool")
     printed = run_host("with_fmutool.py", article_fmu, job=None)

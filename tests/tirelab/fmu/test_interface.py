@@ -12,6 +12,7 @@ import pytest
 from radialtire import PowerLaw, TireModel, read_tire
 from radialtire.effects import CATALOGUE
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.native.pack import build_native_fmu
 
 Run = Callable[..., Any]
 FLAT = 1e5
@@ -73,22 +74,22 @@ def test_triangle_test_of_the_article(run_fmpy: Run, article_fmu: Path, radius_c
     assert all(inside for _, inside in answers)
 
 
-def test_a_get_after_a_set_without_a_step_gives_the_new_value(run_fmpy: Run, article_fmu: Path) -> None:
+def test_a_get_after_a_set_without_a_step_gives_the_new_value(run_fmpy: Run, either_fmu: Path) -> None:
     calls: list[list[object]] = [[0, "set", {"deflection": 0.01}], [0, "step", 0.0, 0.1]]
     calls += [[0, "set", {"deflection": 0.02}]]
-    answers = run_fmpy([article_fmu], [*calls, [0, "get", ["radial_force", "radial_stiffness"]]])
+    answers = run_fmpy([either_fmu], [*calls, [0, "get", ["radial_force", "radial_stiffness"]]])
     assert answers[-1][0] == pytest.approx(article_force(2.0, math.inf), rel=TOLERANCE)
     assert answers[-1][1] == pytest.approx(100 * 550.9 * 1.422 * 2.0**0.422, rel=TOLERANCE)
 
 
-def test_a_parameter_can_be_set(run_fmpy: Run, article_fmu: Path) -> None:
+def test_a_parameter_can_be_set(run_fmpy: Run, either_fmu: Path) -> None:
     """With the second reading of E0 the secant on the 1.27 cm bump is the article's 2.3e4 N/m (2.36e4)."""
     name = "law.convex_coefficient_decay"
     calls = [
         [0, "set", {name: 0.02519, "deflection": 0.0127, "surface_radius": 0.0127}],
         [0, "step", 0.0, 0.1],
     ]
-    answers = run_fmpy([article_fmu], [*calls, [0, "get", ["radial_force", name]]])
+    answers = run_fmpy([either_fmu], [*calls, [0, "get", ["radial_force", name]]])
     assert answers[-1][0] / 0.0127 == pytest.approx(2.36e4, abs=50)
     assert answers[-1][1] == 0.02519
 
@@ -107,7 +108,7 @@ def test_a_parameter_can_be_set(run_fmpy: Run, article_fmu: Path) -> None:
     ],
 )
 def test_bad_input_is_an_error_with_one_message_and_the_unit_goes_on(
-    run_fmpy: Run, article_fmu: Path, inputs: dict[str, float], words: list[str]
+    run_fmpy: Run, either_fmu: Path, inputs: dict[str, float], words: list[str]
 ) -> None:
     good = {
         "deflection": 0.02,
@@ -118,7 +119,7 @@ def test_bad_input_is_an_error_with_one_message_and_the_unit_goes_on(
     good["law.convex_coefficient_drop"] = 337.8
     step_and_get = [[0, "step", 0.0, 0.1], [0, "get", ["radial_force"]]]
     calls = [[0, "set", inputs], *step_and_get, [0, "set", good], *step_and_get]
-    _, refused, _, _, accepted, force = run_fmpy([article_fmu], calls)
+    _, refused, _, _, accepted, force = run_fmpy([either_fmu], calls)
     assert refused["status"] == 3  # fmi2Error: after fmi2Discard masters try the same step again for ever
     assert len(refused["messages"]) == 1
     for word in words:
@@ -139,10 +140,10 @@ def test_bad_input_is_an_error_with_one_message_and_the_unit_goes_on(
     ],
 )
 def test_a_step_of_no_length_or_from_elsewhere_is_refused(
-    run_fmpy: Run, article_fmu: Path, time: float, width: float, words: list[str]
+    run_fmpy: Run, either_fmu: Path, time: float, width: float, words: list[str]
 ) -> None:
     _, _, refused, accepted = run_fmpy(
-        [article_fmu],
+        [either_fmu],
         [
             [0, "set", {"deflection": 0.01}],
             [0, "step", 0.0, 1.0],
@@ -156,15 +157,15 @@ def test_a_step_of_no_length_or_from_elsewhere_is_refused(
     assert accepted is None
 
 
-def test_a_time_that_was_added_up_is_not_taken_for_a_jump(run_fmpy: Run, article_fmu: Path) -> None:
+def test_a_time_that_was_added_up_is_not_taken_for_a_jump(run_fmpy: Run, either_fmu: Path) -> None:
     """Ten times 0.1 is not 1; of a thousand steps the host's own sum is 1e-13 off."""
     calls: list[list[object]] = [[0, "step", 0.1 * i, 0.1] for i in range(1000)]
-    assert run_fmpy([article_fmu], calls) == [None] * 1000
+    assert run_fmpy([either_fmu], calls) == [None] * 1000
 
 
 @pytest.mark.parametrize("name", ["radial_force", "radial_stiffness"])
-def test_an_output_cannot_be_set(run_fmpy: Run, article_fmu: Path, name: str) -> None:
-    refused, stepped = run_fmpy([article_fmu], [[0, "set", {name: 1.0}], [0, "step", 0.0, 0.1]])
+def test_an_output_cannot_be_set(run_fmpy: Run, either_fmu: Path, name: str) -> None:
+    refused, stepped = run_fmpy([either_fmu], [[0, "set", {name: 1.0}], [0, "step", 0.0, 0.1]])
     assert refused["status"] == 3
     assert refused["messages"] == [[3, f"{name} = 1 cannot be set; set inputs and parameters only"]]
     assert stepped is None
@@ -181,13 +182,14 @@ def test_two_tires_in_one_process_give_two_forces(run_fmpy: Run, article_fmu: Pa
     assert answers[-1][0] == pytest.approx(718.5 * 2**1.4, rel=TOLERANCE)
 
 
-@pytest.fixture(scope="module")
-def friction_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture(scope="module", params=[build_fmu, build_native_fmu], ids=["Python", "native"])
+def friction_fmu(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A tire whose force depends on its history."""
     friction = CATALOGUE["rate_independent_hysteresis"]
     values = tuple({"slip_force": 50.0, "reach": 1e-3}.get(p.name, p.start) for p in friction.parameters)
     tire = TireModel(effects=((friction, values),))
-    return build_fmu(tire, tmp_path_factory.mktemp("friction")).path
+    path: Path = request.param(tire, tmp_path_factory.mktemp("friction")).path
+    return path
 
 
 def test_states_of_effects_are_saved_and_restored(run_fmpy: Run, friction_fmu: Path) -> None:
@@ -257,13 +259,13 @@ def test_without_the_loader_the_fmu_runs_in_python_hosts(run_fmpy: Run, tmp_path
     assert answers[-1][0] == pytest.approx(550.9, rel=TOLERANCE)
 
 
-def test_tested_range_is_the_articles(run_fmpy: Run, article_fmu: Path) -> None:
+def test_tested_range_is_the_articles(run_fmpy: Run, either_fmu: Path) -> None:
     def inside(deflection: float, radius: float) -> bool:
         calls = [
             [0, "set", {"deflection": deflection, "surface_radius": radius}],
             [0, "get", ["in_tested_range"]],
         ]
-        return bool(run_fmpy([article_fmu], calls)[-1][0])
+        return bool(run_fmpy([either_fmu], calls)[-1][0])
 
     assert inside(0.025, math.inf)
     assert inside(-0.01, math.inf)

@@ -72,8 +72,8 @@ def cells(table: str, states: tuple[str, ...]) -> list[tuple[str, str, bool]]:
 
 
 @pytest.fixture(scope="module")
-def in_each_state(run_host: Run, article_fmu: Path) -> dict[str, Any]:
-    answers = json.loads(run_host("in_each_state.py", article_fmu, job=None))
+def in_each_state(run_host: Run, either_fmu: Path) -> dict[str, Any]:
+    answers = json.loads(run_host("in_each_state.py", either_fmu, job=None))
     assert isinstance(answers, dict)
     return answers
 
@@ -119,20 +119,20 @@ NAN_AFTER_HALF_A_SECOND = """
     ],
 )
 def test_fmpys_simulation_ends_by_itself_after_an_input_that_no_tire_has(
-    article_fmu: Path, value: str, radius: str, word: str
+    either_fmu: Path, value: str, radius: str, word: str
 ) -> None:
     """It retries a discarded step for ever: half a gigabyte of messages in ten minutes."""
     code = textwrap.dedent(NAN_AFTER_HALF_A_SECOND.format(value=value, radius=radius))
     done = subprocess.run(
-        [sys.executable, "-I", "-c", code, str(article_fmu)], capture_output=True, text=True, timeout=120
+        [sys.executable, "-I", "-c", code, str(either_fmu)], capture_output=True, text=True, timeout=120
     )
     assert "status 3" in done.stdout
     assert (done.stdout + done.stderr).count(word) == 1
 
 
 @pytest.fixture(scope="module")
-def tire(article_fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return unpacked_archive(article_fmu, tmp_path_factory.mktemp("standard"))
+def tire(either_fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return unpacked_archive(either_fmu, tmp_path_factory.mktemp("standard"))
 
 
 def test_a_master_that_retries_what_is_discarded_ends(bench: Bench, tire: Path) -> None:
@@ -163,17 +163,10 @@ def test_the_last_successful_time_is_a_number_from_the_start(tire: Path) -> None
     assert (first, second, third, fourth) == (2.0, 2.5, 2.5, 0.0)
 
 
-@pytest.fixture(scope="module")
-def native_tire(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("native")
-    return unpacked_archive(build_native_fmu(TireModel(), folder).path, folder / "fmu")
-
-
-@pytest.mark.parametrize("kind", ["tire", "native_tire"])
-def test_a_step_past_the_stop_time_is_refused(request: pytest.FixtureRequest, kind: str) -> None:
+def test_a_step_past_the_stop_time_is_refused(tire: Path) -> None:
     """FMI 2.0.5, 2.1.5: fmi2Error; a step that ends there as a host adds its times up is made."""
     printed = with_instance(
-        request.getfixturevalue(kind),
+        tire,
         """[
             library.fmi2SetupExperiment(tire, 0, c_double(0), c_double(1.0), 1, c_double(0.5)),
             library.fmi2SetupExperiment(tire, 0, c_double(0), c_double(0.0), 1, c_double(float("nan"))),
@@ -210,18 +203,21 @@ def test_unknown_references_are_refused(tire: Path) -> None:
     assert answers == [[3, 3, 2], [3, 3, 4], [3, 3, 6], [3, 3, 8]]
 
 
-def test_the_stiffness_where_the_contact_begins_is_that_of_the_air(run_fmpy: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize("build", [build_fmu, build_native_fmu], ids=["Python", "native"])
+def test_the_stiffness_where_the_contact_begins_is_that_of_the_air(
+    run_fmpy: Run, tmp_path: Path, build: Callable[..., Any]
+) -> None:
     """At x = 0, coming from the air, a damper's jump over the difference's width would be 4e8 N/m."""
     for name in ("viscous_damping", "rate_independent_hysteresis"):
         effect = CATALOGUE[name]
-        fmu = build_fmu(TireModel(effects=((effect, effect.nominal),)), tmp_path / name).path
+        fmu = build(TireModel(effects=((effect, effect.nominal),)), tmp_path / name).path
         calls: list[list[object]] = []
         for i, x in enumerate((-0.02, -0.01, 0.0)):
             calls += [[0, "set", {"deflection": x}], [0, "step", 0.1 * i, 0.1]]
         assert run_fmpy([fmu], [*calls, [0, "get", ["radial_stiffness", "radial_force"]]])[-1] == [0.0, 0.0]
 
 
-def test_the_first_instance_starts_no_other_program(bench: Bench, tire: Path, tmp_path: Path) -> None:
+def test_the_first_instance_starts_no_other_program(bench: Bench, article_fmu: Path, tmp_path: Path) -> None:
     """Where the library is beside the program, there is no need of a shell and of a second interpreter."""
     program = Path(sys.executable).resolve()
     library = program.parents[1] / "lib" / f"lib{program.name}.so.1.0"
@@ -231,7 +227,10 @@ def test_the_first_instance_starts_no_other_program(bench: Bench, tire: Path, tm
     (tmp_path / "python").write_text(f"#!/bin/sh\ntouch {tmp_path}/started\n")
     (tmp_path / "python").chmod(0o755)
     alone = {"PATH": str(tmp_path), "VIRTUAL_ENV": "", "TIRELAB_LIBPYTHON": ""}
-    assert float(bench.run("first", fmu=tire, environment=alone)) > 0.0
+    assert (
+        float(bench.run("first", fmu=unpacked_archive(article_fmu, tmp_path / "fmu"), environment=alone))
+        > 0.0
+    )
     assert not (tmp_path / "started").exists()
 
 

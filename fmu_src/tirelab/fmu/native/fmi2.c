@@ -248,5 +248,15 @@ EXPORT Status fmi2SetTime(void *c, double time)
 STATES_OF(SetContinuousStates, MAY_SetContinuousStates, const double, set_states)
 STATES_OF(GetContinuousStates, MAY_GetContinuous, double, get_states)
 STATES_OF(GetDerivatives, MAY_GetContinuous, double, get_rates)
-STATES_OF(GetEventIndicators, MAY_GetContinuous, double, get_indicators)
 STATES_OF(GetNominalsOfContinuousStates, MAY_GetNominalsOfContinuousStates, double, get_nominals)
+
+/* In centimetres, and never 0: the standard wants indicators of the order of one that tell their sign at each event. */
+EXPORT Status fmi2GetEventIndicators(void *c, double x[], size_t n)
+{
+    ENTER(MAY_GetContinuous, "fmi2GetEventIndicators")
+    double deflection;
+    const Status status = instance_get_indicators(self, &deflection, x ? n : 0);
+    if (status < ERROR)
+        x[0] = deflection != 0 ? deflection / 0.01 : -1e-10;
+    return status;
+}

@@ -15,8 +15,8 @@ enum {
     MAY_SET_3 = BEFORE | RUNNING,
     MAY_SET_DISCRETE_3 = BEFORE | STEP_COMPLETE | EVENT,
     MAY_DERIVE_3 = INITIALIZATION | RUNNING | TERMINATED,
-    MAY_NUMBER_3 = BEFORE | EVENT | CONTINUOUS | TERMINATED,
-    MAY_NOMINALS_3 = INITIALIZATION | EVENT | CONTINUOUS | TERMINATED
+    MAY_NUMBER_3 = OF_EXCHANGE | BEFORE | EVENT | CONTINUOUS | TERMINATED,
+    MAY_NOMINALS_3 = OF_EXCHANGE | INITIALIZATION | EVENT | CONTINUOUS | TERMINATED
 };
 
 /* '#' is doubled: single ones enclose value references. */
@@ -33,14 +33,15 @@ static void teller(const Instance *self, Status status, String category, String 
 
 typedef void (*Logger)(void *environment, Status, String category, String message);
 
-static Instance *instantiated(String name, String token, String resources, bool exchange, void *environment, Logger logger,
-                              String refused)
+static Instance *instantiated(String name, String token, String resources, bool exchange, bool logging, void *environment,
+                              Logger logger, String refused)
 {
     Instance how;
     memset(&how, 0, sizeof how);
     how.teller = teller;
     how.logger = (void (*)(void))logger;
     how.environment = environment;
+    how.quiet = !logging;
     how.tire.exchange = exchange;
     how.tire.newer = true;
     if (!refused)
@@ -54,16 +55,16 @@ EXPORT String fmi3GetVersion(void) { return "3.0"; }
 EXPORT void *fmi3InstantiateModelExchange(String name, String token, String resources, bool visible, bool logging,
                                           void *environment, Logger logger)
 {
-    (void)visible, (void)logging; /* the messages are few: all of them are told */
-    return instantiated(name, token, resources, true, environment, logger, NULL);
+    (void)visible;
+    return instantiated(name, token, resources, true, logging, environment, logger, NULL);
 }
 
 EXPORT void *fmi3InstantiateCoSimulation(String name, String token, String resources, bool visible, bool logging,
                                          bool event_mode, bool early_return, const Reference intermediate[], size_t n,
                                          void *environment, Logger logger, void (*update)(void))
 {
-    (void)visible, (void)logging, (void)early_return, (void)intermediate, (void)n, (void)update;
-    return instantiated(name, token, resources, false, environment, logger,
+    (void)visible, (void)early_return, (void)intermediate, (void)n, (void)update;
+    return instantiated(name, token, resources, false, logging, environment, logger,
                         event_mode ? "eventModeUsed is true, but this FMU has no Event Mode in Co-Simulation" : NULL);
 }
 
@@ -71,8 +72,8 @@ EXPORT void *fmi3InstantiateScheduledExecution(String name, String token, String
                                                void *environment, Logger logger, void (*update)(void), void (*lock)(void),
                                                void (*unlock)(void))
 {
-    (void)visible, (void)logging, (void)update, (void)lock, (void)unlock;
-    return instantiated(name, token, resources, false, environment, logger,
+    (void)visible, (void)update, (void)lock, (void)unlock;
+    return instantiated(name, token, resources, false, logging, environment, logger,
                         "this FMU has no Scheduled Execution; use Co-Simulation or Model Exchange");
 }
 
@@ -80,8 +81,14 @@ EXPORT void fmi3FreeInstance(void *c) { instance_free(c); }
 
 EXPORT Status fmi3SetDebugLogging(void *c, bool on, size_t n, const String categories[])
 {
-    (void)on, (void)n, (void)categories;
     ENTER(ANY, "fmi3SetDebugLogging")
+    if (n && !categories)
+        return fail(self, "the categories are NULL");
+    if (!n)
+        self->quiet = !on;
+    for (size_t i = 0; i < n; i++) /* errors are told whatever the host says */
+        if (categories[i] && !strcmp(categories[i], "logStatusDiscard"))
+            self->quiet = !on;
     return OK;
 }
 
@@ -326,8 +333,14 @@ EXPORT Status fmi3SetTime(void *c, double time)
 STATES_OF(SetContinuousStates, CONTINUOUS, const double, set_states)
 STATES_OF(GetContinuousStates, MAY_NOMINALS_3, double, get_states)
 STATES_OF(GetContinuousStateDerivatives, MAY_NOMINALS_3, double, get_rates)
-STATES_OF(GetEventIndicators, MAY_NOMINALS_3, double, get_indicators)
 STATES_OF(GetNominalsOfContinuousStates, MAY_NOMINALS_3, double, get_nominals)
+
+/* The variable contact_deflection, whose nominal value says of which order it is. */
+EXPORT Status fmi3GetEventIndicators(void *c, double x[], size_t n)
+{
+    ENTER(MAY_NOMINALS_3, "fmi3GetEventIndicators")
+    return instance_get_indicators(self, x, n);
+}
 
 #define NUMBER_OF(Name, value) \
     EXPORT Status fmi3GetNumberOf##Name(void *c, size_t *n) \

@@ -85,7 +85,7 @@ def _add_own(variables: Element) -> None:
             CONTACT,
             first + CONTACT_OFFSET,
             "The tire's own deflection, whose sign tells of contact",
-            {"causality": "local", "initial": "calculated", "unit": "m"},
+            {"causality": "local", "initial": "calculated", "unit": "m", "nominal": "0.01"},
         ),
     ):
         known = {"name": name, "valueReference": str(reference), "description": text}

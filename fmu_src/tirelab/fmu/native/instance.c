@@ -11,7 +11,7 @@ Status tell(const Instance *self, Status status, String text)
 {
     static const char *const categories[] = {"logAll", "logStatusWarning", "logStatusDiscard", "logStatusError",
                                              "logStatusFatal", "logAll"};
-    if (self->logger)
+    if (self->logger && !(self->quiet && status == DISCARD))
         self->teller(self, status, categories[status], text);
     return status;
 }
@@ -30,7 +30,8 @@ static State stage(const Instance *self) { return (State)self->tire.m.stage; }
 
 bool not_allowed(const Instance *self, String function)
 {
-    fail(self, "%s is not allowed in the state \"%s\"", function, state_name(stage(self)));
+    fail(self, "%s is not allowed in the state \"%s\" of %s", function, state_name(stage(self)),
+         self->tire.exchange ? "Model Exchange" : "Co-Simulation");
     return false;
 }
 
@@ -231,6 +232,9 @@ Status instance_derivatives(Instance *self, const Reference unknown[], size_t un
 {
     if (!given(self, unknown, unknowns, x) || !given(self, known, knowns, seed))
         return ERROR;
+    for (size_t i = 0; i < knowns; i++)
+        if (!isfinite(seed[i]))
+            return fail(self, "the seed of value reference %u is not a finite number", known[i]);
     evaluate(self, false);
     for (size_t i = 0; i < unknowns; i++) {
         const int state = tire_state_variable(&self->tire, unknown[i]);
@@ -286,6 +290,12 @@ Status instance_get_states(Instance *self, double x[], size_t n)
 {
     if (!fits(self, x, n))
         return ERROR;
+    if (stage(self) == INITIALIZATION) { /* they follow from the start's inputs */
+        double rates[MOST_CONTINUOUS];
+        evaluate(self, false);
+        tire_flow(&self->tire, x, rates);
+        return OK;
+    }
     for (size_t i = 0; i < n; i++)
         x[i] = self->tire.m.s[self->tire.continuous[i]];
     return OK;
@@ -295,9 +305,14 @@ Status instance_get_rates(Instance *self, double x[], size_t n)
 {
     if (!fits(self, x, n))
         return ERROR;
-    const Status status = evaluate(self, true);
+    const Status status = evaluate(self, stage(self) != INITIALIZATION);
+    if (stage(self) == INITIALIZATION) {
+        double states[MOST_CONTINUOUS];
+        tire_flow(&self->tire, states, x);
+        return status;
+    }
     for (size_t i = 0; i < n; i++)
-        x[i] = self->tire.bare ? 0 : self->tire.n[self->tire.continuous[i]];
+        x[i] = self->tire.n[self->tire.continuous[i]];
     return status;
 }
 

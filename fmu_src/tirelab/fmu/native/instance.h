@@ -16,6 +16,7 @@ struct Instance {
     void (*logger)(void);
     void *environment;
     char *name;
+    bool quiet; /* discarded calls are not told */
 };
 
 #ifdef _WIN32
@@ -38,7 +39,8 @@ SELDOM bool not_allowed(const Instance *, String function);
 
 static inline bool allowed(const Instance *self, int states, String function)
 {
-    return self && (self->tire.m.stage & states || not_allowed(self, function));
+    const int other = self && self->tire.exchange ? OF_STEPS : OF_EXCHANGE;
+    return self && ((self->tire.m.stage & states && !(states & other)) || not_allowed(self, function));
 }
 
 /* Tell the host of a status; the status. */
@@ -109,7 +111,7 @@ Status instance_set_states(Instance *, const double x[], size_t n);
 Status instance_get_states(Instance *, double x[], size_t n);
 Status instance_get_rates(Instance *, double x[], size_t n);
 Status instance_get_nominals(Instance *, double x[], size_t n);
-Status instance_get_indicators(Instance *, double x[], size_t n);
+Status instance_get_indicators(Instance *, double x[], size_t n); /* the tire's own deflection [m] */
 Status instance_accept(Instance *);
 
 #endif

@@ -126,11 +126,12 @@ def compile_for(platform: Platform, fmi: int, destination: Path, cache: Path | N
 def main(words: Sequence[str]) -> None:
     """Write the kernel and the binaries; `words` are platforms in FMI 3's names, all where there is none."""
     write_kernel()
-    for platform, fmi in itertools.product(PLATFORMS, VERSIONS):
-        if not words or platform.fmi3 in words:
-            library = platform.library(fmi)
-            compile_for(platform, fmi, library)
-            print(f"{library}: {library.stat().st_size} bytes")
+    with tempfile.TemporaryDirectory(prefix="tirelab_") as cache:  # ziglang makes a platform's C library once
+        for platform, fmi in itertools.product(PLATFORMS, VERSIONS):
+            if not words or platform.fmi3 in words:
+                library = platform.library(fmi)
+                compile_for(platform, fmi, library, Path(cache))
+                print(f"{library}: {library.stat().st_size} bytes", flush=True)
 
 
 if __name__ == "__main__":

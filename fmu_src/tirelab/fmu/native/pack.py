@@ -41,11 +41,15 @@ class NativeFmu:
 
 @dataclass(frozen=True)
 class ContinuousState:
-    """A state of a solver: its name, its unit, and its index in the kernel's state."""
+    """A state of a solver: its name, its unit, and its index in the kernel's state.
+
+    whole: index of the number that is the sum of this state and of what the steps keep in its place; else `index`
+    """
 
     name: str
     unit: str
     index: int
+    whole: int
 
 
 def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFmu:
@@ -94,7 +98,9 @@ def continuous_states(tire: TireModel) -> list[ContinuousState]:
         if flow is not None:
             (stage,) = (stage for stage in stages if stage.respond is effect.respond)
             for index, name, unit in zip(flow.states, flow.names, flow.units, strict=True):
-                found.append(ContinuousState(f"{effect.name}.{name}", unit, stage.state + index))
+                whole = index if flow.whole is None else flow.whole
+                indices = stage.state + index, stage.state + whole
+                found.append(ContinuousState(f"{effect.name}.{name}", unit, *indices))
     return found
 
 
@@ -110,13 +116,13 @@ def data(tire: TireModel, guid: str) -> bytes:
     )
     states = continuous_states(tire)
     lines = [
-        f"tirelab-tire 1 {kernel.layout()}",
+        f"tirelab-tire 2 {kernel.layout()}",
         f"guid {guid}",
         _row("law", law),
         _row("effects", effects),
         _row("range", bounds),
         f"bare {int(tire.bare)}",
-        " ".join(map(str, ["continuous", len(states), *(state.index for state in states)])),
+        " ".join(["continuous", str(len(states)), *(f"{state.index} {state.whole}" for state in states)]),
         f"parameters {len(parameters_of(tire))}",
     ]
     places = kernel.places()
@@ -167,6 +173,9 @@ def described(tire: TireModel) -> Element:
     _add_states(variables, states)
     _add_units(root)
 
+    experiment = root.find("DefaultExperiment")
+    assert experiment is not None
+    experiment.set("tolerance", "1e-6")  # of a solver
     simulation.set("providesDirectionalDerivative", "true")
     exchange = Element(
         "ModelExchange",
@@ -240,7 +249,7 @@ def _add_states(variables: Element, states: list[ContinuousState]) -> None:
     first = len(variables)
     local = {"causality": "local", "variability": "continuous", "initial": "calculated"}
     for state in states:
-        one = _variable(variables, state.name, "State of a solver in Model Exchange", **local)
+        one = _variable(variables, state.name, "State that a solver integrates in Model Exchange", **local)
         SubElement(one, "Real", unit=state.unit)
     for number, state in enumerate(states, first + 1):
         one = _variable(variables, f"der({state.name})", f"Rate of {state.name}", **local)

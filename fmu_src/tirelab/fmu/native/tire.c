@@ -10,7 +10,7 @@
 #include <windows.h>
 #endif
 
-#define VERSION "tirelab-tire 1"
+#define VERSION "tirelab-tire 2"
 #define MOST_BYTES (1 << 20) /* of a data file: a tire of a thousand surfaces has 50 kB */
 
 static const double FLAT = 1e5;    /* start value of the surface radius [m] */
@@ -90,14 +90,15 @@ static char *read_file(const char *resources, char trouble[TROUBLE])
     char *text = malloc(MOST_BYTES + 1);
     size_t length = text ? fread(text, 1, MOST_BYTES, file) : 0;
     fclose(file);
-    if (text) {
-        text[length] = 0;
-        if (strlen(text) != length)
-            text[0] = 0;
-        char *less = realloc(text, length + 1);
-        text = less ? less : text;
+    if (!text) {
+        snprintf(trouble, TROUBLE, "no memory to read tire.dat");
+        return NULL;
     }
-    return text;
+    text[length] = 0;
+    if (strlen(text) != length)
+        text[0] = 0;
+    char *less = realloc(text, length + 1);
+    return less ? less : text;
 }
 
 /* FNV-1a. */
@@ -177,7 +178,7 @@ static bool tables_fit(const double *q, size_t length)
 static bool parse(Tire *tire, char *at)
 {
     size_t length;
-    long number, index;
+    long number, index, whole;
     if (!is(&at, "guid"))
         return false;
     snprintf(tire->guid, sizeof tire->guid, "%s", word(&at));
@@ -200,9 +201,10 @@ static bool parse(Tire *tire, char *at)
         return false;
     tire->continuous_count = (int)number;
     for (int i = 0; i < tire->continuous_count; i++) {
-        if (!count(&at, STATES - 1, &index))
+        if (!count(&at, STATES - 1, &index) || !count(&at, STATES - 1, &whole))
             return false;
         tire->continuous[i] = (int)index;
+        tire->whole[i] = (int)whole;
     }
     if (!is(&at, "parameters") || !count(&at, 1000, &number))
         return false;
@@ -473,6 +475,31 @@ void tire_reset(Tire *tire)
     tire->force = NAN;
 }
 
+/* Whether steps keep, in the place of a solver's state, what is missing from it to a whole. */
+static bool complements(const Tire *tire, int state)
+{
+    return !tire->exchange && tire->whole[state] != tire->continuous[state];
+}
+
+void tire_flow(Tire *tire, double states[], double rates[])
+{
+    const bool first = tire->m.s[S_STARTED] == 0; /* the try has found the states to begin with */
+    double s[STATES], n[STATES];
+    memcpy(s, first ? tire->n : tire->m.s, sizeof s);
+    for (int i = 0; i < tire->continuous_count; i++) {
+        const int at = tire->continuous[i];
+        if (complements(tire, i))
+            s[at] = s[tire->whole[i]] - s[at];
+        states[i] = s[at];
+    }
+    s[S_STARTED] = 1;
+    tire->p[P_CONTINUOUS] = 1;
+    tire_step(tire->coefficients, moving(tire, tire->m.time), tire->p, s, n);
+    tire->p[P_CONTINUOUS] = tire->exchange;
+    for (int i = 0; i < tire->continuous_count; i++)
+        rates[i] = isfinite(tire->force) ? n[tire->continuous[i]] : NAN;
+}
+
 double tire_tangent(Tire *tire)
 {
     if (!isfinite(tire->force))
@@ -547,9 +574,12 @@ bool tire_derivative(Tire *tire, unsigned unknown, const unsigned known[], const
     memcpy(law, tire->q, sizeof law);
     memcpy(effects, tire->p, sizeof effects);
     for (int side = 0; side < 2; side++) {
-        for (size_t i = 0; i < count; i++)
+        for (size_t i = 0; i < count; i++) {
+            const int state = tire_state_variable(tire, known[i]);
+            const bool turned = state >= 0 && complements(tire, state);
             if (!(known[i] == SURFACE_RADIUS && radius_kept))
-                *moved(tire, known[i]) += (side ? -width : width) * seed[i];
+                *moved(tire, known[i]) += (side != turned ? -width : width) * seed[i];
+        }
         tire->surface = NAN;
         tire_try(tire, tire->m.time, trouble);
         tire_get(tire, unknown, sides + side);
@@ -650,9 +680,11 @@ bool tire_get(Tire *tire, unsigned reference, double *value)
     else {
         int number;
         const double *found = variable(tire, reference);
-        if (!found && (number = tire_state_variable(tire, reference)) >= 0)
-            found = number < tire->continuous_count ? tire->m.s + tire->continuous[number]
-                                                    : tire->n + tire->continuous[number - tire->continuous_count];
+        double flow[2 * MOST_CONTINUOUS];
+        if (!found && (number = tire_state_variable(tire, reference)) >= 0) {
+            tire_flow(tire, flow, flow + tire->continuous_count);
+            found = flow + number;
+        }
         if (!found)
             return false;
         *value = *found;
@@ -660,12 +692,20 @@ bool tire_get(Tire *tire, unsigned reference, double *value)
     return true;
 }
 
-bool tire_can_set(Tire *tire, unsigned reference) { return variable(tire, reference) != NULL; }
+/* A solver's state, which a host of FMI 3.0 may set as a variable; or NULL. */
+static double *solved(Tire *tire, unsigned reference)
+{
+    const int number = tire_state_variable(tire, reference);
+    const bool open = tire->newer && tire->exchange && tire->m.stage & (EVENT | CONTINUOUS);
+    return open && 0 <= number && number < tire->continuous_count ? tire->m.s + tire->continuous[number] : NULL;
+}
+
+bool tire_can_set(Tire *tire, unsigned reference) { return variable(tire, reference) || solved(tire, reference); }
 
 bool tire_set(Tire *tire, unsigned reference, double value)
 {
     double *found = variable(tire, reference);
-    if (!found)
+    if (!found && !(found = solved(tire, reference)))
         return false;
     *found = value;
     tire->current = false;
@@ -708,6 +748,22 @@ bool tire_is_state(const Tire *tire, const char *bytes, size_t size, char troubl
     if (size != whole || memcmp(bytes, MARK, sizeof MARK) || memcmp(at, tire->guid, sizeof tire->guid)
         || sum != checksum(bytes, whole - sizeof sum)) {
         snprintf(trouble, TROUBLE, "these bytes are no state of this FMU, or a part of one; save one anew");
+        return false;
+    }
+    Memory memory;
+    at += sizeof tire->guid;
+    memcpy(&memory, at, sizeof memory);
+    at += sizeof memory;
+    const int both = INSTANTIATED | INITIALIZATION | TERMINATED;
+    if (!(memory.stage & (both | (tire->exchange ? EVENT | CONTINUOUS : STEP_COMPLETE)))) {
+        snprintf(trouble, TROUBLE, "this state is not one of %s; restore it in an instance of its own kind",
+                 tire->exchange ? "Model Exchange" : "Co-Simulation");
+        return false;
+    }
+    /* What no call can change: the kind of law, and its tables with their lengths. */
+    if (memcmp(at, tire->start, sizeof(double))
+        || memcmp(at + sizeof(double) * LAW_TABLES, tire->start + LAW_TABLES, sizeof(double) * (tire->law - LAW_TABLES))) {
+        snprintf(trouble, TROUBLE, "these bytes are a state of another tire; save one anew");
         return false;
     }
     return true;

@@ -66,6 +66,7 @@ typedef struct {
     double range[4];     /* curvature from and to [1/m], deflection [m], force [N] */
     bool tested;
     int continuous[MOST_CONTINUOUS], continuous_count; /* indices in s that are a solver's */
+    int whole[MOST_CONTINUOUS]; /* indices of the sums of these and of what steps keep in their places; else the same */
 
     bool exchange;       /* Model Exchange */
     bool newer;          /* FMI 3.0: time and the deflection that tells of contact are variables, after the others */
@@ -95,6 +96,9 @@ bool tire_accept(Tire *tire, double time, char trouble[TROUBLE]);
 
 /* Begin the history with the inputs of the start. */
 bool tire_begin(Tire *tire, double start, char trouble[TROUBLE]);
+
+/* The states of a solver and their rates, in co-simulation too: of the inputs that were tried last. */
+void tire_flow(Tire *tire, double states[], double rates[]);
 
 double tire_tangent(Tire *tire);
 bool tire_in_range(const Tire *tire);

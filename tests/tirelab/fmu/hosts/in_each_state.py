@@ -1,6 +1,7 @@
 """Call every function of FMI 2.0 in every state, through ctypes, in a process that cannot import the project.
 
-Argument: an FMU. Prints {kind: {function: {state: [status, message]}}} for the kinds that the model description has.
+Argument: an FMU. Prints {kind: {function: {state: [status, message]}}} for the kinds that the model description has;
+of one with both kinds, {"KIND, calls of the other": ...} too.
 """
 
 import json
@@ -197,27 +198,33 @@ MODEL_EXCHANGE_CALLS = {
 }
 
 answers = {}
-for word, kind, own, states in (
+for word, kind, own, other, states in (
     (
         "CoSimulation",
         CO_SIMULATION,
         CO_SIMULATION_CALLS,
+        MODEL_EXCHANGE_CALLS,
         ("instantiated", "initialization", "stepComplete", "terminated", "error"),
     ),
     (
         "ModelExchange",
         MODEL_EXCHANGE,
         MODEL_EXCHANGE_CALLS,
+        CO_SIMULATION_CALLS,
         ("instantiated", "initialization", "event", "continuous", "terminated"),
     ),
 ):
     if description.find(word) is None:
         continue
-    answers[word] = {}
-    for function, act in {**CALLS, **own}.items():
-        answers[word][function] = {}
-        for state in states:
-            tire = made(kind, state)
-            answers[word][function][state] = act(tire)
-            library.fmi2FreeInstance(c_void_p(tire))
+    tables = {word: {**CALLS, **own}}
+    if all(description.find(kind_word) is not None for kind_word in ("CoSimulation", "ModelExchange")):
+        tables[f"{word}, calls of the other"] = other
+    for title, calls in tables.items():
+        answers[title] = {}
+        for function, act in calls.items():
+            answers[title][function] = {}
+            for state in states:
+                tire = made(kind, state)
+                answers[title][function][state] = act(tire)
+                library.fmi2FreeInstance(c_void_p(tire))
 print(json.dumps(answers))

@@ -19,6 +19,7 @@ from tirelab.fmu.native.pack import build_native_fmu
 HOST = Path(__file__).parents[1] / "drive.c"
 MOMENTS, FEW, FEWEST = 10_000, 2000, 500
 RANDOM_SETS = 20
+INSTALL = "sh tests/tirelab/fmu/hosts/install.sh"
 
 Run = Callable[[TireModel, list[tuple[float, float, float]], Path], list[float]]
 
@@ -132,7 +133,7 @@ def test_the_same_bits_on_aarch64(tmp_path: Path) -> None:
     """Under qemu, with the C library of that platform."""
     emulator, library = shutil.which("qemu-aarch64"), Path("/usr/aarch64-linux-gnu")
     if emulator is None or not library.is_dir():
-        pytest.skip("qemu-user and libc6-arm64-cross are not installed")
+        pytest.skip(f"qemu-user and libc6-arm64-cross are not installed; {INSTALL}")
     host = tmp_path / "drive"
     zig("aarch64-linux-gnu.2.36", host, "-ldl")
     run = runner([emulator, "-L", str(library), str(host)], "binaries/aarch64-linux/BicycleTire.so")
@@ -144,7 +145,7 @@ def test_close_on_windows(tmp_path: Path) -> None:
     """Under Wine: another C library rounds powers otherwise, which the estimator of noisy rates enlarges."""
     emulator = shutil.which("wine")
     if emulator is None:
-        pytest.skip("wine is not installed")
+        pytest.skip(f"wine is not installed; {INSTALL}")
     host = tmp_path / "drive.exe"
     zig("x86_64-windows-gnu", host)
 

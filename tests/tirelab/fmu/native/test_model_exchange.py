@@ -1,10 +1,11 @@
-"""Model Exchange against closed forms: a mass on the tire, loops, states, derivatives; in a host of a few lines."""
+"""Model Exchange against closed forms: loops, states, derivatives, calls; in a host of a few lines."""
 
 from __future__ import annotations
 
 import json
 import math
 from collections.abc import Callable
+from ctypes import c_double, c_size_t
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from native_me import RADIAL_FORCE, Unit, runge_kutta
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.fmu.native.pack import build_native_fmu
 
-STIFFNESS, MASS = 150_000.0, 3.0
+STIFFNESS = 150_000.0
 LINEAR = PowerLaw(1500.0, 1.0)
 """150 000 N/m: Wang and Hull's road tire."""
 
@@ -31,74 +32,6 @@ def tire_with(**effects: dict[str, float]) -> TireModel:
 
 def unit(tire: TireModel, folder: Path, *start: float) -> Unit:
     return Unit(unpacked_archive(build_native_fmu(tire, folder).path, folder / "fmu"), [*start])
-
-
-def ringing(tire: TireModel, folder: Path, *, given: bool, periods: float = 2.0) -> tuple[float, float]:
-    """Let a mass ring on the tire around 10 mm; return circular frequency and loss of amplitude per radian.
-
-    Both follow from the first and the last time at which it passes its middle downwards and its speeds there.
-    """
-    middle = 0.01
-    weight = STIFFNESS * middle
-    y = [middle, 0.05]
-    tire_unit = unit(tire, folder, middle, FLAT, *([0.05, 0.0] if given else []))
-    states = tire_unit.continuous()
-    h, time, passes = 2e-5, 0.0, []
-
-    def rates(t: float, y: list[float]) -> list[float]:
-        force, more = tire_unit.evaluate(t, [y[0], FLAT, *([y[1], 0.0] if given else [])], y[2:])
-        return [y[1], (weight - force) / MASS, *more]
-
-    y = [*y, *states]
-    end = (periods + 0.2) * 2.0 * math.pi / math.sqrt(STIFFNESS / MASS)
-    while time < end:
-        before, y = y, runge_kutta(rates, time, y, h)
-        time += h
-        acceleration = rates(time, y)[1]
-        tire_unit.accept()
-        if before[0] < middle <= y[0]:
-            # back to the middle with the mean of the accelerations there and here
-            beyond = y[0] - middle
-            acceleration += 0.5 * beyond * STIFFNESS / MASS
-            late = beyond / (y[1] - 0.5 * acceleration * beyond / y[1])
-            passes.append((time - late, y[1] - acceleration * late))
-    (first, fast), (last, slow) = passes[0], passes[-1]
-    omega = 2.0 * math.pi * (len(passes) - 1) / (last - first)
-    return omega, math.log(fast / slow) / (omega * (last - first))
-
-
-def test_the_contact_frequency_of_a_mass_on_the_tire(tmp_path: Path) -> None:
-    """omega^2 = k / m, to 1e-6; nothing is lost."""
-    omega, loss = ringing(tire_with(), tmp_path, given=False)
-    assert omega == pytest.approx(math.sqrt(STIFFNESS / MASS), rel=1e-6)
-    assert abs(loss) < 1e-6
-
-
-def test_a_damper_takes_the_rate_from_its_input(tmp_path: Path) -> None:
-    """m x'' + c x' + k x = 0: the amplitude falls by exp(-zeta omega0 t), the frequency is omega0 sqrt(1 - zeta^2)."""
-    damping = 100.0
-    zeta = damping / (2.0 * math.sqrt(STIFFNESS * MASS))
-    omega, loss = ringing(tire_with(viscous_damping={"damping": damping}), tmp_path, given=True)
-    assert omega == pytest.approx(math.sqrt(STIFFNESS / MASS * (1.0 - zeta**2)), rel=1e-6)
-    assert loss == pytest.approx(zeta / math.sqrt(1.0 - zeta**2), rel=1e-6)
-
-
-def test_relaxing_rubber_is_a_state_of_the_solver(tmp_path: Path) -> None:
-    """m s^2 + k (1 + g s tau / (1 + s tau)) = 0: the roots of a cubic are frequency and loss."""
-    import numpy as np
-
-    g, tau = 0.2, 0.005
-    omega, loss = ringing(
-        tire_with(viscoelastic_relaxation={"share_1": g, "relaxation_time_1": tau}),
-        tmp_path,
-        given=False,
-        periods=6,
-    )
-    roots = np.roots([MASS * tau, MASS, STIFFNESS * tau * (1.0 + g), STIFFNESS])
-    root = roots[np.argmax(roots.imag)]
-    # the third root has decayed before the second passage only in part: 2 % of the loss
-    assert omega == pytest.approx(root.imag, rel=2e-3)
-    assert loss == pytest.approx(-root.real / root.imag, rel=3e-2)
 
 
 def test_a_low_pass_is_two_states_and_answers_a_step_as_its_equation(tmp_path: Path) -> None:
@@ -153,6 +86,72 @@ def test_derivatives_by_inputs_and_states(tmp_path: Path) -> None:
     assert along == pytest.approx(STIFFNESS * (1.0 + g) + 2.0 * c - 3.0 * g, rel=1e-6)
 
 
+def test_a_seed_that_is_no_number_is_refused(tmp_path: Path) -> None:
+    one = unit(tire_with(), tmp_path, 0.01, FLAT)
+    for seed in (math.nan, math.inf):
+        with pytest.raises(AssertionError, match="the seed of value reference 0 is not a finite number"):
+            one.derivative(RADIAL_FORCE, [0], [seed])
+
+
+def test_the_event_indicator_is_of_the_order_of_one_and_never_zero(tmp_path: Path) -> None:
+    """FMI 2.0.5, 3.2.2: at an event's restart z is not 0, and it is scaled; z <= 0 in the air."""
+    one = unit(tire_with(), tmp_path, 0.02, FLAT)
+    assert one.indicator() == pytest.approx(2.0, rel=1e-12)
+    one.set([-0.02, FLAT])
+    assert one.indicator() == pytest.approx(-2.0, rel=1e-12)
+    for zero in (0.0, -0.0):
+        one.set([zero, FLAT])
+        assert -1e-9 < one.indicator() < 0.0
+
+
+def values(one: Unit, *names: str) -> list[float]:
+    return [one.get(one.names[name]) for name in names]
+
+
+def test_states_have_the_values_of_the_start_in_initialization_mode(tmp_path: Path) -> None:
+    """Relaxed rubber holds the elastic force and rests; so do the channel's output and its slope."""
+    tire = tire_with(
+        viscoelastic_relaxation={"share_1": 0.2, "relaxation_time_1": 0.5},
+        force_lag={"lag": 0.01, "quality": 0.5},
+    )
+    fmu = unpacked_archive(build_native_fmu(tire, tmp_path).path, tmp_path / "fmu")
+    force = STIFFNESS * 0.01
+    for exchange in (True, False):
+        one = Unit(fmu, [0.01, FLAT], exchange=exchange, begun=False)
+        expected = [force] * 6 + [0.0]
+        rest = [0.0] * 7
+        states = [name[4:-1] for name in one.names if name.startswith("der(")]
+        assert values(one, *states) == pytest.approx(expected, rel=1e-12)
+        assert values(one, *(f"der({name})" for name in states)) == pytest.approx(rest, abs=1e-9)
+        if exchange:
+            assert one.continuous() == pytest.approx(expected, rel=1e-12)
+            row = (c_double * 7)()
+            one("GetDerivatives", row, c_size_t(7))
+            assert list(row) == pytest.approx(rest, abs=1e-9)
+
+
+def test_states_and_rates_mean_the_same_in_co_simulation(tmp_path: Path) -> None:
+    """Over h the force rises by D: q = F - D tau / h (1 - exp(-h / tau)), q' = (F - q) / tau, dF/dq = -g."""
+    g, tau, h = 0.2, 0.5, 0.1
+    tire = tire_with(viscoelastic_relaxation={"share_1": g, "relaxation_time_1": tau})
+    fmu = unpacked_archive(build_native_fmu(tire, tmp_path).path, tmp_path / "fmu")
+    one = Unit(fmu, [0.01, FLAT], exchange=False)
+    names = "viscoelastic_relaxation.relaxed_1", "der(viscoelastic_relaxation.relaxed_1)"
+    assert values(one, *names) == pytest.approx([STIFFNESS * 0.01, 0.0], rel=1e-12, abs=1e-9)
+    one.set([0.02, FLAT])
+    # at once: the rubber has not relaxed yet
+    assert values(one, *names) == pytest.approx([STIFFNESS * 0.01, STIFFNESS * 0.01 / tau], rel=1e-12)
+    one.step(0.0, h)
+    relaxed = STIFFNESS * (0.02 - 0.01 * tau / h * (1.0 - math.exp(-h / tau)))
+    rate = (STIFFNESS * 0.02 - relaxed) / tau
+    assert values(one, *names) == pytest.approx([relaxed, rate], rel=1e-12)
+    assert one.get() == pytest.approx(STIFFNESS * 0.02 + g * tau * rate, rel=1e-12)
+    state, slope = (one.names[name] for name in names)
+    assert one.derivative(RADIAL_FORCE, [state], [1.0]) == pytest.approx(-g, rel=1e-6)
+    assert one.derivative(slope, [state], [1.0]) == pytest.approx(-1.0 / tau, rel=1e-6)
+    assert one.derivative(slope, [0], [1.0]) == pytest.approx(STIFFNESS / tau, rel=1e-6)
+
+
 MODEL_EXCHANGE = """
 fmi2GetTypesPlatform              |x |x |x |x |x
 fmi2GetVersion                    |x |x |x |x |x
@@ -194,7 +193,12 @@ fmi2GetNominalsOfContinuousStates |x |x |x |x |x
 
 def test_each_call_in_each_state(run_host: Callable[..., str], tmp_path: Path) -> None:
     fmu = build_native_fmu(TireModel(), tmp_path).path
-    answers: dict[str, Any] = json.loads(run_host("in_each_state.py", fmu, job=None))["ModelExchange"]
+    printed: dict[str, Any] = json.loads(run_host("in_each_state.py", fmu, job=None))
+    for kind in ("CoSimulation", "ModelExchange"):
+        for name, by_state in printed[f"{kind}, calls of the other"].items():
+            for state, (status, message) in by_state.items():
+                assert (status, "is not allowed in the state" in message) == (3, True), (kind, name, state)
+    answers = printed["ModelExchange"]
     states = ("instantiated", "initialization", "event", "continuous", "terminated")
     lines = [line.removeprefix("fmi2").split("|") for line in MODEL_EXCHANGE.strip().splitlines()]
     assert {name.strip() for name, *_ in lines} == set(answers)

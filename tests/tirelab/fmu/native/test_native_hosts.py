@@ -53,6 +53,15 @@ def test_co_simulation_masters(run_host: Run, fmus: dict[int, Path], package: st
     assert forces(printed) == pytest.approx(FORCES, rel=1e-12)
 
 
+@pytest.mark.parametrize(("fmi", "kind"), [(2, "CS"), (2, "ME"), (3, "ME")])
+def test_pyfmi(run_host: Run, fmus: dict[int, Path], fmi: int, kind: str) -> None:
+    """Of FMI 3.0 PyFMI has Model Exchange only."""
+    if importlib.util.find_spec("pyfmi") is None:
+        pytest.skip("PyFMI is not installed; PyPI has only its source, which wants the FMI Library")
+    printed = run_host("with_pyfmi.py", fmus[fmi], kind, job=INPUTS)
+    assert forces(printed) == pytest.approx(FORCES, rel=1e-12)
+
+
 def test_ecos_with_fmi_3(run_host: Run, fmus: dict[int, Path]) -> None:
     if importlib.util.find_spec("ecospy") is None:
         pytest.skip("ecospy is not installed")
