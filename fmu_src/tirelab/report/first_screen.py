@@ -137,7 +137,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     if verdict["unexplained"]:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
-            f"What comes back is the rig's, not the {given.kind}'s.",
+            f"If the same difference comes back, the rig causes it, not the {given.kind}.",
         )
     if verdict["alternatives"] and (found := actions(reasons)):
         return NextStep(
@@ -147,7 +147,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     if not clean:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
-            "The error left is more than the noise: what comes back is the rig's.",
+            "The error left is more than the noise: if the same comes back, the rig causes it.",
         )
     return NextStep(given.use if verdict["effects"] else given.leave)
 
@@ -158,7 +158,9 @@ def _left_in_order(verdict: Mapping[str, Any]) -> str:
     by = [titles.dependence(d["by"]) for d in left.get("depends_on", [])]
     if not by:
         return ""
-    return f"It leaves {left['size']:.2g} times the noise beside it, which depends on {titles.listed(by)}."
+    return (
+        f"What it leaves beside the noise, {left['size']:.2g} times as large, depends on {titles.listed(by)}."
+    )
 
 
 def actions(reasons: Sequence[str]) -> list[str]:
@@ -294,17 +296,9 @@ def _decides(test: Mapping[str, Any], verdict: Mapping[str, Any]) -> str:
     own = {effect["name"] for effect in verdict["effects"]}
     extra = [UNKNOWN] if verdict["unexplained"] else []
     first, second = ([*names, *(extra if set(names) == own else [])] for names in test["between"])
-    gone = [name for name in first if name not in second]
-    new = [name for name in second if name not in first]
-    if gone and new:
-        return f"It decides between {titles.short_set(gone)} and {titles.short_set(new)}."
-    acting = titles.listed([_with_article(name) for name in gone or new])
-    verb = "acts" if len(gone or new) == 1 else "act"
-    return f"It decides whether {acting} {verb}{' too' if new and first else ''}." if acting else ""
-
-
-def _with_article(name: str) -> str:
-    return titles.short_title(name) if name == UNKNOWN else f"the {titles.short_title(name)}"
+    too = " too" if first and set(first) < set(second) else ""
+    asked = titles.question(first, second, too)
+    return f"It decides {asked}." if asked else ""
 
 
 def _capital(text: str) -> str:

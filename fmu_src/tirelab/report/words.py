@@ -169,9 +169,13 @@ def told(confidence: float) -> float:
     return round(100.0 * confidence) / 100.0
 
 
+SURE = "sure"
+"""The word for a confidence from 0.9 on."""
+
+
 def confidence_word(confidence: float) -> str:
     """Return how sure that is, in words."""
-    for limit, word in ((0.9, "sure"), (0.7, "fairly sure"), (0.5, "more likely than not")):
+    for limit, word in ((0.9, SURE), (0.7, "fairly sure"), (0.5, "more likely than not")):
         if told(confidence) >= limit:
             return word
     return "one of several possibilities"

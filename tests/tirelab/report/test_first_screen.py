@@ -206,7 +206,7 @@ def test_a_tire_that_can_be_used_tells_what_it_leaves_in_order() -> None:
     assert step.action == "Nothing: use this tire."
     assert (
         step.why
-        == "It leaves 0.8 times the noise beside it, which depends on the rate of deflection and time."
+        == "What it leaves beside the noise, 0.8 times as large, depends on the rate of deflection and time."
     )
     given["verdict"]["remainder"] = {**remainder, "depends_on": []}
     assert first_screen.next_step(given).why == ""
