@@ -9,8 +9,8 @@ from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
-from ..report.titles import dependence, difference_in_words, headline, listed, more_than_noise, newtons, sure
-from ..report.words import SURE, confidence_word
+from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, sure
+from ..report.words import DECIDED, SURE, confidence_word, told
 from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -37,8 +37,10 @@ def summarise(
     """
     names = [e.name for e in effects]
     left = more_than_noise(fit.left, fit.noise)
-    doubted = bool(alternatives) and confidence_word(confidence) != SURE
-    said = [headline(names, bool(regressions), doubted, left)]
+    undecided = bool(alternatives) and told(confidence) < DECIDED
+    doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
+    said = ["Undecided; this is the likeliest explanation."] if undecided else []
+    said.append(headline(names, bool(regressions), doubted, left))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit)
     if regressions:
@@ -101,20 +103,23 @@ def _alternatives(names: Sequence[str], alternatives: Sequence[Alternative]) -> 
 
     Each reason is said once, with all sets that it holds for; beyond the MOST likeliest sets only their number is said.
     """
-    by_reason: dict[str, list[str]] = {}
+    by_reason: dict[str, dict[str, list[str]]] = {}
     likeliest = sorted(
         alternatives, key=lambda a: -a.probability if math.isfinite(a.probability) else math.inf
     )
     for alternative in likeliest[:MOST]:
-        other = difference_in_words(names, [*alternative.names, *(n for n in names if n == UNKNOWN)])
-        by_reason.setdefault(alternative.reason, []).append(other)
+        what, how = replaced(names, [*alternative.names, *(n for n in names if n == UNKNOWN)])
+        by_reason.setdefault(alternative.reason, {}).setdefault(how, []).append(what)
     cannot, others = "These recordings cannot rule out", len(alternatives) - MOST
     more = f" {others} more {'are' if others > 1 else 'is'} listed below." if others > 0 else ""
-    if len(by_reason) == 1:
-        ((reason, told_of),) = by_reason.items()
-        return f"{cannot} {listed(told_of, 'or')}. {_capital(reason)}.{more}"
-    told = [f"{listed(told_of, 'or')} ({reason})" for reason, told_of in by_reason.items()]
-    return f"{cannot} {_either(told)}.{more}"
+    sets_of = {
+        reason: listed([f"{listed(what, 'or')} {how}".strip() for how, what in by_how.items()], "or")
+        for reason, by_how in by_reason.items()
+    }
+    if len(sets_of) == 1:
+        ((reason, sets),) = sets_of.items()
+        return f"{cannot} {sets}. {_capital(reason)}.{more}"
+    return f"{cannot} {_either([f'{sets} ({reason})' for reason, sets in sets_of.items()])}.{more}"
 
 
 def _either(groups: Sequence[str]) -> str:

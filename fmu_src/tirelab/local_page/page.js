@@ -83,7 +83,7 @@
         column.append(option);
       });
       const sign = make("select", undefined, { "aria-label": `sign of ${c.channel}` });
-      for (const [value, text] of [["", "as read"], ["+", "keep"], ["-", "turn"]]) {
+      for (const [value, text] of [["", "as read"], ["+", "keep"], ["-", "reverse"]]) {
         const option = make("option", text, { value });
         option.selected = value !== "" && set.startsWith(value);
         sign.append(option);
@@ -101,7 +101,7 @@
     surface.append(radius);
     const scroll = make("div", undefined, { class: "scroll" });
     scroll.append(table);
-    form.append(scroll, surface, make("button", "Read it so", { type: "submit" }));
+    form.append(scroll, surface, make("button", "Apply", { type: "submit" }));
     form.addEventListener("submit", (e) => {
       e.preventDefault();
       const columns = {}, units = {};
@@ -117,7 +117,7 @@
     return box;
   }
 
-  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
+  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "Correction.fmu": "FMU of the correction", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
   function diagnosis(d) {
     const box = make("article", undefined, { class: "result" });
     box.append(make("h3", d.headline), make("p", d.sure, { class: "caption" }));

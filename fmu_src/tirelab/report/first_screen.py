@@ -15,9 +15,6 @@ from .delivered import delivered_of
 MOST = 70
 """Characters of a headline at most."""
 
-DECIDED = 0.5
-"""Below this confidence, and with alternatives, the recordings do not decide: that is the headline."""
-
 SURE = 0.9
 """From this confidence on a tire whose error is noise can be used as it is."""
 
@@ -61,7 +58,7 @@ def headline(diagnosis: Mapping[str, Any]) -> str:
 
 def undecided(verdict: Mapping[str, Any]) -> bool:
     """Return whether the recordings do not decide between the verdict and its alternatives."""
-    return bool(verdict["alternatives"]) and words.told(verdict["confidence"]) < DECIDED
+    return bool(verdict["alternatives"]) and words.told(verdict["confidence"]) < words.DECIDED
 
 
 def sureness(verdict: Mapping[str, Any]) -> str:
@@ -258,7 +255,7 @@ def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]
     for shown in range(len(also), 0, -1):
         others = len(also) - shown
         more = [f"{others} other{'s' if others > 1 else ''}"] if others else []
-        yield f"{found}; undecided whether also {titles.listed([*also[:shown], *more], 'or')}"
+        yield f"{found}; undecided: {titles.listed([*also[:shown], *more], 'or')}"
     yield f"{found}; undecided what else acts"
 
 

@@ -56,17 +56,15 @@ def difference(names: Sequence[str], other: Sequence[str]) -> str:
     return " ".join([*(f"+ {title}" for title in added), *(f"− {title}" for title in removed)]) or "the same"
 
 
-def difference_in_words(names: Sequence[str], other: Sequence[str]) -> str:
-    """Return how another set differs from `names` for a sentence: "series spring in addition", "B instead of A"."""
+def replaced(names: Sequence[str], other: Sequence[str]) -> tuple[str, str]:
+    """Return what another set has and `names` have not, and in place of what: ("series spring", "in addition")."""
     added, removed = [n for n in other if n not in names], [n for n in names if n not in other]
-    if not names:
-        return short_set(other)
-    if not removed:
-        return f"{short_set(added)} in addition"
+    if not names or not removed:
+        return short_set(added), "in addition" if names else ""
     return (
-        f"{short_set(added)} instead of {short_set(removed)}"
+        (short_set(added), f"instead of {short_set(removed)}")
         if added
-        else f"the same without {short_set(removed)}"
+        else ("", f"the same without {short_set(removed)}")
     )
 
 

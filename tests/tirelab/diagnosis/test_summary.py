@@ -96,7 +96,7 @@ def test_alternatives_are_told_as_differences_from_the_verdict():
     assert "rule out" not in summarise(inertia, (), (), 0.8, FELL)
     told = summarise(inertia, beside, (), 0.8, FELL)
     assert told.startswith("Left out: inertia – but these recordings cannot rule out alternatives.")
-    also = "gas compression in addition or series spring in addition"
+    also = "gas compression or series spring in addition"
     assert told.endswith(f"These recordings cannot rule out {also}. One pressure.")
     instead = [
         *beside,
@@ -110,13 +110,20 @@ def test_alternatives_are_told_as_differences_from_the_verdict():
     assert told.endswith("cannot rule out gas compression + inertia in addition. One pressure.")
 
 
+def test_where_the_recordings_do_not_decide_that_is_said_first():
+    other = [Alternative(("force_lag",), 2.0, "one rate", 0.3)]
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), other, (), 0.43, FELL)
+    assert told.startswith("Undecided; this is the likeliest explanation. Left out: inertia. ")
+    assert "Undecided" not in summarise((NamedEffect("inertia", {}, 1.0, 0.9),), other, (), 0.496, FELL)
+
+
 def test_three_alternatives_are_named_and_the_others_counted():
     names = ("gas_compression", "series_compliance", "bottoming", "deflection_offset", "force_offset")
     unseen = [Alternative((names[0],), 1.0, "one pressure", NAN)]
     likely = [Alternative((n,), 1.0, "one pressure", 0.01 * k) for k, n in enumerate(names[1:], 1)]
     told = summarise((), [*unseen, *likely], (), 0.4, STAYED)
     assert (
-        "rule out force offset, deflection offset or bottoming. One pressure. 2 more alternatives in the"
+        "rule out force offset, deflection offset or bottoming. One pressure. 2 more are listed below."
         in told
     )
     assert "listed below" not in summarise((), likely[:3], (), 0.4, STAYED)

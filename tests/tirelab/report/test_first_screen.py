@@ -97,7 +97,7 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     )
     first = told["verdict"]["effects"][0]
     first["probability"] = 0.97
-    assert first_screen.headline(told) == "Relaxation; undecided whether also refitted law or inertia"
+    assert first_screen.headline(told) == "Relaxation; undecided: refitted law or inertia"
     assert first_screen.lead(told).startswith("The force relaxes")
     assert "What else acts" in first_screen.lead(told)
     first["probability"] = 0.6
