@@ -75,7 +75,7 @@
       const name = c.channel === "believed_force" ? "force of a simulation" : c.channel;
       line.append(make("th", c.required ? name : `${name} (optional)`, { scope: "row" }));
       const column = make("select", undefined, { "aria-label": `column of ${c.channel}` });
-      column.append(make("option", c.column ? `as read: ${c.column}` : "none", { value: "" }));
+      column.append(make("option", c.column ? `as read: ${c.column}` : r.problem ? "by its name" : "none", { value: "" }));
       const set = given("columns", c.channel), number = set.replace(/^[+-]/, "");
       r.headers.forEach((text, i) => {
         const option = make("option", text, { value: `#${i + 1}` });
@@ -93,7 +93,7 @@
       cells[0].append(column);
       cells[1].append(unit);
       if (c.channel === "deflection" || c.channel === "force") cells[2].append(sign);
-      line.append(...cells, make("td", c.values), make("td", c.remark));
+      line.append(...cells, make("td", c.values, { class: "values" }), make("td", c.remark));
       table.append(line);
       fields.push([c.channel, column, unit, sign, `#${r.headers.indexOf(c.column) + 1}`]);
     });
