@@ -6,15 +6,19 @@ import csv
 import importlib.resources
 import io
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 import jinja2
+from markupsafe import Markup
 from rich.table import Table
 
 from ..diagnosis.diagnosis_file import NOTHING, Names, Stated, StatedPlace
+from ..report.titles import difference, effect_title
+from ..report.words import number
 
 HEADINGS = (
     "name",
@@ -28,6 +32,10 @@ HEADINGS = (
     "largest part in",
 )
 """Columns of the summary for every verdict."""
+
+
+MOST = 3
+"""Alternatives of a verdict that the page names; the CSV has all of them."""
 
 
 @dataclass(frozen=True)
@@ -142,9 +150,12 @@ def summary_html(result: BatchResult, out: Path) -> str:
     """Return the summary as one page: how often each effect is missing, then every item; all text escaped."""
     source = importlib.resources.files(__package__).joinpath("summary.html.jinja").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    environment.filters |= {"names": _words, "region": _region, "number": _number}
+    environment.filters |= {"names": _shown, "others": _differences, "region": _region, "number": _force}
+    style = importlib.resources.files("tirelab.report").joinpath("report.css").read_text(encoding="utf-8")
     return environment.from_string(source).render(
-        result=result, reports={row.item.name: quote(_report(row, out)) for row in result.rows}
+        style=Markup(style),
+        result=result,
+        reports={row.item.name: quote(_report(row, out)) for row in result.rows},
     )
 
 
@@ -155,7 +166,7 @@ def summary_table(result: BatchResult) -> Table:
     for heading in ("missing", "how often", "mean confidence"):
         table.add_column(heading)
     for count in result.counts:
-        name = _words(frozenset({count.name}))
+        name = _shown([count.name])
         table.add_row(name, f"{count.times} of {total}", f"{100.0 * count.confidence:.0f} %")
     if result.failures:
         table.add_row("no verdict", f"{len(result.failures)} of {total}", "")
@@ -190,13 +201,34 @@ def _span(region: StatedPlace) -> str:
 
 def verdict_text(verdict: Stated) -> str:
     """Return a verdict in one line."""
-    return f"{_words(verdict.names)}, confidence {100.0 * verdict.confidence:.0f} %"
+    return f"{_shown(verdict.names)}, confidence {100.0 * verdict.confidence:.0f} %"
 
 
 def _words(names: Names) -> str:
     if names == NOTHING:
         return "nothing"
     return " + ".join(name.replace("_", " ") for name in sorted(names))
+
+
+def _shown(names: Iterable[str]) -> str:
+    """Return effects for a reader, as the report names them."""
+    known = sorted(frozenset(names) - NOTHING)
+    return " + ".join(effect_title(name) for name in known) or "nothing"
+
+
+def _differences(verdict: Stated) -> str:
+    """Return the first MOST alternatives as differences from the verdict, and how many more there are."""
+    own = sorted(verdict.names - NOTHING)
+    told = [
+        difference(own, others) if (others := sorted(names - NOTHING)) else "nothing missing"
+        for names in verdict.alternatives[:MOST]
+    ]
+    more = len(verdict.alternatives) - MOST
+    return "; ".join([*told, *([f"{more} more"] if more > 0 else [])])
+
+
+def _force(value: float | None) -> str:
+    return "" if value is None else number(value)
 
 
 def _number(value: float | None) -> str:

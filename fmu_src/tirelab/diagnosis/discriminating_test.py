@@ -16,7 +16,7 @@ import numpy as np
 from ..estimation.findings import FittedModel
 from ..planning.waveforms import WAVEFORMS, Limits, sample_times
 from ..preprocessing.motion import FloatArray
-from ..report.titles import set_title
+from ..report.titles import question
 from ..simulation.simulate import simulate
 
 DECISIVE = 5.7
@@ -106,18 +106,17 @@ def _sentence(
     test: Test, between: tuple[tuple[str, ...], tuple[str, ...]], separation: float, typical: float
 ) -> str:
     place, path = _surface(float(test.surface_radius[0])), test.deflection
-    first, second = (set_title(names) if names else "the baseline tire" for names in between)
+    asked = question(*between)
     if separation < DECISIVE:
         return (
-            f"No motion within the rig's limits separates {first} from {second}. The best motion tried, {test.name} on "
-            f"{place}, makes them differ by {separation:.2g} times the noise over all samples; {DECISIVE:g} times are "
-            "needed."
+            f"No motion within the rig's limits decides {asked}: the forces would differ by at most {separation:.2g} "
+            f"times the noise over all samples ({test.name} on {place}); {DECISIVE:g} times are needed."
         )
     rate = 1e3 * float(np.abs(np.diff(path) / np.diff(test.time)).max())
     return (
         f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, at up to {rate:.0f} mm/s, for "
-        f"{test.time[-1] - test.time[0]:.0f} s. Then {first} and {second} differ by {typical:.2g} times the noise "
-        f"in a typical sample, and by {separation:.0f} times the noise over all samples."
+        f"{test.time[-1] - test.time[0]:.0f} s. It decides {asked}: the forces differ by {typical:.2g} times the noise "
+        f"in a typical sample, by {separation:.0f} times the noise over all samples."
     )
 
 

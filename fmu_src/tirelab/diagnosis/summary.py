@@ -8,12 +8,16 @@ from collections.abc import Sequence
 from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
-from ..names import REFITTED_LAW
-from ..report.titles import dependence, headline, listed, more_than_noise, newtons, set_title, sure
+from ..names import REFITTED_LAW, UNKNOWN
+from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, sure
+from ..report.words import DECIDED, SURE, confidence_word, told
 from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 from .verdict import Fit
+
+MOST = 3
+"""Alternatives that are named in the sentences; all stand in `alternative_details` of diagnosis.json."""
 
 REPEATS = 0.1
 """Cross-validated R^2 from which a regression is worth a sentence."""
@@ -33,14 +37,17 @@ def summarise(
     """
     names = [e.name for e in effects]
     left = more_than_noise(fit.left, fit.noise)
-    said = [headline(names, bool(regressions), bool(alternatives), left)]
+    undecided = bool(alternatives) and told(confidence) < DECIDED
+    doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
+    said = ["Undecided; this is the likeliest explanation."] if undecided else []
+    said.append(headline(names, bool(regressions), doubted, left))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit)
     if regressions:
         said.append(_remainder(regressions))
     said.append(sure(confidence))
     if alternatives:
-        said += _alternatives(names, alternatives)
+        said.append(_alternatives([*names, *([UNKNOWN] if regressions else [])], alternatives))
     if test is not None and not test.sufficient:
         said.append(test.sentence)
     return " ".join(said)
@@ -89,38 +96,35 @@ def _remainder(regressions: Sequence[ResidualModel]) -> str:
     )
 
 
-def _alternatives(names: Sequence[str], alternatives: Sequence[Alternative]) -> list[str]:
-    """Return the sets that may replace the verdict's `names`, and the effects that may act in addition to them."""
-    added = [
-        r for r in alternatives if names and len(r.names) == len(names) + 1 and set(r.names) > set(names)
-    ]
-    if len(added) < 2:
-        return _listed("These recordings cannot rule out {}", alternatives, [r.names for r in alternatives])
-    instead = [r for r in alternatives if r not in added]
-    more = [[n for n in r.names if n not in names] for r in added]
-    found = _listed("These recordings cannot rule out {}", instead, [r.names for r in instead])
-    return [*found, *_listed("In addition, {} may act without being seen", added, more)]
+def _alternatives(names: Sequence[str], alternatives: Sequence[Alternative]) -> str:
+    """Return the sets that the recordings cannot rule out, as differences from the verdict's `names`.
+
+    Something unknown in them acts beside every alternative.
+
+    Each reason is said once, with all sets that it holds for; beyond the MOST likeliest sets only their number is said.
+    """
+    by_reason: dict[str, dict[str, list[str]]] = {}
+    likeliest = sorted(
+        alternatives, key=lambda a: -a.probability if math.isfinite(a.probability) else math.inf
+    )
+    for alternative in likeliest[:MOST]:
+        what, how = replaced(names, [*alternative.names, *(n for n in names if n == UNKNOWN)])
+        by_reason.setdefault(alternative.reason, {}).setdefault(how, []).append(what)
+    cannot, others = "These recordings cannot rule out", len(alternatives) - MOST
+    more = f" {others} more {'are' if others > 1 else 'is'} listed below." if others > 0 else ""
+    sets_of = {
+        reason: listed([f"{listed(what, 'or')} {how}".strip() for how, what in by_how.items()], "or")
+        for reason, by_how in by_reason.items()
+    }
+    if len(sets_of) == 1:
+        ((reason, sets),) = sets_of.items()
+        return f"{cannot} {sets}. {_capital(reason)}.{more}"
+    return f"{cannot} {_either([f'{sets} ({reason})' for reason, sets in sets_of.items()])}.{more}"
 
 
-def _listed(sentence: str, alternatives: Sequence[Alternative], sets: Sequence[Sequence[str]]) -> list[str]:
-    """Return `sentence` about the alternatives' `sets`, with the reason said once where it is one."""
-    if not alternatives:
-        return []
-    titles = [set_title(names) for names in sets]
-    if len({r.reason for r in alternatives}) == 1:
-        return [f"{sentence.format(_either(titles, sets))}.", f"{_capital(alternatives[0].reason)}."]
-    by_reason: dict[str, list[str]] = {}
-    for title, alternative in zip(titles, alternatives, strict=True):
-        by_reason.setdefault(alternative.reason, []).append(title)
-    reasoned = [f"{_either(group, sets)} ({reason})" for reason, group in by_reason.items()]
-    return [f"{sentence.format(_either(reasoned, sets))}."]
-
-
-def _either(titles: Sequence[str], sets: Sequence[Sequence[str]]) -> str:
-    """Return "a, b or c"; with semicolons where a title names several effects and has commas of its own."""
-    if len(titles) < 2 or not any(len(names) > 1 for names in sets):
-        return listed(titles, "or")
-    return f"{'; '.join(titles[:-1])}; or {titles[-1]}"
+def _either(groups: Sequence[str]) -> str:
+    """Return groups that have commas of their own, between semicolons."""
+    return f"{'; '.join(groups[:-1])}; or {groups[-1]}"
 
 
 def _capital(text: str) -> str:

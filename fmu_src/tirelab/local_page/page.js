@@ -75,7 +75,7 @@
       const name = c.channel === "believed_force" ? "force of a simulation" : c.channel;
       line.append(make("th", c.required ? name : `${name} (optional)`, { scope: "row" }));
       const column = make("select", undefined, { "aria-label": `column of ${c.channel}` });
-      column.append(make("option", c.column ? `as read: ${c.column}` : "none", { value: "" }));
+      column.append(make("option", c.column ? `as read: ${c.column}` : r.problem ? "by its name" : "none", { value: "" }));
       const set = given("columns", c.channel), number = set.replace(/^[+-]/, "");
       r.headers.forEach((text, i) => {
         const option = make("option", text, { value: `#${i + 1}` });
@@ -83,7 +83,7 @@
         column.append(option);
       });
       const sign = make("select", undefined, { "aria-label": `sign of ${c.channel}` });
-      for (const [value, text] of [["", "as read"], ["+", "keep"], ["-", "turn"]]) {
+      for (const [value, text] of [["", "as read"], ["+", "keep"], ["-", "reverse"]]) {
         const option = make("option", text, { value });
         option.selected = value !== "" && set.startsWith(value);
         sign.append(option);
@@ -93,7 +93,7 @@
       cells[0].append(column);
       cells[1].append(unit);
       if (c.channel === "deflection" || c.channel === "force") cells[2].append(sign);
-      line.append(...cells, make("td", c.values), make("td", c.remark));
+      line.append(...cells, make("td", c.values, { class: "values" }), make("td", c.remark));
       table.append(line);
       fields.push([c.channel, column, unit, sign, `#${r.headers.indexOf(c.column) + 1}`]);
     });
@@ -101,7 +101,7 @@
     surface.append(radius);
     const scroll = make("div", undefined, { class: "scroll" });
     scroll.append(table);
-    form.append(scroll, surface, make("button", "Read it so", { type: "submit" }));
+    form.append(scroll, surface, make("button", "Apply", { type: "submit" }));
     form.addEventListener("submit", (e) => {
       e.preventDefault();
       const columns = {}, units = {};
@@ -117,7 +117,7 @@
     return box;
   }
 
-  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
+  const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "Correction.fmu": "FMU of the correction", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
   function diagnosis(d) {
     const box = make("article", undefined, { class: "result" });
     box.append(make("h3", d.headline), make("p", d.sure, { class: "caption" }));

@@ -245,7 +245,7 @@ class Handler(BaseHTTPRequestHandler):
         except (BrokenPipeError, ConnectionResetError, TimeoutError):
             self.close_connection = True
         except Exception as error:  # a fault of ours must not leave the page waiting
-            problem = f"tirelab stumbled over this ({type(error).__name__}: {error}); please report it"
+            problem = f"internal error ({type(error).__name__}: {error}); please report it with the recording"
             self._send_json({"problem": problem}, HTTPStatus.INTERNAL_SERVER_ERROR, close=True)
 
     def _path(self) -> str:

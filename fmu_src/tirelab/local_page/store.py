@@ -50,6 +50,7 @@ RESULTS = (
     "report.html",
     "tire.json",
     "BicycleTire.fmu",
+    "Correction.fmu",
     "diagnosis.json",
     "separating_test.csv",
     "plots.csv",

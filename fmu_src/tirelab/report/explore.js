@@ -29,6 +29,8 @@
     { id: "residual-x", axis: "x", residual: true },
   ];
   const number = (v, digits) => v.toFixed(digits).replace("-", "−");
+  // As in the other pictures: no marks between thousands, a real minus sign.
+  const ticks = (u, values) => values.map((v) => v === null ? "" : String(Number(v.toPrecision(9))).replace(/-/g, "−"));
 
   // --- what is shown -------------------------------------------------------------------------------------------
   function assemble() {
@@ -144,7 +146,7 @@
   }
   function options(view) {
     const ink = colour("ink"), line = { stroke: colour("grid"), width: 1 };
-    const axis = (label) => ({ label, stroke: ink, grid: line, ticks: line, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 18, labelGap: 2 });
+    const axis = (label) => ({ label, stroke: ink, grid: line, ticks: line, values: ticks, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 18, labelGap: 2 });
     const lines = view.axis === "x" ? [{}] : seriesOf(view).map((s) => ({ label: LABEL[s], stroke: colour(s), width: 1.1, points: { show: false }, spanGaps: false }));
     return {
       width: view.box.clientWidth || 400, height: 240, legend: { show: false },

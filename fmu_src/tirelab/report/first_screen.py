@@ -15,9 +15,6 @@ from .delivered import delivered_of
 MOST = 70
 """Characters of a headline at most."""
 
-DECIDED = 0.5
-"""Below this confidence, and with alternatives, the recordings do not decide: that is the headline."""
-
 SURE = 0.9
 """From this confidence on a tire whose error is noise can be used as it is."""
 
@@ -61,7 +58,7 @@ def headline(diagnosis: Mapping[str, Any]) -> str:
 
 def undecided(verdict: Mapping[str, Any]) -> bool:
     """Return whether the recordings do not decide between the verdict and its alternatives."""
-    return bool(verdict["alternatives"]) and words.told(verdict["confidence"]) < DECIDED
+    return bool(verdict["alternatives"]) and words.told(verdict["confidence"]) < words.DECIDED
 
 
 def sureness(verdict: Mapping[str, Any]) -> str:
@@ -137,7 +134,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     if verdict["unexplained"]:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
-            f"What comes back is the rig's, not the {given.kind}'s.",
+            f"If the same difference comes back, the rig causes it, not the {given.kind}.",
         )
     if verdict["alternatives"] and (found := actions(reasons)):
         return NextStep(
@@ -147,7 +144,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     if not clean:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
-            "The error left is more than the noise: what comes back is the rig's.",
+            "The error left is more than the noise: if the same comes back, the rig causes it.",
         )
     return NextStep(given.use if verdict["effects"] else given.leave)
 
@@ -158,7 +155,9 @@ def _left_in_order(verdict: Mapping[str, Any]) -> str:
     by = [titles.dependence(d["by"]) for d in left.get("depends_on", [])]
     if not by:
         return ""
-    return f"It leaves {left['size']:.2g} times the noise beside it, which depends on {titles.listed(by)}."
+    return (
+        f"What it leaves beside the noise, {left['size']:.2g} times as large, depends on {titles.listed(by)}."
+    )
 
 
 def actions(reasons: Sequence[str]) -> list[str]:
@@ -256,7 +255,7 @@ def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]
     for shown in range(len(also), 0, -1):
         others = len(also) - shown
         more = [f"{others} other{'s' if others > 1 else ''}"] if others else []
-        yield f"{found}; undecided whether also {titles.listed([*also[:shown], *more], 'or')}"
+        yield f"{found}; undecided: {titles.listed([*also[:shown], *more], 'or')}"
     yield f"{found}; undecided what else acts"
 
 
@@ -294,17 +293,9 @@ def _decides(test: Mapping[str, Any], verdict: Mapping[str, Any]) -> str:
     own = {effect["name"] for effect in verdict["effects"]}
     extra = [UNKNOWN] if verdict["unexplained"] else []
     first, second = ([*names, *(extra if set(names) == own else [])] for names in test["between"])
-    gone = [name for name in first if name not in second]
-    new = [name for name in second if name not in first]
-    if gone and new:
-        return f"It decides between {titles.short_set(gone)} and {titles.short_set(new)}."
-    acting = titles.listed([_with_article(name) for name in gone or new])
-    verb = "acts" if len(gone or new) == 1 else "act"
-    return f"It decides whether {acting} {verb}{' too' if new and first else ''}." if acting else ""
-
-
-def _with_article(name: str) -> str:
-    return titles.short_title(name) if name == UNKNOWN else f"the {titles.short_title(name)}"
+    too = " too" if first and set(first) < set(second) else ""
+    asked = titles.question(first, second, too)
+    return f"It decides {asked}." if asked else ""
 
 
 def _capital(text: str) -> str:

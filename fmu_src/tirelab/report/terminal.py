@@ -65,14 +65,18 @@ def print_diagnosis(
             for row in map(words.law_row, effect["law"]):
                 surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
             console.print(surfaces)
-        parameters = _table("", "", "")
-        parameters.show_header = False
-        for name, e in effect["parameters"].items():
-            if effect.get("law") and words.is_of_a_surface(name):
-                continue
-            value = words.estimate(e["value"], e["std"], e["unit"])
-            parameters.add_row(titles.effect_title(name), value, words.meaning(effect["name"], name))
-        console.print(parameters)
+            shape = sum(not words.is_of_a_surface(name) for name in effect["parameters"])
+            if shape:
+                console.print(
+                    Text(f"and {shape} constants of its shape: the curve is in {diagnosis['report']}")
+                )
+        else:
+            parameters = _table("", "", "")
+            parameters.show_header = False
+            for name, e in effect["parameters"].items():
+                value = words.estimate(e["value"], e["std"], e["unit"])
+                parameters.add_row(titles.effect_title(name), value, words.meaning(effect["name"], name))
+            console.print(parameters)
         console.print()
 
     if verdict.get("corrections"):
@@ -93,12 +97,10 @@ def print_diagnosis(
         console.print(others)
         console.print()
 
-    if verdict["separating_test"] is not None:
-        console.print(Text(f"Recommended next test: {verdict['separating_test']['sentence']}"))
     lacking = [f"{d['reason']}: {d['action']}" for d in verdict.get("alternative_details", []) if d["action"]]
     step = first_screen.next_step(diagnosis, lacking)
-    if not step.drive:
-        console.print(Text(f"What to do next: {step.action} {step.why}".rstrip()))
+    drive = f" Drive {verdict['separating_test']['file']}." if step.drive else ""
+    console.print(Text(f"What to do next: {step.action} {step.why}".rstrip() + drive))
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"]]
     files += [(diagnosis.get("correction") or {}).get("system"), "diagnosis.json"]
     files += [diagnosis["data"]] if diagnosis.get("data") else []

@@ -56,6 +56,36 @@ def difference(names: Sequence[str], other: Sequence[str]) -> str:
     return " ".join([*(f"+ {title}" for title in added), *(f"− {title}" for title in removed)]) or "the same"
 
 
+def replaced(names: Sequence[str], other: Sequence[str]) -> tuple[str, str]:
+    """Return what another set has and `names` have not, and in place of what: ("series spring", "in addition")."""
+    added, removed = [n for n in other if n not in names], [n for n in names if n not in other]
+    if not names or not removed:
+        return short_set(added), "in addition" if names else ""
+    return (
+        (short_set(added), f"instead of {short_set(removed)}")
+        if added
+        else ("", f"the same without {short_set(removed)}")
+    )
+
+
+def question(first: Sequence[str], second: Sequence[str], more: str = "") -> str:
+    """Return what decides between two sets: "whether the series spring acts", "between inertia and force lag".
+
+    more: said at the end where one set has all effects of the other; empty is returned where both are the same
+    """
+    gone = [name for name in first if name not in second]
+    new = [name for name in second if name not in first]
+    if gone and new:
+        return f"between {short_set(gone)} and {short_set(new)}"
+    acting = gone or new
+    if not acting:
+        return ""
+    if acting == [REFITTED_LAW]:
+        return "whether the law has other coefficients"
+    with_articles = [short_title(n) if n == UNKNOWN else f"the {short_title(n)}" for n in acting]
+    return f"whether {listed(with_articles)} {'acts' if len(acting) == 1 else 'act'}{more}"
+
+
 def set_title(names: Sequence[str]) -> str:
     """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
     known = {*CATALOGUE, REFITTED_LAW, UNKNOWN}

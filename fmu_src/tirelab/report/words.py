@@ -169,9 +169,16 @@ def told(confidence: float) -> float:
     return round(100.0 * confidence) / 100.0
 
 
+DECIDED = 0.5
+"""Below this confidence, and with alternatives, the recordings do not decide: that is the headline."""
+
+SURE = "sure"
+"""The word for a confidence from 0.9 on."""
+
+
 def confidence_word(confidence: float) -> str:
     """Return how sure that is, in words."""
-    for limit, word in ((0.9, "sure"), (0.7, "fairly sure"), (0.5, "more likely than not")):
+    for limit, word in ((0.9, SURE), (0.7, "fairly sure"), (0.5, "more likely than not")):
         if told(confidence) >= limit:
             return word
     return "one of several possibilities"
@@ -191,10 +198,16 @@ def law_apart(verdict: Mapping[str, Any]) -> bool:
 def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> list[Mapping[str, Any]]:
     """Return the first `most` entries of `where`; more than `of_one` over one coordinate only to fill up.
 
-    Places over the elastic force are dropped where there are places over the deflection, which show the same.
+    Dropped is what shows the same as another place: the elastic force beside the deflection, one single rate beside the
+    direction.
     """
     by = {place["by"] for place in where}
-    shown = [place for place in where if not (place["by"] == "force" and "deflection" in by)]
+    shown = [
+        place
+        for place in where
+        if not (place["by"] == "force" and "deflection" in by)
+        and not (is_one_rate(place) and "direction" in by)
+    ]
     counts: Counter[str] = Counter()
     first: list[int] = []
     spare: list[int] = []
@@ -202,6 +215,18 @@ def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> 
         counts[place["by"]] += 1
         (first if counts[place["by"]] <= of_one else spare).append(number)
     return [shown[number] for number in sorted([*first, *spare][:most])]
+
+
+ONE_RATE = 0.01
+"""Rates that differ by less than this part are one: a triangle's, as it is read."""
+
+
+def is_one_rate(place: Mapping[str, Any]) -> bool:
+    """Return whether a place over the rate holds one rate only."""
+    start, stop = place["from"], place["to"]
+    if place["by"] != "rate" or isinstance(start, str) or isinstance(stop, str):
+        return False
+    return bool(abs(stop - start) < ONE_RATE * max(abs(start), abs(stop)))
 
 
 def span(place: Mapping[str, Any]) -> str:

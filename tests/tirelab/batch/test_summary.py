@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from browser import CONTRAST, Watched, browser
 from rich.console import Console
 from tirelab.batch.summary import (
     BatchResult,
@@ -135,6 +136,33 @@ def test_a_page_without_failures_says_nothing_of_them() -> None:
     text = summary_html(BatchResult(RESULT.rows[:1], ()), OUT)
     assert "no verdict" not in text
     assert "Skipped" not in text
+
+
+def test_the_page_tells_three_alternatives_as_differences() -> None:
+    others = ["inertia force_lag", "series_compliance", "none", "force_drift", "force_offset"]
+    text = summary_html(BatchResult((row("r", verdict("inertia", 0.5, alternatives=others)),), ()), OUT)
+    assert ">+ force lag; series spring instead of inertia; nothing missing; 2 more</td>" in text
+    assert "rate-independent hysteresis" in summary_html(
+        BatchResult((row("r", verdict("rate_independent_hysteresis", 0.5)),), ()), OUT
+    )
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_fits_a_phone_in_light_and_dark(scheme: str, tmp_path: Path) -> None:
+    """With a name and an error that are long, and cells of every kind."""
+    rows = (*RESULT.rows, row("long_name_" * 12, None, f"{'long_name_' * 12}.csv: has no force"))
+    (tmp_path / "summary.html").write_text(summary_html(BatchResult(rows, ()), OUT), encoding="utf-8")
+    with browser() as chromium:
+        shown = Watched(chromium, viewport={"width": 390, "height": 844}, color_scheme=scheme)
+        shown.page.goto((tmp_path / "summary.html").as_uri())
+        assert shown.page.evaluate("() => document.documentElement.scrollWidth") <= 390
+        assert shown.page.evaluate(CONTRAST) == []
+        assert shown.said == []
+        dark = (
+            shown.page.evaluate("() => getComputedStyle(document.body).backgroundColor")
+            != "rgb(255, 255, 255)"
+        )
+        assert dark == (scheme == "dark")
 
 
 def test_the_page_escapes_names_and_errors() -> None:

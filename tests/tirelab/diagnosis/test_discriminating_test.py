@@ -44,13 +44,13 @@ def test_the_sentence_says_what_to_drive_and_on_which_surface():
     found = discriminate(viscous(), friction(-0.381), 6.0, Limits(deepest=0.02, fastest=0.1, longest=60.0))
     assert found.sentence.startswith(f"Drive {found.test.name} to ")
     assert "on a concave surface of radius 38.1 cm, at up to " in found.sentence
-    assert "Then viscous damping and rate-independent hysteresis differ by " in found.sentence
+    assert "It decides between viscous damping and friction loop: the forces differ by " in found.sentence
     assert discriminate(viscous(), friction(), 6.0, Limits()).sentence.count("on flat ground") == 1
 
 
-def test_the_baseline_is_called_so():
+def test_against_the_baseline_it_is_decided_whether_the_effect_acts():
     told = discriminate(friction(), model_of({}), 6.0, Limits()).sentence
-    assert "Then rate-independent hysteresis and the baseline tire differ" in told
+    assert "It decides whether the friction loop acts: the forces differ by " in told
 
 
 def test_a_separation_is_decisive_where_nineteen_of_twenty_tests_give_odds_of_a_thousand():
@@ -63,7 +63,7 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     found = discriminate(friction(), model_of({**SLIPPING, "force_offset": {}}), 6.0, Limits())
     assert not found.sufficient
     assert found.sentence.startswith(
-        "No motion within the rig's limits separates rate-independent hysteresis from"
+        "No motion within the rig's limits decides whether the force offset acts: the forces would differ by at most "
     )
     assert "5.7 times are needed" in found.sentence
     assert fitted(6.0).sufficient

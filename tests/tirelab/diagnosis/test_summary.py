@@ -70,40 +70,70 @@ def test_one_reason_is_said_once_and_several_each():
         Alternative((n,), 1.0, "one surface", 0.2) for n in ("viscous_damping", "rate_independent_hysteresis")
     ]
     told = summarise((), same, (), 0.4, STAYED)
-    assert (
-        "These recordings cannot rule out viscous damping or rate-independent hysteresis. One surface."
-        in told
-    )
+    assert "These recordings cannot rule out viscous damping or friction loop. One surface." in told
     told = summarise((), [same[0], Alternative(("force_lag",), 1.0, "one rate", 0.2)], (), 0.4, STAYED)
-    assert "These recordings cannot rule out viscous damping (one surface) or force lag (one rate)." in told
+    assert "These recordings cannot rule out viscous damping (one surface); or force lag (one rate)." in told
 
 
-def test_sets_of_several_effects_stand_between_semicolons():
+def test_sets_of_several_effects_are_joined_by_plus_signs():
     """With commas nobody can tell where one set ends: friction, damping and lag may be one, two or three."""
     sets = (("viscous_damping", "force_lag"), ("inertia",), ("force_offset", "force_drift", "inertia"))
     same = [Alternative(names, 1.0, "one surface", 0.1) for names in sets]
     told = summarise((), same, (), 0.4, STAYED)
-    either = "viscous damping and force lag; inertia; or force offset, force drift and inertia"
+    either = "viscous damping + force lag, inertia or force offset + force drift + inertia"
     assert f"These recordings cannot rule out {either}. One surface." in told
     other = [*same[:2], Alternative(sets[2], 1.0, "one rate", 0.1)]
     told = summarise((), other, (), 0.4, STAYED)
-    assert "viscous damping and force lag; or inertia (one surface); or force offset, force drift" in told
+    assert "viscous damping + force lag or inertia (one surface); or force offset + force drift" in told
 
 
-def test_what_may_act_in_addition_is_separated_from_what_may_replace_the_verdict():
-    reason = "one pressure"
+def test_alternatives_are_told_as_differences_from_the_verdict():
+    inertia = (NamedEffect("inertia", {}, 1.0, 0.9),)
     beside = [
-        Alternative((n, "inertia"), 6.0, reason, 0.05) for n in ("gas_compression", "series_compliance")
+        Alternative((n, "inertia"), 6.0, "one pressure", 0.05)
+        for n in ("gas_compression", "series_compliance")
     ]
-    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), (), (), 0.9, FELL)
-    assert "may" not in told
-    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), beside, (), 0.9, FELL)
-    assert told.endswith(
-        "In addition, gas compression or series compliance may act without being seen. One pressure."
+    assert "rule out" not in summarise(inertia, (), (), 0.8, FELL)
+    told = summarise(inertia, beside, (), 0.8, FELL)
+    assert told.startswith("Left out: inertia – but these recordings cannot rule out alternatives.")
+    also = "gas compression or series spring in addition"
+    assert told.endswith(f"These recordings cannot rule out {also}. One pressure.")
+    instead = [
+        *beside,
+        Alternative(("force_lag",), 2.0, "one rate", 0.2),
+        Alternative((), 2.0, "one cycle", 0.2),
+    ]
+    told = summarise(inertia, instead, (), 0.8, FELL)
+    also = "the same without inertia (one cycle); or gas compression in addition (one pressure)"
+    assert f"cannot rule out force lag instead of inertia (one rate); {also}." in told
+    told = summarise((), beside[:1], (regressed("deflection", 0.95),), 0.8, FELL)
+    assert told.endswith("cannot rule out gas compression + inertia in addition. One pressure.")
+
+
+def test_where_the_recordings_do_not_decide_that_is_said_first():
+    other = [Alternative(("force_lag",), 2.0, "one rate", 0.3)]
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), other, (), 0.43, FELL)
+    assert told.startswith("Undecided; this is the likeliest explanation. Left out: inertia. ")
+    assert "Undecided" not in summarise((NamedEffect("inertia", {}, 1.0, 0.9),), other, (), 0.496, FELL)
+
+
+def test_three_alternatives_are_named_and_the_others_counted():
+    names = ("gas_compression", "series_compliance", "bottoming", "deflection_offset", "force_offset")
+    unseen = [Alternative((names[0],), 1.0, "one pressure", NAN)]
+    likely = [Alternative((n,), 1.0, "one pressure", 0.01 * k) for k, n in enumerate(names[1:], 1)]
+    told = summarise((), [*unseen, *likely], (), 0.4, STAYED)
+    assert (
+        "rule out force offset, deflection offset or bottoming. One pressure. 2 more are listed below."
+        in told
     )
-    instead = Alternative(("force_lag",), 2.0, "one rate", 0.2)
-    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), [instead, *beside], (), 0.9, FELL)
-    assert "These recordings cannot rule out force lag. One rate. In addition, gas compression" in told
+    assert "listed below" not in summarise((), likely[:3], (), 0.4, STAYED)
+
+
+def test_a_sure_verdict_is_not_opened_with_its_alternatives():
+    unlikely = [Alternative(("series_compliance", "inertia"), 6.0, "one pressure", 0.02)]
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), unlikely, (), 0.96, FELL)
+    assert told.startswith("Left out: inertia. ")
+    assert told.endswith("These recordings cannot rule out series spring in addition. One pressure.")
 
 
 def test_that_no_motion_separates_the_alternatives_is_said():

@@ -305,7 +305,10 @@ def test_a_fault_of_ours_is_one_sentence_and_keeps_nothing(
     monkeypatch.setattr("tirelab.local_page.understood.understood", stumble)
     status, told, _ = ask(served, "POST", "recordings?name=ride.csv", ride)
     assert status == 500
-    assert told["problem"] == "tirelab stumbled over this (RuntimeError: no such branch); please report it"
+    assert (
+        told["problem"]
+        == "internal error (RuntimeError: no such branch); please report it with the recording"
+    )
     assert kept(served) == []
 
 

@@ -97,7 +97,7 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     )
     first = told["verdict"]["effects"][0]
     first["probability"] = 0.97
-    assert first_screen.headline(told) == "Relaxation; undecided whether also refitted law or inertia"
+    assert first_screen.headline(told) == "Relaxation; undecided: refitted law or inertia"
     assert first_screen.lead(told).startswith("The force relaxes")
     assert "What else acts" in first_screen.lead(told)
     first["probability"] = 0.6
@@ -206,7 +206,7 @@ def test_a_tire_that_can_be_used_tells_what_it_leaves_in_order() -> None:
     assert step.action == "Nothing: use this tire."
     assert (
         step.why
-        == "It leaves 0.8 times the noise beside it, which depends on the rate of deflection and time."
+        == "What it leaves beside the noise, 0.8 times as large, depends on the rate of deflection and time."
     )
     given["verdict"]["remainder"] = {**remainder, "depends_on": []}
     assert first_screen.next_step(given).why == ""

@@ -38,12 +38,13 @@ def test_parameters_are_printed_with_their_meaning(kinds: dict[str, Any]) -> Non
     assert "slip force 30.10 ± 0.60 N half the loop's height" in text
 
 
-def test_the_next_test_is_recommended(kinds: dict[str, Any]) -> None:
-    said = "Recommended next test: Drive triangles at three rates to 22 mm on flat ground."
-    assert said in printed(kinds["alternatives"].diagnosis)
-    assert "Recommended next test" not in printed(kinds["one"].diagnosis)
-    assert "What to do next: Nothing: use this tire." in printed(kinds["one"].diagnosis)
-    assert "What to do next" not in printed(kinds["alternatives"].diagnosis)
+def test_what_to_do_next_is_said_as_on_the_page(kinds: dict[str, Any]) -> None:
+    undecided = kinds["alternatives"].diagnosis
+    text = printed(undecided)
+    assert f"What to do next: {first_screen.next_step(undecided).action} It decides " in text
+    assert "Drive separating_test.csv. Written to out" in text
+    text = printed(kinds["one"].diagnosis)
+    assert "What to do next: Nothing: use this tire. Written to out" in text
 
 
 def test_a_regression_is_printed_with_its_errors(kinds: dict[str, Any]) -> None:

@@ -102,3 +102,18 @@ def test_a_refitted_law_that_leaves_more_than_the_noise_does_not_say_that_nothin
 )
 def test_alternatives_are_told_as_differences(names: list[str], other: list[str], told: str) -> None:
     assert titles.difference(names, other) == told
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        (["inertia"], ["inertia", "series_compliance"], "whether the series spring acts too"),
+        (["inertia", "force_lag"], [], "whether the inertia and the force lag act too"),
+        (["inertia"], ["force_lag", "unknown"], "between inertia and force lag + something unknown"),
+        (["inertia", "unknown"], ["inertia"], "whether something unknown acts too"),
+        (["recalibration", "inertia"], ["inertia"], "whether the law has other coefficients"),
+        (["inertia"], ["inertia"], ""),
+    ],
+)
+def test_what_decides_between_two_sets(first: list[str], second: list[str], told: str) -> None:
+    assert titles.question(first, second, " too") == told

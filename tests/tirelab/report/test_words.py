@@ -113,6 +113,15 @@ def test_the_foremost_places_do_not_crowd_each_other_out() -> None:
     assert [p["by"] for p in words.foremost(bands, 12)] == ["deflection"]
 
 
+def test_one_single_rate_is_told_as_the_direction() -> None:
+    """A slow triangle has two rates: to call one of them a place says no more than loading or unloading."""
+    one, several = place("rate", -1.4692e-3, -1.4664e-3, "m/s"), place("rate", -12e-3, -1e-3, "m/s")
+    unloading = place("direction", -1.0, -1.0, "1")
+    assert [p["by"] for p in words.foremost([one, unloading], 12)] == ["direction"]
+    assert len(words.foremost([several, unloading], 12)) == 2
+    assert len(words.foremost([one], 12)) == 1
+
+
 def test_sets_are_named_whether_known_or_not() -> None:
     assert titles.set_title([]) == "nothing missing"
     assert titles.set_title(["recalibration"]) == "refitted law"
