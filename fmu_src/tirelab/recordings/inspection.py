@@ -33,7 +33,7 @@ SHOWN_IN = {"deflection": ("mm", 1e3), "radius": ("cm", 1e2), "pressure": ("kPa"
 GIVEN = "given"
 """What stands for the column of a channel that the user gave as one value."""
 
-SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars"}
 
 
 @dataclass(frozen=True)

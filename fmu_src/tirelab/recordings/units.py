@@ -49,6 +49,9 @@ _SPELLINGS = {
     # pint's mil is an angle
     ("m", "mil"): "thou",
     ("m", "mils"): "thou",
+    **{("s", word): unit for word, unit in (("秒", "s"), ("毫秒", "ms"), ("分", "min"))},
+    **{("m", word): unit for word, unit in (("米", "m"), ("厘米", "cm"), ("毫米", "mm"), ("微米", "um"))},
+    **{("N", word): unit for word, unit in (("牛", "N"), ("牛顿", "N"), ("千牛", "kN"), ("公斤力", "kgf"))},
 }
 # Names and small exponents only: pint would also work out 9**9**9 for us.
 _WORD = r"[^\W\d_]+(?:_[^\W\d_]+)*"
@@ -68,6 +71,7 @@ _LIKELY = {
     ("Pa", "kgf"): "kgf/cm^2",
     ("s", "hz"): "s, the time of each row",
 }
+_FULL_WIDTH = str.maketrans("（）［］【】", "()[][]")
 FLAT_WORDS = frozenset({"flat", "inf", "+inf", "-inf", "infinity", "+infinity", "-infinity", "infinite", "∞"})
 """What a radius may say instead of a number."""
 
@@ -178,7 +182,7 @@ def measures(unit: str, si: str) -> bool:
 
 def split_header(text: str) -> tuple[str, str | None]:
     """The name and the unit of a column header such as "force [N]" or "Load cell (kN)"; no unit is None."""
-    plain = " ".join(text.split())
+    plain = " ".join(text.translate(_FULL_WIDTH).split())
     for pattern in (_IN_BRACKETS, _IN_PARENTHESES):
         found = pattern.fullmatch(plain)
         if found and found["name"]:

@@ -9,6 +9,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
     "time": (
         *("zeit", "testzeit", "prufzeit", "pruefzeit", "messzeit", "versuchszeit", "laufzeit", "zeitstempel"),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
+        *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
         *(
             "datetime",
@@ -35,8 +36,10 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "crosshead position",
             "axial displacement",
         ),
+        *("spostamento", "corsa", "deformazione", "schiacciamento", "freccia"),
+        *("deslocamento", "deformacao", "verplaatsing", "indrukking"),
         *("compressive displacement", "compressive extension", "extension", "position"),
-        *("machine extension", "disp", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
+        *("machine extension", "disp", "displ", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
         *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量"),
     ),
     "radius": (
@@ -46,6 +49,12 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         "rayon de courbure",
         "radio",
         "radio de curvatura",
+        "raggio",
+        "raggio di curvatura",
+        "raio",
+        "raio de curvatura",
+        "straal",
+        "drum radius",
     ),
     "force": (
         *(
@@ -60,6 +69,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         ),
         *("force verticale", "effort", "charge", "charge verticale"),
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
+        *("forza", "carico", "forca", "kracht", "belasting"),
         *("compressive load", "axial force", "axial load", "standard force"),
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
@@ -70,6 +80,9 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         "innendruck",
         "pression",
         "presion",
+        "pressione",
+        "pressao",
+        "bandenspanning",
         "压力",
         "气压",
         "圧力",

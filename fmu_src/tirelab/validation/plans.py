@@ -7,8 +7,9 @@ tire and the noise alone; the rig drives it. In the same time it drives slow tri
 flattest surface, as without a plan, and in recordings of the plan's number, lengths and surfaces, which shows what the
 motions alone are worth. All three sets are diagnosed. A verdict is right where it is the hidden set or one that the
 independent rig cannot tell from it with all motions of the three sets together (`concealed.derived_right`), wrong where
-it is another one, and undecided where its confidence is below a half. What none of these motions shows at all, such as
-a stop beyond the stroke, is no question that a plan can answer: another trial is drawn.
+it is another one, and undecided where its confidence is below a half or where one of its alternatives has at least half
+of its probability and is wrong where it is right, or right where it is wrong. What none of these motions shows at all,
+such as a stop beyond the stroke, is no question that a plan can answer: another trial is drawn.
 """
 
 from __future__ import annotations
@@ -52,6 +53,9 @@ MOST_SURFACES = 2
 DECIDED = 0.5
 """Least confidence of a verdict that decides."""
 
+NEAR = 0.5
+"""Probability of an alternative, over that of the verdict, from which an engineer would have to try both."""
+
 ARMS = {
     "planned": "after the plan",
     "triangles": "after slow triangles of its lengths on its surfaces",
@@ -77,7 +81,8 @@ class Compared:
 
 
 def compare_plan(seed: int, number: int, kind: str | None) -> dict[str, Any]:
-    """Return what was hidden in one trial, and verdict, confidence and outcome after each set of recordings.
+    """Return what was hidden in one trial, and verdict, confidence, outcome and alternatives with their
+    probabilities after each set of recordings.
 
     Raises RuntimeError where no draw of the trial shows within the limits of its rig.
     """
@@ -148,7 +153,9 @@ def slow_on_one(rig: Rig, seconds: float) -> Drive:
     return Drive("slow triangles", time, slow_triangles(limits), np.full(time.size, rig.surfaces[0]))
 
 
-def _verdict(asked: Compared, drives: Sequence[Drive]) -> tuple[list[str], float, Outcome]:
+def _verdict(
+    asked: Compared, drives: Sequence[Drive]
+) -> tuple[list[str], float, Outcome, list[tuple[list[str], float]]]:
     trial, recordings = asked.trial, []
     for number, drive in enumerate(drives):
         record = concealed.rerun(
@@ -156,11 +163,25 @@ def _verdict(asked: Compared, drives: Sequence[Drive]) -> tuple[list[str], float
         )
         recordings.append(Recording(record.name, record.time, record.deflection, record.radius, record.force))
     verdict = diagnose(recordings, asked.tire)
-    names = {effect.name for effect in verdict.effects} | ({UNKNOWN} if verdict.unexplained_by else set())
-    outcome: Outcome = "right" if names in asked.right else "wrong"
-    if verdict.confidence < DECIDED:
-        outcome = "undecided"
-    return sorted(names), verdict.confidence, outcome
+    names = frozenset(effect.name for effect in verdict.effects)
+    names |= {UNKNOWN} if verdict.unexplained_by else frozenset()
+    others = [(frozenset(a.names), a.probability) for a in verdict.alternatives]
+    outcome = outcome_of(names, verdict.confidence, others, asked.right)
+    told = [(sorted(other), p) for other, p in others if math.isfinite(p)]
+    return sorted(names), verdict.confidence, outcome, told
+
+
+def outcome_of(
+    names: Names, confidence: float, alternatives: Sequence[tuple[Names, float]], right: Sequence[Names]
+) -> Outcome:
+    """Return what a verdict is worth, see the module; alternatives: with their probabilities. A right one beside a
+    right verdict does not count: nothing that any of the sets drives tells the two apart.
+    """
+    correct = names in right
+    near = any((other in right) != correct and p >= NEAR * confidence for other, p in alternatives)
+    if confidence < DECIDED or near:
+        return "undecided"
+    return "right" if correct else "wrong"
 
 
 def summary(found: Sequence[dict[str, Any]]) -> list[str]:

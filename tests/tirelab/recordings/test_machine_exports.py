@@ -19,13 +19,14 @@ from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.reading import Reading
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
 
-for _family in ("machine", "logger", "table", "binary"):
+for _family in ("machine", "logger", "table", "language", "binary"):
     importlib.import_module(f"{_family}_exports")
 
 ASKED = {
     "roehrig_damper.csv": "'lbs' is not a unit of force; did you mean lbf?",
     "catman.asc": "no column for time",
     "labview.lvm": "no column for time; its columns are 'X_Value', 'Force'",
+    "labview_short_rows.lvm": "no column for time; its columns are 'X_Value', 'Displacement'",
     "arduino_ms.txt": "has no header row",
     "epoch_ms.csv": "column 'timestamp': has no unit",
     "epoch_us.csv": "column 'ts': has no unit",

@@ -173,7 +173,7 @@ class TestRowsAndTime:
             (HOUSE_FORM + "\n", "no rows below it"),
             (HOUSE_FORM + "\n0,0,inf,0\n", "a single row"),
             (HOUSE_FORM + "\n0,1,inf,0\n1,1,inf,5\n", "deflection [cm]': is 0.01 m in every row"),
-            ("just some words\nand more\n", "no comma, semicolon, tab or spaces"),
+            ("just some words\nand more\n", "no comma, semicolon, tab, | or spaces"),
             (HOUSE_FORM + '\n0,"1,inf,0\n1,2,inf,5\n', "row 2"),
         ],
     )

@@ -8,7 +8,7 @@ import pytest
 from concealed.__main__ import trial_seed
 from tirelab.planning.menu import drive_of
 from tirelab.planning.rig import Rig
-from tirelab.validation.plans import TIME, rig_of, right_sets, slow_instead, slow_on_one, summary
+from tirelab.validation.plans import TIME, outcome_of, rig_of, right_sets, slow_instead, slow_on_one, summary
 
 
 def test_slow_triangles_take_the_same_time_on_the_same_surface() -> None:
@@ -65,3 +65,25 @@ def test_the_summary_counts() -> None:
     assert "1 right, 2 wrong, 1 undecided of 4 after slow triangles of its lengths" in triangles
     assert "0 right, 4 wrong, 0 undecided of 4" in alone
     assert [float(r.split(": ")[1].split()[0]) for r in ratios] == [0.33, 0.25]
+
+
+def test_a_verdict_beside_a_likely_alternative_is_undecided() -> None:
+    """By hand: right or wrong by its name alone, undecided below a half or beside what has half of its probability."""
+    friction, damping, both = (
+        frozenset({"friction"}),
+        frozenset({"damping"}),
+        frozenset({"friction", "damping"}),
+    )
+    right = (friction, both)
+    for names, confidence, alternatives, expected in (
+        (friction, 0.9, [], "right"),
+        (both, 0.9, [(damping, 0.1)], "right"),
+        (damping, 0.9, [(friction, 0.1)], "wrong"),
+        (friction, 0.49, [], "undecided"),
+        (friction, 0.6, [(damping, 0.31)], "undecided"),
+        (friction, 0.6, [(damping, 0.29)], "right"),
+        (friction, 0.6, [(both, 0.4)], "right"),
+        (damping, 0.6, [(friction, 0.4)], "undecided"),
+        (friction, 0.6, [(damping, math.nan)], "right"),
+    ):
+        assert outcome_of(names, confidence, alternatives, right) == expected

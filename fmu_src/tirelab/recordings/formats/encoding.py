@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import re
 from pathlib import Path
 
 from ..vocabulary import FOREIGN
@@ -18,6 +19,9 @@ BYTE_ORDER_MARKS = (
 
 JUDGED = 16_384
 """So many bytes [B] of a file are shown to the detector."""
+
+_TOGETHER = re.compile(rb"[\x80-\xff]{2}")
+"""Two bytes beyond ASCII side by side, as nearly every Chinese letter has them; one alone is a western one (µm, °C)."""
 
 EAST_ASIAN = {"gb18030": "GBK (GB 18030)", "cp932": "Shift-JIS (CP 932)"}
 """Encodings of Chinese and Japanese machines, and what a note calls them."""
@@ -75,6 +79,8 @@ def _east_asian(raw: bytes, whole: bool) -> str:
 
 def _is_chinese(raw: bytes) -> bool:
     """Return whether the bytes beyond ASCII are likelier Chinese than western letters."""
+    if not _TOGETHER.search(raw):
+        return False
     from charset_normalizer import from_bytes
 
     best = from_bytes(raw[:JUDGED], cp_isolation=["cp1252", "gb18030"]).best()

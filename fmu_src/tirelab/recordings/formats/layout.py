@@ -17,7 +17,7 @@ from .encoding import find_encoding
 from .number_style import NumberStyle, style_of
 from .spaced import TAB, spaced_columns, with_tabs
 from .table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
-from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value
+from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value, states_units
 
 HEAD = 65_536
 """How much of the file [B] is looked at to find its layout."""
@@ -171,7 +171,7 @@ def below_names(
     """
     texts, numbers_follow = _rows_of_text(lines, line, separator)
     units = next(
-        (row for row in texts[:BELOW_NAMES] if len(row[1]) == len(headers) and is_units(row[1])), None
+        (row for row in texts[:BELOW_NAMES] if len(row[1]) == len(headers) and states_units(row[1])), None
     )
     if units is None and not texts:
         return headers, 0, ()
@@ -267,7 +267,7 @@ def _whole_lines(path: Path, raw: bytes, encoding: str) -> list[str]:
 def _preamble(lines: Sequence[str]) -> tuple[int, str | None]:
     separator = None
     for number, line in enumerate(lines):
-        declared = re.fullmatch(r"sep=([\t;,])", line.strip("\r\n"))
+        declared = re.fullmatch(r"sep=([\t;,|])", line.strip("\r\n"))
         if declared:
             separator = declared[1]
         elif line.strip() and not is_comment(line):
@@ -288,7 +288,7 @@ def _separator(path: Path, lines: Sequence[str]) -> str:
             likely.append((2 * agreeing >= len(fields) - 1, fields[0], candidate))
     if not likely:
         raise RecordingError(
-            f"{path.name}: no comma, semicolon, tab or spaces separate columns of numbers (its first line is "
+            f"{path.name}: no comma, semicolon, tab, | or spaces separate columns of numbers (its first line is "
             f"{quoted(sample[0].strip())}); export it as CSV"
         )
     # A separator that the rows confirm comes first; then tab before semicolon before comma.

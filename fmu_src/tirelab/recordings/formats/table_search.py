@@ -12,7 +12,7 @@ from .clock import is_clock
 from .number_style import style_of
 from .table import BLANK_WORDS, is_comment
 
-SEPARATORS = "\t;,"
+SEPARATORS = "\t;,|"
 
 SEARCHED = 300
 """So many lines are searched for the beginning of the table."""
@@ -62,9 +62,11 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     length, rows, first, found = best
     width = len(rows[first].cells)
     texts = [row for row in rows[:first] if not row.numeric and any(row.cells) and not is_units(row.cells)]
-    above = [row for row in texts if len(row.cells) == width] or _nearly_as_wide(texts, rows[first])
+    above = [row for row in texts if len(row.cells) == width]
     header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
-    if header is not None and _named(header.cells) > 0:
+    if header is None or not _named(header.cells):
+        header = next(iter(_nearly_as_wide(texts, rows[first])), header)
+    else:
         header = next(row for row in above if _named(row.cells) == _named(header.cells))
     if header is not None:
         return TablePlace(found, start + header.line)
@@ -112,6 +114,15 @@ def is_units(cells: Sequence[str]) -> bool:
     fits = [any(measures(unit, si) for si in QUANTITIES) for _, unit in filled]
     bare = [unit for (cell, unit), fit in zip(filled, fits, strict=True) if cell == unit and not fit]
     return any(fits) and all(is_unit(unit) and (len(unit) > 1 or unit in "VA%") for unit in bare)
+
+
+def states_units(cells: Sequence[str]) -> bool:
+    """Whether a row below the names holds units: as `is_units`, or units of two kinds of channels beside any words.
+
+    Counters and derived columns have words in such a row that are no units of a channel: segments, J, cycles.
+    """
+    units = [bare_unit(cell) for cell in cells if bare_unit(cell)]
+    return is_units(cells) or sum(any(measures(unit, si) for unit in units) for si in QUANTITIES) > 1
 
 
 def bare_unit(cell: str) -> str:
