@@ -90,7 +90,8 @@ def grounds_of_verdict(
     whether something unknown is told.
 
     odds: log posterior odds against all other sets; contested: tempered probability of these
-    remainder_share: of the misfit; remainder_size: ln(1 + size over the noise); structure: the same of what in the remainder depends on a recorded coordinate
+    remainder_share: of the misfit; remainder_size: ln(1 + size over the noise)
+    structure: the same of what in the remainder depends on a recorded coordinate
     transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
     it); imitated: effects that a refitted law could be, see `grounds_of_effect`
     effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
