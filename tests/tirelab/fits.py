@@ -31,7 +31,7 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     slopes = np.ones((dataset.misfit.size, positions.size))
     residual = problem.residual(positions)
     forms = np.zeros((residual.size, 0))
-    near = Linearised(residual, slopes, positions, (), (), problem.groups)
+    near = Linearised(residual, slopes, positions, (), (), problem.groups, problem.widths(positions))
     left = float(residual @ residual)
     return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, forms, left, {}, 1)
 

@@ -37,11 +37,9 @@ FITTED = 0.7
 could lack what is to be explained. It is also the part of the held-out misfit that has to be driven as what is
 fitted."""
 
-WITHIN = 2.0
-"""Factor within which depths, speeds and root mean square misfits are alike: `_halvings` counts in it."""
-
 HALVINGS = int(np.ceil(-np.log2(STILL)))
-"""Depths and speeds below a sixty-fourth of the largest are one: there the tire rests."""
+"""Depths, speeds and misfits are told apart by the halvings of the largest. Depths and speeds below a sixty-fourth of it
+are one: there the tire rests."""
 
 
 @dataclass(frozen=True)
@@ -200,7 +198,7 @@ def _is_driven_alike(
     kept: Sequence[BoolArray], before: Sequence[FloatArray], ways: Sequence[IndexArray]
 ) -> bool:
     """Return whether most of the misfit that is held out belongs to ways of driving that stay fitted, and is missed
-    there too: what shows in the held-out part alone cannot be fitted without it.
+    there too, at least half as much: what shows in the held-out part alone cannot be fitted without it.
     """
     fits, way = np.concatenate(kept), np.concatenate(ways)
     misfit = np.concatenate(before) ** 2
@@ -209,7 +207,7 @@ def _is_driven_alike(
         np.bincount(way[own], misfit[own], count) / np.maximum(np.bincount(way[own], minlength=count), 1)
         for own in (fits, ~fits)
     )
-    alike = (fitted >= held_out / WITHIN**2)[way] & ~fits
+    alike = (4.0 * fitted >= held_out)[way] & ~fits
     return float(misfit[alike].sum()) >= FITTED * float(misfit[~fits].sum())
 
 

@@ -156,6 +156,7 @@ class Linearised:
     residual (m,); slopes (m, k); positions (k,) on the priors' axes; forms: columns (m, f) of each effect's form errors
     errors: of each form, as declared
     groups (k,): numbers from 1 on of parameters whose prior has a scale to be found, 0: the prior is as declared
+    widths (k,): standard deviations of the priors; more than 1 where a parameter's own scale was found
     """
 
     residual: FloatArray
@@ -164,6 +165,7 @@ class Linearised:
     forms: tuple[FloatArray, ...]
     errors: tuple[float, ...]
     groups: IntArray
+    widths: FloatArray
 
 
 @dataclass(frozen=True)
@@ -181,19 +183,26 @@ class LaplaceEvidence:
 def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEvidence:
     """Return the evidence of a fit."""
     power = float(fit.residual @ fit.residual)
-    own = fit.slopes.T @ fit.slopes
-    width = np.ones(fit.positions.size)
-    best = _of_parameters(power, own, fit.positions, width, discrepancy)
+    gram = fit.slopes.T @ fit.slopes
+    width = fit.widths
+    best = _of_parameters(power, gram, fit.positions, width, discrepancy)
     for _ in range(PASSES if fit.groups.any() else 0):
         for group in np.unique(fit.groups[fit.groups > 0]):
             for scale in LAW_SCALES:
                 trial = np.where(fit.groups == group, scale, width)
-                value = _of_parameters(power, own, fit.positions, trial, discrepancy)
+                value = _of_parameters(power, gram, fit.positions, trial, discrepancy)
                 if value[0] > best[0]:
                     best, width = value, trial
+    own = _cost_of(fit.widths)
     if not fit.forms:
-        return LaplaceEvidence(*best, np.zeros(0), fit.residual)
-    return _beside_forms(fit, width, discrepancy)
+        return LaplaceEvidence(best[0] - own, best[1], np.zeros(0), fit.residual)
+    beside = _beside_forms(fit, width, discrepancy)
+    return replace(beside, log_likelihood=beside.log_likelihood - own)
+
+
+def _cost_of(scales: FloatArray) -> float:
+    """Return what scales cost under half-Cauchy priors, beside those of 1."""
+    return float(np.sum(np.log1p(scales**2) - math.log(2.0)))
 
 
 def _of_parameters(
@@ -231,8 +240,7 @@ def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) 
         gained, determinant, given_way = _gained(gram * np.outer(wide, wide), moment * wide, pull, variances)
         values = fixed + 0.5 * (gained - alone - determinant)
         best = int(np.argmax(values))
-        cost = float(np.sum(np.log1p(scales**2) - math.log(2.0)))
-        return float(values[best]) - cost, scales, best, given_way(best) * wide
+        return float(values[best]) - _cost_of(scales), scales, best, given_way(best) * wide
 
     best = max((of(np.minimum(scale, most)) for scale in FORM_SCALES), key=lambda f: f[0])
     for i in range(len(counts)) if len(counts) > 1 else ():
@@ -362,18 +370,21 @@ def fitted(
 
 
 def _climbed(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
-    width = np.where(problem.groups > 0, LAW_LOOSE, 1.0)
+    loose = np.where(problem.groups > 0, LAW_LOOSE, 1.0)
+    positions = problem.positions(start, awake=True)
+    width = loose * problem.widths(positions)
     objective = Objective(problem.residual, problem.low, problem.high, width, variance)
-    found = begun(objective, problem.positions(start, awake=True))
+    found = begun(objective, positions)
     best: Fit | None = None
     for _ in range(REWEIGHTED):
         found = minimised(objective, found, ROUNDS, ENOUGH)
         fit = _judged(problem, found, discrepancy)
         if best is None or fit.log_likelihood > best.log_likelihood:
             best = fit
-        if 0.7 < fit.variance / objective.variance < 1.5:
+        width = loose * problem.widths(found.positions)
+        if 0.7 < fit.variance / objective.variance < 1.5 and np.allclose(width, objective.width, rtol=0.5):
             break
-        objective = replace(objective, variance=fit.variance)
+        objective = replace(objective, variance=fit.variance, width=width)
     assert best is not None
     return best
 
@@ -389,6 +400,7 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
         tuple(forms.values()),
         tuple(form_error(name) for name in forms),
         problem.groups[~held],
+        problem.widths(found.positions)[~held],
     )
     nothing = np.zeros((found.residual.size, 0))
     fit = Fit(

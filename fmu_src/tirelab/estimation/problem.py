@@ -62,6 +62,7 @@ class FreeParameter:
     low, high: bounds on the axis of the prior, minimum, maximum: of the value
     optional: whether the plain form does without it; plain: its value there
     group: number of those whose prior has a scale that is found by the evidence, 0: as declared
+    signed: whether it is a strength of either sign, which may lie far beyond its prior's spread: see `widths`
     """
 
     owner: str
@@ -78,6 +79,7 @@ class FreeParameter:
     optional: bool = False
     plain: float = 0.0
     group: int = 0
+    signed: bool = False
 
     def value(self, position: float) -> float:
         """Return the value at a position on the prior's axis, within the bounds."""
@@ -160,6 +162,7 @@ def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
         p.maximum,
         p.optional,
         p.start,
+        signed=p.role == "strength" and not logarithm and centre == 0.0,
     )
 
 
@@ -190,6 +193,14 @@ class EstimationProblem:
     def groups(self) -> NDArray[np.int_]:
         """Numbers of the law's groups of parameters, 0: of an effect."""
         return np.array([p.group for p in self.parameters], dtype=np.int_)
+
+    def widths(self, positions: FloatArray) -> FloatArray:
+        """Return the standard deviations of the priors at positions on their axes: 1, but of a strength of either sign
+        that lies beyond 1 what makes it likeliest. A scale of its own gives its prior Cauchy's tails: of other
+        strengths the logarithm is normal, so they may be many times the usual one too.
+        """
+        signed = np.array([p.signed for p in self.parameters], dtype=bool)
+        return np.where(signed, np.maximum(np.abs(positions), 1.0), 1.0)
 
     def values(self, positions: FloatArray) -> dict[str, tuple[float, ...]]:
         """Return all values at positions on the priors' axes."""

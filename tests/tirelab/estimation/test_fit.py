@@ -49,7 +49,7 @@ def linearised(*forms: np.ndarray) -> Linearised:
     """The linear model at its optimum, beside the columns of each effect's form errors."""
     found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-14)
     errors = (ERROR,) * len(forms)
-    return Linearised(found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int))
+    return Linearised(found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int), np.ones(3))
 
 
 FIXED = Discrepancy(ROWS, float(ROWS), 0.09, 0.0900001)
@@ -98,7 +98,7 @@ def at_the_optimum(
     k = slopes.shape[1]
     q = np.linalg.solve(slopes.T @ slopes / variance + np.eye(k), slopes.T @ misfit / variance)
     errors = (ERROR,) * len(forms)
-    return Linearised(misfit - slopes @ q, -slopes, q, forms, errors, np.zeros(k, dtype=int))
+    return Linearised(misfit - slopes @ q, -slopes, q, forms, errors, np.zeros(k, dtype=int), np.ones(k))
 
 
 def dense(misfit: np.ndarray, columns: np.ndarray, variance: float) -> float:
