@@ -94,11 +94,12 @@ def check_contract(content: Any) -> None:
         assert isinstance(names, list)
         assert all(isinstance(name, str) for name in names)
     assert isinstance(verdict["unexplained"], bool)
-    assert verdict["remainder"].keys() == {"share", "size", "rms", "uncompared", "depends_on"}
+    assert verdict["remainder"].keys() == {"share", "size", "rms", "uncompared", "of_forms", "depends_on"}
     assert 0.0 <= verdict["remainder"]["share"] <= 1.0
     assert verdict["remainder"]["size"] >= 0.0
     assert verdict["remainder"]["rms"] >= 0.0
     assert 0.0 <= verdict["remainder"]["uncompared"] <= 1.0
+    assert 0.0 <= verdict["remainder"]["of_forms"] <= 1.0
     for dependence in verdict["remainder"]["depends_on"]:
         assert dependence.keys() == {"by", "share", "from", "to"}
     assert isinstance(verdict["summary"], str)

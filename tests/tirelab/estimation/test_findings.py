@@ -39,9 +39,15 @@ SIZE = DATASET.misfit.size
 WHITE = np.random.default_rng(8).normal(size=SIZE)
 
 
-def left(values: np.ndarray) -> Any:
-    problem = SimpleNamespace(dataset=DATASET)
-    return SimpleNamespace(problem=problem, residual=values, power=float(values @ values))
+def left(values: np.ndarray, form_error: float = 0.0, unformed: float | None = None) -> Any:
+    power = float(values @ values)
+    return SimpleNamespace(
+        problem=SimpleNamespace(dataset=DATASET),
+        residual=values,
+        power=power,
+        form_error=form_error,
+        unformed=power if unformed is None else unformed,
+    )
 
 
 def test_noise_alone_is_no_remainder() -> None:
@@ -70,7 +76,8 @@ def test_a_remainder_is_counted_in_newtons_over_all_samples() -> None:
     quiet = replace(loud, noise=0.1 * loud.noise, size=loud.size // 4)
     dataset = replace(DATASET, experiments=(loud, quiet))
     values = np.concatenate([np.ones(SIZE), np.full(SIZE, 10.0)])
-    fit: Any = SimpleNamespace(problem=SimpleNamespace(dataset=dataset), residual=values)
+    fit = left(values)
+    fit.problem = SimpleNamespace(dataset=dataset)
     part = quiet.size / (quiet.size + loud.size)
     assert remainder_of(fit).force == pytest.approx(np.sqrt(part * 0.99) * loud.noise)
 
@@ -85,6 +92,28 @@ def test_a_remainder_that_follows_the_deflection_is_said_to_depend_on_it_where_i
     assert found.depends[0].coordinate in ("deflection", "force")
     assert low - 1e-3 < by["deflection"].begin < by["deflection"].end < high + 1e-3
     assert "time" not in by or by["deflection"].share > 2.0 * by["time"].share
+
+
+def test_what_forms_account_for_is_no_unknown() -> None:
+    """Root mean square 3 is 8 noises of power: with forms that explain 6 of them a quarter is left, size sqrt(2)."""
+    whole = np.full(SIZE, 3.0)
+    (e,) = DATASET.experiments
+    unit = e.noise / e.floor.level
+    found = remainder_of(left(whole, unformed=3.0 * SIZE))
+    assert found.of_forms == pytest.approx(0.75)
+    assert found.size == pytest.approx(np.sqrt(8.0) * unit)
+    # The same by forms that may miss twice the noise in every case: 4 of the 8, and 2 with what they explain.
+    assert remainder_of(left(whole, form_error=2.0)).of_forms == pytest.approx(0.5)
+    assert remainder_of(left(whole, form_error=2.0, unformed=7.0 * SIZE)).of_forms == pytest.approx(0.75)
+    assert remainder_of(left(whole, unformed=0.9 * SIZE)).of_forms == 1.0
+
+
+def test_a_small_share_of_the_misfit_is_unexplained_only_beyond_the_forms() -> None:
+    """Five noises left, of which the forms account for 98 %: 0.7 noises. Beyond a tenth of the misfit no form counts."""
+    assert not Remainder(0.01, 5.0, 5.0, (), of_forms=0.98).unexplained
+    assert Remainder(0.01, 5.0, 5.0, (), of_forms=0.9).unexplained
+    assert Remainder(0.2, 5.0, 5.0, (), of_forms=0.98).unexplained
+    assert not Remainder(0.2, 0.9, 0.9, ()).unexplained
 
 
 COMPARED = Remainder(0.02, 0.5, 0.5, ())

@@ -254,7 +254,6 @@ def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: 
     diagnosed = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "d"), "--quiet"])
     assert diagnosed.exit_code == 0, diagnosed.output
     assert "damping" in diagnosed.output
-    assert "hysteresis" in diagnosed.output  # one speed at each deflection: either may be
     words = ["compare", str(tmp_path / "damper.csv"), *signed, "--tire", str(out), "--out", str(tmp_path)]
     compared = CliRunner().invoke(main, words)
     assert compared.exit_code == 0, compared.output

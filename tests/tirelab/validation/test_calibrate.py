@@ -69,7 +69,7 @@ def test_grounds_without_meaning_have_no_skill_left_out() -> None:
 
 def test_a_calibration_states_rows_rate_skill_and_a_weight_for_every_ground() -> None:
     whole = [Row(r.trial, {**dict.fromkeys(OF_VERDICT, 0.0), **r.grounds}, r.right) for r in rows(200)]
-    effects = [Row(r.trial, {**r.grounds, "share": 0.0}, r.right) for r in whole]
+    effects = [Row(r.trial, {**r.grounds, "share": 0.0, "beside_law": 0.0}, r.right) for r in whole]
     content = calibration_of(whole, effects, {"command": "x"})
     assert content["command"] == "x"
     assert content["verdict"]["rows"] == 200
