@@ -38,8 +38,8 @@ could lack what is to be explained. It is also the part of the held-out misfit t
 fitted."""
 
 HALVINGS = int(np.ceil(-np.log2(STILL)))
-"""Depths, speeds and misfits are told apart by the halvings of the largest. Depths and speeds below a sixty-fourth of it
-are one: there the tire rests."""
+"""Depths, speeds and misfits are told apart by the halvings of the largest. Depths and speeds below a sixty-fourth of
+it are one: there the tire rests."""
 
 
 @dataclass(frozen=True)

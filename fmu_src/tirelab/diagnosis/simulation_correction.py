@@ -19,6 +19,7 @@ then no stand-in for its stiffness.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -243,7 +244,10 @@ def _written(folder: Path, believed: Believed, corrected: TireModel, moves: bool
 
 
 def write_corrected(folder: Path, believed: Believed, replayed: Replayed) -> None:
-    """Write each recording with its recorded, simulated and corrected force into `folder`, as NAME.corrected.csv."""
+    """Write each recording with its recorded, simulated and corrected force into `folder`, as NAME.corrected.csv.
+
+    What no file's name may hold on some system, as in that of a part of a file ("press@10s:20s"), is "_" there.
+    """
     for r, law, after in zip(replayed.recordings, replayed.before, replayed.after, strict=True):
         simulated = believed_force(r)
         columns: Mapping[str, FloatArray] = {
@@ -254,7 +258,8 @@ def write_corrected(folder: Path, believed: Believed, replayed: Replayed) -> Non
             "believed_force [N]": simulated,
             "corrected_force [N]": after + simulated - law,
         }
-        pl.DataFrame(columns).write_csv(folder / f"{r.name}.corrected.csv")
+        name = re.sub(r"[^\w.@+-]+", "_", r.name).lstrip(".")
+        pl.DataFrame(columns).write_csv(folder / f"{name}.corrected.csv")
 
 
 def _name(believed: Believed) -> str:

@@ -24,7 +24,14 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel, read_tire
 from scipy.signal import lsim
 from tirelab.cli import main
-from tirelab.diagnosis.simulation_correction import Believed, believed_of, deliver, simulated_by
+from tirelab.diagnosis.outcome import Replayed
+from tirelab.diagnosis.simulation_correction import (
+    Believed,
+    believed_of,
+    deliver,
+    simulated_by,
+    write_corrected,
+)
 from tirelab.errors import TirelabError
 from tirelab.fmu import replay as fmu_replay
 from tirelab.fmu.build import build_fmu
@@ -37,6 +44,20 @@ FloatArray = NDArray[np.float64]
 
 SHAPE = 700.0
 DAMPING = 500.0
+
+
+@pytest.mark.parametrize(
+    ("name", "file"), [("press@10s:20s", "press@10s_20s"), ("../up\\side", "_up_side"), ("Prüf 1", "Prüf_1")]
+)
+def test_a_name_from_outside_is_no_path(name: str, file: str, tmp_path: Path) -> None:
+    values = np.linspace(0.0, 0.01, 4)
+    r = Recording(name, values, values, np.full(4, np.inf), values, believed_force=values)
+    inside = tmp_path / "in"
+    inside.mkdir()
+    write_corrected(inside, Believed(TireModel(), 0.0, (r,), ()), Replayed((r,), (values,), (values,)))
+    assert [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.csv")] == [
+        f"in/{file}.corrected.csv"
+    ]
 
 
 def driven(seed: int) -> Recording:

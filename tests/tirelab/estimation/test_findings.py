@@ -109,7 +109,7 @@ def test_what_forms_account_for_is_no_unknown() -> None:
 
 
 def test_a_small_share_of_the_misfit_is_unexplained_only_beyond_the_forms() -> None:
-    """Five noises left, of which the forms account for 98 %: 0.7 noises. Beyond a tenth of the misfit no form counts."""
+    """Five noises left, of which the forms account for 98 %: 0.7 noises. Of a tenth of the misfit no form counts."""
     assert not Remainder(0.01, 5.0, 5.0, (), of_forms=0.98).unexplained
     assert Remainder(0.01, 5.0, 5.0, (), of_forms=0.9).unexplained
     assert Remainder(0.2, 5.0, 5.0, (), of_forms=0.98).unexplained

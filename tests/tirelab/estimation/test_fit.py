@@ -49,7 +49,9 @@ def linearised(*forms: np.ndarray) -> Linearised:
     """The linear model at its optimum, beside the columns of each effect's form errors."""
     found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-14)
     errors = (ERROR,) * len(forms)
-    return Linearised(found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int), np.ones(3))
+    return Linearised(
+        found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int), np.ones(3)
+    )
 
 
 FIXED = Discrepancy(ROWS, float(ROWS), 0.09, 0.0900001)
@@ -123,6 +125,21 @@ def drawn() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     slopes, forms = numbers.normal(size=(N, 3)), 0.3 * numbers.normal(size=(N, 5))
     misfit = 3.0 * slopes @ numbers.normal(size=3) + forms @ numbers.normal(size=5) + numbers.normal(size=N)
     return slopes, forms, misfit
+
+
+def test_a_prior_of_another_width_is_that_gaussian_law_less_the_cost_of_the_width(
+    drawn: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> None:
+    """Half-Cauchy, 2 / (pi (1 + s^2)), beside that of 1: ln((1 + s^2) / 2) for each."""
+    slopes, _, misfit = drawn
+    widths = np.array([1.0, 5.0, 12.0])
+    scaled = at_the_optimum(slopes * widths, (), misfit, 2.0)
+    near = replace(scaled, slopes=scaled.slopes / widths, positions=scaled.positions * widths, widths=widths)
+    found = laplace_evidence(near, fixed(2.0))
+    expected = (
+        dense(misfit, slopes * widths, 2.0) + beside(2.0) - math.log(26.0 / 2.0) - math.log(145.0 / 2.0)
+    )
+    assert found.log_likelihood == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("variance", [1.0, 4.0])

@@ -10,6 +10,7 @@ import math
 import numpy as np
 import pytest
 from drives import damped
+from fits import values_of
 from radialtire import CATALOGUE, TireModel
 from tirelab.estimation.problem import (
     FreeParameter,
@@ -64,6 +65,17 @@ def test_every_parameter_of_an_effect_with_a_prior_is_free_but_readings() -> Non
     for name, effect in CATALOGUE.items():
         expected = [p.name for p in effect.parameters if p.prior is not None and p.role != "reading"]
         assert [p.label for p in parameters_of_effect(name, DATASET.scales)] == expected
+
+
+def test_a_strength_of_either_sign_may_lie_far_beyond_its_priors_spread() -> None:
+    """Its prior's own scale is the likeliest: |q| where that is more than 1. A logarithm needs none."""
+    values = {"force_offset": (0.0,), "rate_independent_hysteresis": values_of("rate_independent_hysteresis")}
+    problem = problem_of(DATASET, values, plain=True)
+    signed = [p.owner == "force_offset" for p in problem.parameters]
+    assert sum(signed) == 1
+    for position in (-12.0, -0.3, 0.0, 5.0):
+        found = problem.widths(np.full(len(signed), position))
+        np.testing.assert_allclose(found, np.where(signed, max(abs(position), 1.0), 1.0))
 
 
 def test_a_law_on_one_surface_has_no_parameters_of_a_surface_of_its_own() -> None:
