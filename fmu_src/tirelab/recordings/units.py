@@ -207,10 +207,10 @@ def parse_radius(text: str | float) -> float:
             raise UnitError(
                 f"radius {text[:40]!r} cannot be read; write flat, 25.4cm (convex) or -50.8cm (concave)"
             )
-        if not found["unit"]:
+        value = float(found["value"])
+        if value and not found["unit"]:
             raise UnitError(f"radius {text[:40]!r} has no unit; write for instance {found['value']}cm")
-        value = np.array([float(found["value"])])
-        radius = float(conversion(found["unit"], "m").to_si(value)[0])
+        radius = float(conversion(found["unit"], "m").to_si(np.array([value]))[0]) if value else 0.0
     if math.isnan(radius) or radius == 0.0:
         raise UnitError(
             f"radius {str(text)[:40]!r} is no radius; write flat, 25.4cm (convex) or -50.8cm (concave)"

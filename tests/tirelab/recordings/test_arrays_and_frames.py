@@ -127,6 +127,7 @@ class TestArrays:
             ({"surface_radius": {}}, "the radius of the surface is not known"),
             ({"surface_radius": 0.0}, "radius '0.0' is no radius"),
             ({"surface_radius": "25"}, "radius '25' has no unit"),
+            ({"surface_radius": "0"}, "radius '0' is no radius; write flat"),
             ({"surface_radius": np.zeros(101)}, "sample 1, column 'radius': 0 is no radius"),
             ({"time": TIME[:-1]}, "unequal numbers of samples ('time' 100, 'deflection' 101, 'force' 101)"),
             ({"time": TIME[::-1]}, "sample 2, column 'time': time goes back from 20 s to 19.8 s"),
