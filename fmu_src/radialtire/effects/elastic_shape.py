@@ -44,7 +44,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     return signal * math.exp(exponent), state
 
 
-def _height(number: int, word: str) -> Parameter:
+def _height(number: int) -> Parameter:
     return Parameter(
         f"height_{number}",
         f"h{number}",
@@ -52,7 +52,7 @@ def _height(number: int, word: str) -> Parameter:
         0.0,
         -2.0,
         2.0,
-        f"change of ln F at the {word} of five deflections, the last twice the reference",
+        f"change of ln F at {0.4 * number:g} times the reference deflection",
         neutral=0.0,
         optional=True,
         prior=Prior("normal", 0, 0.1, "1", "Hull, Wang & Moore 1996: errors of the law up to 13.5 %"),
@@ -100,11 +100,11 @@ ELASTIC_SHAPE = Effect(
             role="reading",
             prior=Prior("log", 0.5, math.log(2), "travel", "the middle of what was measured"),
         ),
-        _height(1, "first"),
-        _height(2, "second"),
-        _height(3, "third"),
-        _height(4, "fourth"),
-        _height(5, "fifth"),
+        _height(1),
+        _height(2),
+        _height(3),
+        _height(4),
+        _height(5),
     ),
     initial_state=(),
     respond=respond,
