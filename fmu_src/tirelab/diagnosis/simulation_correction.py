@@ -103,7 +103,10 @@ def _pulls(force: FloatArray) -> bool:
 
 
 def _straight(simulated: Sequence[Recording]) -> TireModel:
-    """Return the straight line through the forces, of a part that is held at both ends; a slope below 0 is none."""
+    """Return the straight line through the forces, of a part that is held at both ends; a slope below 0 is none.
+
+    Air carries it only where a pressure was recorded.
+    """
     x, force = (np.concatenate([getattr(r, c) for r in simulated]) for c in ("deflection", "force"))
     if not np.ptp(x) > 0.0:
         raise TirelabError("the recordings have one constant deflection; record at least one full cycle")
@@ -111,7 +114,15 @@ def _straight(simulated: Sequence[Recording]) -> TireModel:
     slope = max(slope, LEAST_SPRING)
     preload = float(np.mean(force - slope * CM_PER_M * x))
     law = PowerLaw(slope, 1.0)
-    return TireModel(law, tested_range=None, name=NAME, source=NAME, two_sided=True, preload=preload)
+    return TireModel(
+        law,
+        tested_range=None,
+        name=NAME,
+        source=NAME,
+        two_sided=True,
+        preload=preload,
+        inflated=any(r.pressure is not None for r in simulated),
+    )
 
 
 def simulated_by(

@@ -72,6 +72,8 @@ def test_friction_and_preload_beside_a_damper(beside_fmu: tuple[Path, dict[str, 
     assert slip == pytest.approx(SLIP, rel=0.1)
     assert content["fit"]["before"] == pytest.approx(np.hypot(PRESS, SLIP), rel=0.1)
     assert content["fit"]["held_out_after"] < 1.5 * NOISE
+    # A damper has no pressure: none is asked for, and none may leak.
+    assert "pressure" not in json.dumps(content["verdict"])
 
 
 def test_the_coupled_system_reaches_the_figures(beside_fmu: tuple[Path, dict[str, Any]]) -> None:
