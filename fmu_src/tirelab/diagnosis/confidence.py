@@ -82,6 +82,9 @@ LOWERING = (
 )
 """Grounds that may only lower a probability."""
 
+RAISING = ("odds",)
+"""Grounds that may only raise one."""
+
 
 def grounds_of_verdict(
     explanation: Explanation, validation: HeldOut, remainder: Remainder, *, unexplained: bool

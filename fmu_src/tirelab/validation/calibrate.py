@@ -4,7 +4,7 @@ Run: python -m tirelab.validation.calibrate --seed SEED --trials N [--out FILE]
 
 Every trial is drawn, diagnosed and scored; its grounds (`diagnosis.confidence`) and whether it was right are kept. The
 weights are those of highest posterior under independent normal priors of standard deviation 1 on grounds of standard
-deviation 1; the weights of `LOWERING` are at most zero. The skill is stated for ten parts, each judged by the weights
+deviation 1; the weights of `LOWERING` are at most zero, those of `RAISING` at least. The skill is stated for ten parts, each judged by the weights
 of the other nine. Written is a file of the form of `diagnosis/calibration.json`, which is what a diagnosis reads.
 """
 
@@ -25,7 +25,7 @@ from scipy.optimize import minimize
 from scipy.special import expit
 
 from ..computing.workers import Cores, work
-from ..diagnosis.confidence import LOWERING, OF_EFFECT, OF_VERDICT
+from ..diagnosis.confidence import LOWERING, OF_EFFECT, OF_VERDICT, RAISING
 from ..diagnosis.diagnose import diagnose
 from ..diagnosis.diagnosis_file import NOTHING
 from ..diagnosis.verdict import Verdict
@@ -76,7 +76,10 @@ def fitted_weights(rows: Sequence[Row], names: Sequence[str]) -> dict[str, float
         slope = columns.T @ (expit(line) - right) + np.append(0.0, w[1:])
         return value, slope
 
-    bounds = [(None, None), *((None, 0.0) if n in LOWERING else (None, None) for n in names)]
+    bounds = [
+        (None, None),
+        *((0.0 if n in RAISING else None, 0.0 if n in LOWERING else None) for n in names),
+    ]
     found = minimize(cost, np.zeros(len(names) + 1), jac=True, bounds=bounds, method="L-BFGS-B").x
     weights = found[1:] / spread
     constant = float(found[0] - weights @ middle)

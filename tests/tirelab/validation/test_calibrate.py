@@ -49,6 +49,11 @@ def test_a_ground_that_may_only_lower_gets_no_weight_where_it_seems_to_raise() -
     assert fitted_weights(turned, ["odds", "remainder_share"])["remainder_share"] == 0.0
 
 
+def test_a_ground_that_may_only_raise_gets_no_weight_where_it_seems_to_lower() -> None:
+    turned = [Row(r.trial, {**r.grounds, "odds": -r.grounds["odds"]}, r.right) for r in rows(2000)]
+    assert fitted_weights(turned, ["odds", "remainder_share"])["odds"] == 0.0
+
+
 def test_skill_left_out_is_near_the_skill_on_other_rows_and_no_better_than_that_on_its_own() -> None:
     few = rows(150)
     names = ["odds", "remainder_share"]
