@@ -4,8 +4,9 @@ Run: python -m tirelab.validation.calibrate --seed SEED --trials N [--out FILE]
 
 Every trial is drawn, diagnosed and scored; its grounds (`diagnosis.confidence`) and whether it was right are kept. The
 weights are those of highest posterior under independent normal priors of standard deviation 1 on grounds of standard
-deviation 1; the weights of `LOWERING` are at most zero, those of `RAISING` at least. The skill is stated for ten parts, each judged by the weights
-of the other nine. Written is a file of the form of `diagnosis/calibration.json`, which is what a diagnosis reads.
+deviation 1; the weights of `LOWERING` are at most zero, those of `RAISING` at least. The skill is stated for ten parts,
+each judged by the weights of the other nine. Written is a file of the form of `diagnosis/calibration.json`, which is
+what a diagnosis reads.
 """
 
 from __future__ import annotations

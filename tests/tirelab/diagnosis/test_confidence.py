@@ -175,8 +175,11 @@ def test_a_remainder_a_worse_held_out_error_and_a_poor_motion_never_raise_a_prob
 
 
 @pytest.mark.parametrize("of", ["verdict", "effect"])
-def test_better_odds_raise_a_probability(of: str) -> None:
-    assert probability(of, {**ZERO[of], "odds": 5.0}) > probability(of, ZERO[of])
+def test_evidence_over_the_other_sets_raises_a_probability(of: str) -> None:
+    """By odds over the next set or by how probable all others are together; neither may count the other way."""
+    usual = probability(of, {**ZERO[of], "contested": 0.5})
+    assert probability(of, {**ZERO[of], "contested": 0.5, "odds": 5.0}) >= usual
+    assert probability(of, {**ZERO[of], "contested": 0.01, "odds": 5.0}) > usual
 
 
 def test_the_file_says_how_it_was_made() -> None:
