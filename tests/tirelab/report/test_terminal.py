@@ -35,7 +35,7 @@ def test_parameters_are_printed_with_their_meaning(kinds: dict[str, Any]) -> Non
     text = printed(kinds["two"].diagnosis)
     assert "refitted law, 61 % of the error" in text
     assert "with the law refitted" in text
-    assert "slip force 30.10 ± 0.60 N half the loop's height" in text
+    assert "slip force 30.10 ± 0.60 N friction whatever the load: half the loop's height" in text
 
 
 def test_what_to_do_next_is_said_as_on_the_page(kinds: dict[str, Any]) -> None:
