@@ -38,7 +38,7 @@ from ..fmu.foreign_replay import Progress, native_code, replay_foreign
 from ..fmu.replay import driven
 from ..fmu.system import SYSTEM, write_system
 from ..identification.identify import identify
-from ..identification.part_laws import LEAST_SPRING
+from ..identification.part_laws import LEAST_SPRING, holds_air
 from ..identification.surfaces import CM_PER_M
 from ..preprocessing.noise import NEGLIGIBLE
 from ..recordings.recording import Recording
@@ -103,10 +103,7 @@ def _pulls(force: FloatArray) -> bool:
 
 
 def _straight(simulated: Sequence[Recording]) -> TireModel:
-    """Return the straight line through the forces, of a part that is held at both ends; a slope below 0 is none.
-
-    Air carries it only where a pressure was recorded.
-    """
+    """Return the straight line through the forces, of a part that is held at both ends; a slope below 0 is none."""
     x, force = (np.concatenate([getattr(r, c) for r in simulated]) for c in ("deflection", "force"))
     if not np.ptp(x) > 0.0:
         raise TirelabError("the recordings have one constant deflection; record at least one full cycle")
@@ -121,7 +118,7 @@ def _straight(simulated: Sequence[Recording]) -> TireModel:
         source=NAME,
         two_sided=True,
         preload=preload,
-        inflated=any(r.pressure is not None for r in simulated),
+        inflated=holds_air(simulated),
     )
 
 
@@ -254,10 +251,14 @@ def _written(folder: Path, believed: Believed, corrected: TireModel, moves: bool
     return Corrected(believed, correction, fmu, system)
 
 
+NO_NAME = r'[<>:"/\\|?*\x00-\x1f]+'
+"""What no file's name may hold on some system."""
+
+
 def write_corrected(folder: Path, believed: Believed, replayed: Replayed) -> None:
     """Write each recording with its recorded, simulated and corrected force into `folder`, as NAME.corrected.csv.
 
-    What no file's name may hold on some system, as in that of a part of a file ("press@10s:20s"), is "_" there.
+    What a name may not hold, as that of a part of a file does ("press@10s:20s"), is "_" there.
     """
     for r, law, after in zip(replayed.recordings, replayed.before, replayed.after, strict=True):
         simulated = believed_force(r)
@@ -269,7 +270,7 @@ def write_corrected(folder: Path, believed: Believed, replayed: Replayed) -> Non
             "believed_force [N]": simulated,
             "corrected_force [N]": after + simulated - law,
         }
-        name = re.sub(r"[^\w.@+-]+", "_", r.name).lstrip(".")
+        name = re.sub(NO_NAME, "_", r.name).lstrip(".")
         pl.DataFrame(columns).write_csv(folder / f"{name}.corrected.csv")
 
 

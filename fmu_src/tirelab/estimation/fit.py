@@ -193,11 +193,11 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
                 value = _of_parameters(power, gram, fit.positions, trial, discrepancy)
                 if value[0] > best[0]:
                     best, width = value, trial
-    own = _cost_of(fit.widths)
+    cost = _cost_of(fit.widths)
     if not fit.forms:
-        return LaplaceEvidence(best[0] - own, best[1], np.zeros(0), fit.residual)
-    beside = _beside_forms(fit, width, discrepancy)
-    return replace(beside, log_likelihood=beside.log_likelihood - own)
+        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual)
+    found = _beside_forms(fit, width, discrepancy)
+    return replace(found, log_likelihood=found.log_likelihood - cost)
 
 
 def _cost_of(scales: FloatArray) -> float:

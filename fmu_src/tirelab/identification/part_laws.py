@@ -117,6 +117,11 @@ def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
     return tuple(sorted(fits, key=lambda fit: fit.bic))
 
 
+def holds_air(recordings: Sequence[Recording]) -> bool:
+    """Return whether a part holds air: only where its pressure was recorded."""
+    return any(r.pressure is not None for r in recordings)
+
+
 def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireModel:
     """Return a tire with a fitted law: a power law, and a deflection offset for its gap, or a two-sided part with its
     preload.
@@ -226,7 +231,7 @@ def _described(tire: TireModel, recordings: Sequence[Recording], name: str) -> T
             deflection_max=max(float(r.deflection.max()) for r in recordings),
             force_max=max(float(r.force.max()) for r in recordings),
         ),
-        inflated=any(r.pressure is not None for r in recordings),
+        inflated=holds_air(recordings),
         name=name or f"part identified from {recorded}",
         source=f"identified by tirelab from the recordings {recorded}",
     )

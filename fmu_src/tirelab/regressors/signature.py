@@ -10,7 +10,7 @@ The elastic law has a signature of its own: how a refitted law, or one of anothe
 
     dF / F = a + b l + c l^2 + d l^3 + h(x),   l = ln(x / x_ref)
 
-a and b on each surface beside those common to all, h: straight lines between the heights of `elastic_shape`. These are
+a and b on each surface beside those common to all, h: straight lines between the heights of a law's shape. These are
 the derivatives of what is fitted and delivered as a refitted law, so a law that can be fitted is seen before it is.
 Their scale is not declared: it is found by the marginal likelihood (type II), like that of the effects.
 """
@@ -110,7 +110,7 @@ REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
 """Index of the shape's reference."""
 
 LEAST_RATIO = 0.01
-"""The least x / x_ref, as in `elastic_shape`."""
+"""The least x / x_ref, as in the effect SHAPE."""
 
 MOST_SURFACES = 8
 """Beyond them (terrain) the law is refitted for all alike."""

@@ -47,7 +47,8 @@ DAMPING = 500.0
 
 
 @pytest.mark.parametrize(
-    ("name", "file"), [("press@10s:20s", "press@10s_20s"), ("../up\\side", "_up_side"), ("Prüf 1", "Prüf_1")]
+    ("name", "file"),
+    [("press@10s:20s", "press@10s_20s"), ("../up\\side", "_up_side"), ("Prüf 1, heiß", "Prüf 1, heiß")],
 )
 def test_a_name_from_outside_is_no_path(name: str, file: str, tmp_path: Path) -> None:
     values = np.linspace(0.0, 0.01, 4)

@@ -1,5 +1,6 @@
 """Each law is found from what it makes itself, and the one that made the readings is the first."""
 
+import json
 import shlex
 from pathlib import Path
 
@@ -253,6 +254,9 @@ def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: 
     assert command[:2] == ["tirelab", "diagnose"]
     diagnosed = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "d"), "--quiet"])
     assert diagnosed.exit_code == 0, diagnosed.output
+    verdict = json.loads((tmp_path / "d" / "diagnosis.json").read_text(encoding="utf-8"))["verdict"]
+    # The loop is an ellipse: no friction's. What made it is named, and nothing else.
+    assert [e["name"] for e in verdict["effects"]] == ["viscous_damping"]
     assert "damping" in diagnosed.output
     words = ["compare", str(tmp_path / "damper.csv"), *signed, "--tire", str(out), "--out", str(tmp_path)]
     compared = CliRunner().invoke(main, words)
