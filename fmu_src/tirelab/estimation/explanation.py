@@ -18,7 +18,7 @@ from radialtire import CATALOGUE, TireModel
 from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor, noise_of
 from ..preprocessing.samples import Recorded
-from ..regressors.dataset import BLURRED, Dataset, blocking_error, dataset_of
+from ..regressors.dataset import BLURRED, Dataset, dataset_of, samples_of
 from ..regressors.excitation import AS_GOOD, Excitation, excitation_of
 from ..regressors.signature import (
     LAW,
@@ -53,7 +53,7 @@ from .findings import (
     remainder_of,
 )
 from .fit import Fit, fitted
-from .ranking import BEGUN, Ranking, ranked
+from .ranking import BEGUN, Ranking, corrected, ranked
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -185,7 +185,8 @@ def explain_misfit(
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
     ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
-    error = blocking_error(ranking.best.problem.dataset, recordings, ranking.best.tire)
+    samples = samples_of(recordings, baseline)
+    error = size_of(quiet.stacked(samples.left_out(quiet, ranking.best.tire)))
     if error > LIKE_NOISE:
         # The error of a block grows with the square of its length.
         longest = max(e.size for e in dataset.experiments) * (BLURRED / error) ** 0.5
@@ -193,6 +194,7 @@ def explain_misfit(
         finer = dataset_of(recordings, baseline, readings, max(1, int(longest)))
         dataset, raw, quiet = _signatures(finer, recordings, shown, catalogue)
         ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
+    ranking = corrected(ranking, samples)
     like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
     return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 

@@ -9,7 +9,7 @@ than its own subset.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE
 from scipy.linalg import solve_triangular
 
-from ..regressors.dataset import Dataset
+from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Signature, strengthened
 from ..selection.search import LOST, MOST, PRIOR_ODDS, Discrepancy, discrepancy_of
-from .fit import Fit, fitted
+from .fit import ENOUGH, Fit, fitted
 from .problem import Values, law_start, with_readings
 
 FloatArray = NDArray[np.float64]
@@ -128,6 +128,9 @@ PROMISING = 5
 SWAPPED = PROMISING // 2
 """Candidates put in the place of one of its own."""
 
+CORRECTIONS = 3
+"""Budget: times that a set is fitted again with what its blocks leave out."""
+
 FLOOR_MOVED = 1.2
 """Factor to another floor from which on the sets are judged again."""
 
@@ -137,10 +140,11 @@ HOPE = 8.0
 
 @dataclass(frozen=True)
 class Ranking:
-    """Fits by their log posterior (not normalised), the likeliest first."""
+    """Fits by their log posterior (not normalised), the likeliest first; discrepancy: under which they are judged."""
 
     fits: tuple[Fit, ...]
     posteriors: tuple[float, ...]
+    discrepancy: Discrepancy
 
     @property
     def best(self) -> Fit:
@@ -264,8 +268,39 @@ def ranked(
         for other in alike(name):
             if less is not None and other in board.signatures and other not in best_names:
                 board.put_in(less, other)
-    order = sorted(board.fits, key=lambda n: -board.posterior(n))
-    return Ranking(tuple(board.fits[n] for n in order), tuple(board.posterior(n) for n in order))
+    return _in_order(board.fits.values(), board.discrepancy)
+
+
+def _in_order(fits: Iterable[Fit], discrepancy: Discrepancy) -> Ranking:
+    pairs = sorted(((f.log_likelihood - PRIOR_ODDS * len(f.names), f) for f in fits), key=lambda p: -p[0])
+    return Ranking(tuple(f for _, f in pairs), tuple(p for p, _ in pairs), discrepancy)
+
+
+def corrected(ranking: Ranking, samples: Samples) -> Ranking:
+    """Return the ranking where what can still win is fitted to the samples: what its blocks leave out is added to them.
+
+    A deferred correction: what the blocks leave out is taken at the optimum, and the fit repeated with it. H. J.
+    Stetter, "The defect correction principle and discretization methods", Numer. Math. 29 (1978) 425-443.
+    """
+    return _in_order(
+        (
+            _corrected(f, samples, ranking.discrepancy) if ranking.behind(f) < LOST else f
+            for f in ranking.fits
+        ),
+        ranking.discrepancy,
+    )
+
+
+def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
+    for _ in range(CORRECTIONS):
+        dataset = fit.problem.dataset
+        left_out = samples.left_out(dataset, fit.tire)
+        pairs = zip(left_out, dataset.experiments, strict=True)
+        new = dataset.stacked([own - e.left_out for own, e in pairs])
+        if new @ new < ENOUGH * fit.variance:
+            break
+        fit = fitted(dataset.corrected(left_out), [fit.values], discrepancy, fit.variance, -np.inf)
+    return fit
 
 
 def _follow(board: _Board, names: frozenset[str]) -> None:

@@ -114,6 +114,7 @@ class Experiment:
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
     interval [s]: from block to block; reading: noise of the samples [N]
     measured: the channels that were recorded, by their names, averaged over the blocks
+    left_out [N] (n,): what the blocks leave of a response that is known from sample to sample, see `Samples`
     """
 
     name: str
@@ -134,6 +135,7 @@ class Experiment:
     interval: float
     reading: Noise
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
+    left_out: FloatArray | float = 0.0
 
 
 @dataclass(frozen=True)
@@ -190,7 +192,12 @@ class Dataset:
     def response(self, tire: TireModel) -> FloatArray:
         """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
         pairs = zip(self._stages, self.experiments, strict=True)
-        return self.stacked([stages.simulate(tire) - e.baseline for stages, e in pairs])
+        return self.stacked([stages.simulate(tire) - e.baseline + e.left_out for stages, e in pairs])
+
+    def corrected(self, left_out: Sequence[FloatArray]) -> Dataset:
+        """Return the dataset where a response is what it is in blocks and what these leave out [N], a constant."""
+        pairs = zip(self.experiments, left_out, strict=True)
+        return replace(self, experiments=tuple(replace(e, left_out=own) for e, own in pairs))
 
     def with_noise(self, noises: Sequence[Noise]) -> Dataset:
         """Return the dataset with another noise [N] of each averaged misfit."""
@@ -244,22 +251,33 @@ def dataset_of(
     )
 
 
-def blocking_error(dataset: Dataset, recordings: Sequence[Recorded], tire: TireModel) -> float:
-    """Return by how much the response of `tire` in blocks differs from its average over their samples.
+@dataclass(frozen=True)
+class Samples:
+    """The samples of a dataset's experiments: their motion, and the baseline's force [N] there."""
 
-    Root mean square in units of the noise, over the `recordings` of the dataset: a delay that is shorter than a block
-    is not what it is from sample to sample.
-    """
-    error = []
-    for e, recording in zip(dataset.experiments, recordings, strict=True):
-        if e.size == 1:
-            error.append(np.zeros(e.time.size))
-            continue
-        moved = smoothed_motion(recording, motion_of(recording.time, _read(recording)[0]))
-        changed = simulate(tire, moved, moved) - simulate(dataset.tire, moved, moved)
-        averaged = changed[: e.time.size * e.size].reshape(-1, e.size).mean(axis=1)
-        error.append(averaged - (simulate(tire, e, e) - e.baseline))
-    return float(np.sqrt(np.mean(dataset.stacked(error) ** 2)))
+    motions: tuple[SmoothedMotion, ...]
+    baselines: tuple[FloatArray, ...]
+
+    def left_out(self, dataset: Dataset, tire: TireModel) -> tuple[FloatArray, ...]:
+        """Return by how much [N] the average of `tire`'s response over the samples of a block is more than it is there.
+
+        One array (n,) for each experiment. A delay that is shorter than a block is not what it is from sample to
+        sample, and the average over a knee is not the knee of the average.
+        """
+        found = []
+        for e, motion, baseline in zip(dataset.experiments, self.motions, self.baselines, strict=True):
+            changed = simulate(tire, motion, motion) - baseline
+            averaged = changed[: e.time.size * e.size].reshape(-1, e.size).mean(axis=1)
+            found.append(
+                averaged - (simulate(tire, e, e) - e.baseline) if e.size > 1 else np.zeros(e.time.size)
+            )
+        return tuple(found)
+
+
+def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:
+    """Return the samples of the recordings as their blocks are made of them; tire: the baseline."""
+    motions = tuple(smoothed_motion(r, motion_of(r.time, _read(r)[0])) for r in recordings)
+    return Samples(motions, tuple(simulate(tire, m, m) for m in motions))
 
 
 def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,10 +11,12 @@ import pytest
 from drives import damped
 from radialtire import TireModel
 from tirelab.estimation.fit import fitted
-from tirelab.estimation.ranking import TEMPERATURE, Ranking, additions, promises, ranked
-from tirelab.regressors.dataset import Dataset, dataset_of
+from tirelab.estimation.ranking import TEMPERATURE, Ranking, additions, corrected, promises, ranked
+from tirelab.recordings.recording import Recording
+from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
 from tirelab.regressors.signature import Signature, law_signature, signatures_of
 from tirelab.selection.search import Discrepancy, discrepancy_of
+from tirelab.simulation.simulate import simulate
 
 NAMES = ("viscous_damping", "rate_independent_hysteresis", "inertia")
 
@@ -40,7 +43,7 @@ def ranking(dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepa
 
 def by_hand(*sets: tuple[str, float]) -> Ranking:
     fits: Any = [SimpleNamespace(names=tuple(names.split())) for names, _ in sets]
-    return Ranking(tuple(fits), tuple(posterior for _, posterior in sets))
+    return Ranking(tuple(fits), tuple(posterior for _, posterior in sets), Discrepancy(100, 30.0, 1.0, 2.0))
 
 
 def test_odds_are_those_of_the_posteriors_tempered() -> None:
@@ -94,3 +97,24 @@ def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
     # Damping is linear: twice the response has twice the coefficient, and the same form beside it.
     assert first.values[0] == pytest.approx(2.0 * damper.values[drawn][0], rel=1e-6)
     assert first.values[1:] == pytest.approx(damper.values[drawn][1:])
+
+
+def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
+    """Cycles of 1.5 Hz every 2 ms, in blocks of several samples, read 10 ms late behind a low-pass of 5 ms."""
+    time = 0.002 * np.arange(16_000)
+    x = 0.010 - 0.008 * np.cos(2.0 * np.pi * 1.5 * time)
+    silent = Recording("cycles", time, x, np.full(16_000, np.inf), np.zeros(16_000))
+    true = (0.005, 0.01, 0.0)
+    force = simulate(arranged(TireModel(), [("force_lag", true)]), silent)
+    read = replace(silent, force=force + np.random.default_rng(3).normal(size=16_000))
+    dataset = dataset_of([read], TireModel())
+    assert dataset.experiments[0].size >= 2
+    noise = discrepancy_of(dataset.misfit, 0.0)
+    in_blocks = ranked(dataset, signatures_of(("force_lag",), dataset), noise, [], lambda name: ())
+    of_samples = corrected(in_blocks, samples_of([read], TireModel()))
+    assert of_samples.best.names == ("force_lag",)
+    late = sum(of_samples.best.values["force_lag"][:2])
+    assert late == pytest.approx(0.015, abs=2e-5)
+    left = [r.best.residual.size**-0.5 * r.best.power**0.5 for r in (in_blocks, of_samples)]
+    assert left[1] < left[0]
+    assert of_samples.of(frozenset()) is in_blocks.of(frozenset())

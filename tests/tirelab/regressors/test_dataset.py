@@ -9,7 +9,7 @@ import pytest
 from radialtire import CATALOGUE, TireModel
 from tirelab.preprocessing.noise import Noise
 from tirelab.recordings.recording import Recording
-from tirelab.regressors.dataset import arranged, blocking_error, dataset_of
+from tirelab.regressors.dataset import arranged, dataset_of, samples_of
 from tirelab.simulation.simulate import simulate
 
 FORCE_NOISE = 5.0
@@ -118,5 +118,11 @@ def test_a_delay_shorter_than_a_block_errs_in_blocks_and_hardly_in_samples() -> 
     (e,) = coarse.experiments
     assert e.size > 2
     bound = (2.0 * np.pi * 4.0 * 0.002 * e.size) ** 2 / 8.0 * np.std(force) / e.noise
-    assert 0.1 * bound < blocking_error(coarse, [read], delayed) < bound
-    assert blocking_error(fine, [read], delayed) == 0.0
+    samples = samples_of([read], TireModel())
+    (missed,) = samples.left_out(coarse, delayed)
+    assert 0.1 * bound < np.sqrt(np.mean(missed[e.counts] ** 2)) / e.noise < bound
+    assert not samples.left_out(fine, delayed)[0].any()
+    averaged = simulate(delayed, silent)[: missed.size * e.size].reshape(-1, e.size).mean(axis=1)
+    response = coarse.corrected([missed]).response(delayed) * e.noise
+    baseline = simulate(TireModel(), silent)[: missed.size * e.size].reshape(-1, e.size).mean(axis=1)
+    assert response == pytest.approx((averaged - baseline)[e.counts], abs=0.02 * e.noise)
