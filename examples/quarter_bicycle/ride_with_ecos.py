@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import os
 
 from ecospy import EcosSimulation
 
@@ -53,3 +54,5 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
+    # At the usual exit oneTBB may unload libtbbbind while it still frees what libhwloc told it: a crash at times.
+    os._exit(0)

@@ -1,6 +1,7 @@
 """Run an FMU with ecospy: argv = FMU (or a proxyfmu URI); prints a force for each pair of inputs on standard input."""
 
 import json
+import os
 import sys
 
 from ecospy import EcosSimulation, EcosSimulationStructure
@@ -16,4 +17,5 @@ with EcosSimulationStructure() as structure:
             simulation.step()
             forces.append(simulation.get_real("tire::radial_force"))
         simulation.terminate()
-print("forces", json.dumps(forces))
+print("forces", json.dumps(forces), flush=True)
+os._exit(0)  # see examples/quarter_bicycle/ride_with_ecos.py
