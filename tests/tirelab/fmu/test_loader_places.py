@@ -11,6 +11,7 @@ from urllib.parse import quote
 
 import pytest
 from loader_bench import FORCE_1_CM, Bench, numbers, unpacked
+from tirelab.fmu.loader import Compiler
 
 
 @pytest.mark.parametrize("locale", ["C", "C.UTF-8"])
@@ -98,6 +99,17 @@ def test_a_named_library_that_is_none_is_refused(bench: Bench) -> None:
     result = bench.attempt("run", 0.01, environment={"TIRELAB_LIBPYTHON": "/nowhere/100%/libpython.so"})
     assert result.returncode == 1
     tried = r"TIRELAB_LIBPYTHON=/nowhere/100%/libpython\.so \(.*cannot open shared object file.*\)"
+    assert re.fullmatch(REFUSED + tried + ADVICE, result.stdout)
+
+
+def test_a_python_that_is_too_old_is_refused(bench: Bench, compiler: Compiler, tmp_path: Path) -> None:
+    """The tire needs Python 3.10; the library tells its version and nothing else."""
+    source, library = tmp_path / "old.c", tmp_path / "libpython3.9.so.1.0"
+    source.write_text('const char *Py_GetVersion(void) { return "3.9.18"; }\n')
+    subprocess.run([*compiler.command, "-shared", "-fPIC", "-o", library, source], check=True)
+    result = bench.attempt("run", 0.01, environment={"TIRELAB_LIBPYTHON": str(library)})
+    assert result.returncode == 1
+    tried = rf"TIRELAB_LIBPYTHON={re.escape(str(library))} \(not Python 3\.10 or newer\)"
     assert re.fullmatch(REFUSED + tried + ADVICE, result.stdout)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import textwrap
@@ -139,6 +140,29 @@ def test_a_master_that_retries_what_is_discarded_ends(bench: Bench, tire: Path) 
     message, status = bench.run("retry", fmu=tire).splitlines()
     assert message.startswith("[tire, 3, logStatusError] deflection = nan m is not allowed")
     assert int(status) == 3
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda text: text[: len(text) // 2], "tire.json"),
+        (lambda text: re.sub(r'"schema": *\d+', '"schema": 99', text), "99"),
+    ],
+    ids=["truncated", "another version"],
+)
+def test_a_tire_file_that_is_not_whole_or_of_another_version_is_told(
+    bench: Bench, article_fmu: Path, tmp_path: Path, change: Callable[[str], str], words: str
+) -> None:
+    fmu = unpacked_archive(article_fmu, tmp_path / "fmu")
+    file = fmu / "resources" / "tire.json"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(change(text), encoding="utf-8")
+    assert file.read_text(encoding="utf-8") != text
+    result = bench.attempt("run", 0.01, fmu=fmu)
+    assert result.returncode == 1
+    assert words in result.stdout
+    assert result.stdout.count("\n") == 1
+    assert "Traceback" not in result.stdout
 
 
 @pytest.mark.parametrize("guid", ["{00000000-0000-5000-8000-000000000000}", "", None])

@@ -86,6 +86,24 @@ def test_derivatives_by_inputs_and_states(tmp_path: Path) -> None:
     assert along == pytest.approx(STIFFNESS * (1.0 + g) + 2.0 * c - 3.0 * g, rel=1e-6)
 
 
+def test_a_mass_and_a_damper_follow_the_motion_that_is_connected(tmp_path: Path) -> None:
+    """F = k x + c v + m a at once: a solver that knows the motion needs no estimate of it."""
+    c, m = 300.0, 2.0
+    one = unit(tire_with(viscous_damping={"damping": c}, inertia={"mass": m}), tmp_path, 0.01, FLAT, 0.0, 0.0)
+    for i, (x, v, a) in enumerate([(0.01, 0.1, 0.0), (0.01, -0.1, 50.0), (0.012, 0.0, -20.0)]):
+        force, _ = one.evaluate(1e-3 * i, [x, FLAT, v, a], [])
+        assert force == pytest.approx(STIFFNESS * x + c * v + m * a, rel=1e-12)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_an_input_that_no_tire_has_is_refused_in_continuous_time(tmp_path: Path, bad: float) -> None:
+    one = unit(tire_with(), tmp_path, 0.01, FLAT)
+    for inputs, name in (([bad, FLAT], "deflection"), ([0.01, bad if math.isnan(bad) else 0.0], "surface")):
+        with pytest.raises(AssertionError, match=rf"{name}\w* = .* is not allowed"):
+            one.evaluate(0.001, inputs, [])
+    assert one.evaluate(0.002, [0.01, FLAT], [])[0] == pytest.approx(STIFFNESS * 0.01, rel=1e-12)
+
+
 def test_a_seed_that_is_no_number_is_refused(tmp_path: Path) -> None:
     one = unit(tire_with(), tmp_path, 0.01, FLAT)
     for seed in (math.nan, math.inf):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from radialtire import CATALOGUE, TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.fmu.native.pack import build_native_fmu
 
 DAMPED = TireModel(
@@ -85,3 +85,24 @@ def test_only_a_tire_that_needs_its_motion_has_inputs_for_it(tmp_path: Path, nam
     for tire, expected in ((TireModel(), False), (DAMPED, True)):
         with zipfile.ZipFile(build_native_fmu(tire, tmp_path).path) as archive:
             assert (f'name="{name}"' in archive.read("modelDescription.xml").decode()) == expected
+
+
+@pytest.mark.parametrize("given", [True, False])
+def test_in_co_simulation_the_motion_is_taken_as_given_where_it_is_said(tmp_path: Path, given: bool) -> None:
+    """F = k x + c v of the inputs; else the rate of the deflection alone, which rests here."""
+    stiffness, damping, x, v = 150_000.0, 300.0, 0.01, 0.1
+    effect = CATALOGUE["viscous_damping"]
+    values = tuple({"damping": damping}.get(p.name, p.start) for p in effect.parameters)
+    tire = TireModel(law=PowerLaw(stiffness / 100.0, 1.0), effects=((effect, values),))
+    names = ("time", "deflection", "surface_radius", "deflection_rate")
+    rows = [(0.0, x, 1e5, v), (0.1, x, 1e5, v)]
+    found = simulate_fmu(
+        str(build_native_fmu(tire, tmp_path).path),
+        fmi_type="CoSimulation",
+        stop_time=0.1,
+        output_interval=0.01,
+        input=np.array(rows, dtype=[(n, float) for n in names]),
+        start_values={"motion_given": given},
+    )
+    expected = stiffness * x + (damping * v if given else 0.0)
+    assert found["radial_force"][-1] == pytest.approx(expected, rel=1e-9)
