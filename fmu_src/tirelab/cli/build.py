@@ -104,7 +104,7 @@ def _correction(correction: Correction, native: bool, output: Output) -> None:
     built = build_correction(correction, output.out)
     named = correction.corrected.name
     lines = [
-        f"{built.path}: what the simulation lacks, {named}, FMI 2.0 Co-Simulation, valid, guid {built.guid}"
+        f"{built.path}: what {correction.believed.name} lacks, FMI 2.0 Co-Simulation, valid, guid {built.guid}"
     ]
     compiler = None if built.compiler is None else built.compiler.name
     content = {"fmu": str(built.path), "tire": named, "guid": built.guid, "compiler": compiler}

@@ -132,19 +132,26 @@ def _part(
         model = tire_of(law, recordings, name)
         with staged(tire.parent) as folder:
             write_tire(model, folder / tire.name)
+    else:
+        law = min(fits, key=lambda fit: fit.rmse)
+    command = shlex.join(["tirelab", "diagnose", *given, "--tire", str(output.out)])
+    misfit = misfit_sentence(law.rmse, reading_noise(recordings), command)
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]
         output.result((), {"laws": laws, "tire": None if tire is None else str(tire)})
+        if misfit:
+            output.note(misfit)
         return
     console.print(law_table(fits))
     if tire is not None:
-        command = shlex.join(["tirelab", "diagnose", *given, "--tire", str(tire)])
-        if misfit := misfit_sentence(law.rmse, reading_noise(recordings), command):
+        if misfit:
             console.print(f"- {misfit}", markup=False, soft_wrap=True)
         console.print(f"tire: {tire}", soft_wrap=True)
     elif best := best_writable(fits, recordings):
-        command = shlex.join(["tirelab", "identify", *given, "--part", best])
+        command = shlex.join(["tirelab", "identify", *given, "--part", best, "--out", str(output.out)])
         console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
+        if misfit:
+            console.print(f"- {misfit} then", markup=False, soft_wrap=True)
 
 
 def _bars(quiet: bool) -> Progress:

@@ -68,7 +68,9 @@ def _share(context: click.Context, parameter: click.Parameter, text: str) -> flo
     click.option("--sampling", metavar="RATE", help="Samples of force and deflection.  [default: 200Hz]"),
     click.option("--noise", metavar="FORCE", help="Standard deviation of one force sample.  [default: 5N]"),
 )
-@click.option("--tire", type=FILE, help="The believed tire.  [default: the article's tire]")
+@click.option(
+    "--tire", type=FILE, help="The believed tire.  [default: that of the diagnosis, or the article's]"
+)
 @click.option(
     "--from",
     "diagnosis",
@@ -104,7 +106,8 @@ def command(
     typed = asdict(limits)
     diagnosed = None if diagnosis is None else read_diagnosed(diagnosis)
     rig = read_rig(typed.pop("rig"), typed, Rig() if diagnosed is None else diagnosed.rig)
-    model = TireModel() if tire is None else read_tire(tire)
+    believed = None if diagnosed is None else diagnosed.tire
+    model = read_tire(tire) if tire is not None else believed or TireModel()
     with progress(output.quiet) as show:
         if diagnosed is None:
             plan = plan_recordings(model, rig, size, show)
@@ -141,7 +144,7 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
     lines = [
         f"{plan.tire}: to {1e3 * rig.stroke:g} mm and {plan.peak:.0f} N, at up to {1e3 * rig.speed:g} mm/s, "
         f"{1.0 / rig.sampling:g} Hz, {rig.noise:g} N of noise",
-        f"{len(plan.drives)} recordings, {plan.seconds:.0f} s of {rig.time:g} s:",
+        f"{len(plan.drives)} recording{'s' if len(plan.drives) > 1 else ''}, {plan.seconds:.0f} s of {rig.time:g} s:",
         *(
             f"  {out / file_name(number, drive)}: {drive.duration:.0f} s, to {1e3 * drive.fastest:.3g} mm/s"
             for number, drive in enumerate(plan.drives, 1)

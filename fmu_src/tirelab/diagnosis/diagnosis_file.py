@@ -111,6 +111,8 @@ def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | C
         else:  # written before the file held the tire
             tire = read_tire(path.parent / str(content["tire"]))
         return replace(tire, remainder=learned)
+    except DiagnosisFileError:
+        raise
     except OSError as error:
         raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
     except TireFileError as error:

@@ -194,7 +194,7 @@ def recording_notes(surfaces: tuple[SurfaceFit, ...], one_sided: tuple[bool, ...
         if surface.loop is not None and abs(surface.loop) > 0.03 * surface.force_max:
             found.append(
                 f"{where}: loading and unloading differ by {surface.loop:.3g} N, "
-                f"{100.0 * abs(surface.loop) / surface.force_max:.2g} % of the largest force; the law is their mean"
+                f"{100.0 * abs(surface.loop) / surface.force_max:.3g} % of the largest force; the law is their mean"
             )
         if surface.deflection_max * CM_PER_M < 0.2:
             found.append(

@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
-from radialtire import TireModel
+from radialtire import TireFileError, TireModel
+from radialtire.tirefile import from_text
 
 from ..errors import TirelabError, what_is_wrong
 from ..names import UNKNOWN
@@ -37,12 +38,15 @@ MOST_SAMPLES = 20_000
 
 @dataclass(frozen=True)
 class Diagnosed:
-    """What a diagnosis.json states: the verdict's names, its alternatives, the noise [N], and the recorded motions."""
+    """What a diagnosis.json states: the verdict's names, its alternatives, the noise [N], the recorded motions, and the
+    tire that was believed, None in a file that does not hold it.
+    """
 
     names: frozenset[str]
     alternatives: tuple[frozenset[str], ...]
     noise: float
     recorded: tuple[Drive, ...]
+    tire: TireModel | None = None
 
     @property
     def rig(self) -> Rig:
@@ -52,7 +56,7 @@ class Diagnosed:
             return rig
         radii = np.unique(np.concatenate([d.surface_radius for d in self.recorded]))
         surfaces = sorted((float(r) for r in radii), key=lambda r: abs(1.0 / r))[:MOST_SURFACES]
-        stroke = max(float(d.deflection.max()) for d in self.recorded)
+        stroke = max(float(np.abs(d.deflection).max()) for d in self.recorded)
         return replace(rig, surfaces=tuple(surfaces), stroke=stroke)
 
 
@@ -66,8 +70,13 @@ def read_diagnosed(path: Path) -> Diagnosed:
         others = tuple(frozenset(map(str, other)) - {UNKNOWN} for other in verdict["alternatives"])
         noise = float(content["fit"]["noise"])
         data = content.get("data")
+        # Beside somebody else's simulation the believed tire has no force of its own.
+        held = None if "correction" in content else content.get("baseline_tire")
+        tire = None if held is None else from_text(json.dumps(held))
     except OSError as error:
         raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
+    except TireFileError as error:
+        raise TirelabError(f"{file}: the believed tire cannot be read: {error}") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise TirelabError(f"{file}: is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
     table = None if data is None else file.parent / str(data)
@@ -76,6 +85,7 @@ def read_diagnosed(path: Path) -> Diagnosed:
         tuple(dict.fromkeys(o for o in others if o != names)),
         noise,
         () if table is None or not table.is_file() else _recorded(table),
+        tire,
     )
 
 

@@ -147,7 +147,7 @@ def test_a_correction_is_built_from_its_diagnosis(tmp_path: Path) -> None:
     }
     (tmp_path / "diagnosis.json").write_text(json.dumps(content), encoding="utf-8")
     printed = built("--from", tmp_path / "diagnosis.json", "--out", tmp_path)
-    assert "what the simulation lacks" in printed
+    assert f"what {correction.believed.name} lacks, FMI 2.0" in printed
     time = np.array([0.0, 1.0, 2.5])
     added = driven(tmp_path / "Correction.fmu", time, {"deflection": np.full(3, 0.01)}, "additional_force")
     np.testing.assert_allclose(added, [0.0, 2.0, 5.0], atol=1e-9)
@@ -163,7 +163,7 @@ def test_a_correction_is_built_from_its_diagnosis(tmp_path: Path) -> None:
         (["--from", "{here}/none.json"], "diagnose again"),
         (["--from", "{here}/text.json"], "is no diagnosis"),
         (["--from", "{here}/empty.json", "--tire", "{here}/tire.json"], "both name a tire"),
-        (["--from", "{here}/known.json", "--with-remainder"], "leave out --with-remainder"),
+        (["--from", "{here}/known.json", "--with-remainder"], "known.json: nothing is unexplained"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(words: list[str], match: str, tmp_path: Path) -> None:

@@ -229,7 +229,8 @@ def test_a_damper_whose_force_falls_is_written_as_a_constant(tmp_path: Path) -> 
     assert compared.exit_code == 0, compared.output
     (said,) = [row for row in compared.output.splitlines() if "a tire file holds" in row]
     command = shlex.split(said.split("`")[1])
-    assert command[-2:] == ["--part", "constant"]
+    at = command.index("--part")
+    assert command[at : at + 2] == ["--part", "constant"]
     done = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "part.json")])
     assert done.exit_code == 0, done.output
     assert read_tire(tmp_path / "part.json").preload == pytest.approx(float(np.mean(force)), abs=1.0)
@@ -258,6 +259,11 @@ def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: 
     # The loop is an ellipse: no friction's. What made it is named, and nothing else.
     assert [e["name"] for e in verdict["effects"]] == ["viscous_damping"]
     assert "damping" in diagnosed.output
+    words = ["identify", str(tmp_path / "damper.csv"), *signed, "--part", "compare", "--out", str(out)]
+    laws = CliRunner().invoke(main, words)
+    written, misfit = (shlex.split(line.split("`")[1]) for line in laws.output.splitlines() if "`" in line)
+    assert written[:2] == ["tirelab", "identify"]
+    assert (misfit[:2], misfit[-2:]) == (["tirelab", "diagnose"], ["--tire", str(out)])
     words = ["compare", str(tmp_path / "damper.csv"), *signed, "--tire", str(out), "--out", str(tmp_path)]
     compared = CliRunner().invoke(main, words)
     assert compared.exit_code == 0, compared.output

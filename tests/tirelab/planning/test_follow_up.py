@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
-from radialtire import TireModel
+from radialtire import PowerLaw, TireModel
+from radialtire.tirefile import to_text
 from small_rig import RIG, few_effects
 from tirelab.errors import TirelabError
 from tirelab.planning.follow_up import Diagnosed, alternatives_asked, follow_up, read_diagnosed
@@ -51,6 +52,25 @@ def test_verdict_alternatives_and_recorded_motions_are_read(tmp_path: Path) -> N
             slow.deflection.max(),
             (np.inf,),
         )
+
+
+def test_the_believed_tire_and_the_stroke_of_a_part_are_those_of_the_diagnosis(tmp_path: Path) -> None:
+    """A damper that was pulled 12 mm and pushed 8 mm; beside a foreign simulation its tire is nothing."""
+    file = written(tmp_path, [[DAMPING]])
+    assert read_diagnosed(file).tire is None
+    part = TireModel(name="damper", law=PowerLaw(10.0, 1.0), two_sided=True)
+    content = json.loads(file.read_text()) | {"baseline_tire": json.loads(to_text(part))}
+    file.write_text(json.dumps(content))
+    table = pl.read_csv(tmp_path / "plots.csv")
+    table.with_columns(pl.col("deflection [mm]") * 20.0 / 9.9 - 12.0).write_csv(tmp_path / "plots.csv")
+    found = read_diagnosed(file)
+    assert found.tire == part
+    assert found.rig.stroke == pytest.approx(0.012)
+    file.write_text(json.dumps(content | {"correction": {}}))
+    assert read_diagnosed(file).tire is None
+    file.write_text(json.dumps(content | {"baseline_tire": {"schema": 99}}))
+    with pytest.raises(TirelabError, match="the believed tire cannot be read"):
+        read_diagnosed(file)
 
 
 @pytest.mark.parametrize(
