@@ -70,8 +70,10 @@ def match_channels(
     trials = _trials(found, columns)
     if trials > 1:
         found = _of_trial(origin, found, trials, trial)
-    elif trial is not None and trial > 1 and not {"deflection", "force"} <= columns.keys():
-        raise RecordingError(f"{origin}: has no trials side by side; leave out @trial{trial}")
+    elif trial is not None and trial > _by_words(headers, columns):
+        raise RecordingError(
+            f"{origin}: has no trial {trial} side by side with others; leave out @trial{trial}"
+        )
     for channel in CHANNELS:
         indices = found.get(channel.name, [])
         if len(indices) > 1:
@@ -141,6 +143,15 @@ def _trials(found: Mapping[str, Sequence[int]], columns: Mapping[str, str]) -> i
     ends = [max(pair) for pair in zip(deflections, forces, strict=True)]
     apart = all(end < start for end, start in zip(ends, starts[1:], strict=False))
     return count if apart else 1
+
+
+def _by_words(headers: Sequence[Header], columns: Mapping[str, str]) -> float:
+    """Return how many tests stand side by side by the words alone; as many as are asked for where none does and the
+    columns are named by the user.
+    """
+    found = {c.name: _found(headers, c, set()) for c in CHANNELS}
+    named = {"deflection", "force"} <= columns.keys()
+    return float("inf") if named and len(found["force"]) != 1 else 1.0
 
 
 def _of_trial(

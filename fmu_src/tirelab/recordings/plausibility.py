@@ -51,6 +51,12 @@ CLOCKS = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
 YEAR_2001, YEAR_2096 = 1e9, 4e9
 """Seconds since 1970 [s]; a recording is not that long."""
 
+PRESSURES = (2e4, 1.5e6)
+"""Gauge pressures [Pa] of bicycle tires: 0.3 bar of a fat one, 14 bar of a track racer's."""
+
+TEMPERATURES = (233.15, 423.15)
+"""Temperatures [K] at which rubber is used and tested: -40 to 150 degrees Celsius."""
+
 FLAT_BINS = 60
 
 UNLOADED, AT_START = 0.03, 0.04
@@ -86,7 +92,10 @@ def doubts_of(
         if not largest <= LARGEST_PLAUSIBLE[name]:
             return ()  # the recording refuses it
     backwards = _loop_doubt(origin, values["deflection"], values["force"])
-    loops = (_placed(where("force", None), backwards),) if backwards else ()
+    loops: tuple[str, ...] = (_placed(where("force", None), backwards),) if backwards else ()
+    loops += tuple(
+        _placed(where(name, None), sentence) for name, sentence in _state_doubts(values, units, part)
+    )
     if part:
         return loops
     step = max(1, len(values["force"]) // LOOKED_AT)
@@ -107,6 +116,40 @@ def doubts_of(
         )
         found.append(_placed(where("deflection", None), sentence))
     return (*found, *loops)
+
+
+def _state_doubts(
+    values: Mapping[str, FloatArray], units: Mapping[str, str], part: bool
+) -> list[tuple[str, str]]:
+    """Return the channels of the tire's state that have a size which no tire has, and the sentence."""
+    found = []
+    if "pressure" in values:
+        low, high = float(values["pressure"].min()), float(values["pressure"].max())
+        least, most = (-101_325.0, np.inf) if part else PRESSURES
+        if low < min(least, 0.0) or high > most or high < least:
+            found.append(
+                (
+                    "pressure",
+                    f"goes from {low / 1e5:.3g} to {high / 1e5:.3g} bar of gauge pressure, which no "
+                    f"{'gauge reads' if part else 'bicycle tire has'}; {_unit_asked('pressure', units)}",
+                )
+            )
+    if "temperature" in values:
+        low, high = float(values["temperature"].min()), float(values["temperature"].max())
+        if low < TEMPERATURES[0] or high > TEMPERATURES[1]:
+            found.append(
+                (
+                    "temperature",
+                    f"goes from {low - 273.15:.3g} to {high - 273.15:.3g} degC, at which no rubber is tested; "
+                    f"{_unit_asked('temperature', units)}",
+                )
+            )
+    return found
+
+
+def _unit_asked(name: str, units: Mapping[str, str]) -> str:
+    unit = units.get(name, "")
+    return f"check its unit ({unit})" if unit else "check its unit"
 
 
 def _placed(place: str, sentence: str) -> str:
@@ -204,8 +247,8 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
     if not (stroke > 0.0 and load > 0.0) or f.min() < -PULLS * f.max():
         return ""
     usual = USUAL[0] * (100.0 * stroke) ** USUAL[1]
-    ratio = load / usual
-    if 1.0 / FAR < ratio < FAR:
+    ratio = load / usual if usual > 0.0 else np.inf
+    if 1.0 / FAR < ratio < FAR or not 0.0 < ratio < np.inf:
         return ""
     far = f"{1.0 / ratio:.0f} times too small" if ratio < 1.0 else f"{ratio:.0f} times too large"
     rounded = 10.0 ** round(np.log10(ratio))

@@ -134,6 +134,21 @@ class TestTrials:
         files, _ = recording_files([side_by_side, rig])
         assert [file.name for file in files] == ["both.csv@trial1", "both.csv@trial2", "flat.csv"]
 
+    def test_a_trial_that_is_not_there_is_refused_although_columns_are_named(self, tmp_path: Path) -> None:
+        """As after `inspect`, which names them; what no words find is for the user to know."""
+        time, deflection, force = loading()
+        columns = {"deflection": "Stroke [cm]", "force": "Load [N]"}
+        path = write_rows(tmp_path / "a.csv", "Time [s],Stroke [cm],Load [N]", time, deflection, force)
+        with pytest.raises(
+            RecordingError, match="has no trial 7 side by side with others; leave out @trial7"
+        ):
+            read_recording(f"{path}@trial7", radius="flat", columns=columns)
+        own = {"deflection": "a2 [cm]", "force": "b2 [N]"}
+        header = "Time [s],a1 [cm],b1 [N],a2 [cm],b2 [N]"
+        path = write_rows(tmp_path / "b.csv", header, *(time, deflection, force, deflection, force / 2))
+        second = read_recording(f"{path}@trial2", radius="flat", columns=own)
+        np.testing.assert_allclose(second.force, force / 2, rtol=1e-5)
+
     def test_one_time_may_serve_all(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         path = write_rows(

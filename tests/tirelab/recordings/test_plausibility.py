@@ -84,3 +84,37 @@ def test_a_damaged_number_ends_in_a_question_and_no_traceback(tmp_path: Path, va
     path.write_text("\n".join(["time,deflection,force", *rows]), encoding="utf-8")
     with pytest.raises(RecordingError):
         read_recording(path, radius="flat")
+
+
+@pytest.mark.parametrize(
+    ("channel", "values", "unit", "said"),
+    [
+        (
+            "pressure",
+            -5.0,
+            "bar",
+            "from -5 to -5 bar of gauge pressure, which no bicycle tire has; check its unit",
+        ),
+        ("pressure", 250.0, "bar", "from 250 to 250 bar of gauge pressure"),
+        ("pressure", 2.5, "kPa", "from 0.025 to 0.025 bar of gauge pressure"),
+        ("temperature", 500.0, "degC", "from 500 to 500 degC, at which no rubber is tested; check its unit"),
+        ("pressure", 2.5, "bar", ""),
+        ("temperature", 21.0, "degC", ""),
+    ],
+)
+def test_a_pressure_or_temperature_that_no_tire_has_is(
+    tmp_path: Path, channel: str, values: float, unit: str, said: str
+) -> None:
+    file = tmp_path / "press.csv"
+    rows = np.column_stack([T, 1e3 * X, pressed(900.0, 1.45), np.full(T.size, values)])
+    header = f"time [s],deflection [mm],force [N],{channel} [{unit}]"
+    np.savetxt(file, rows, delimiter=",", header=header, comments="", fmt="%.4f")
+    doubts = read_recording(file, radius="flat").doubts
+    assert len(doubts) == bool(said)
+    assert all(said in doubt and f"column '{channel} [{unit}]'" in doubt for doubt in doubts), doubts
+
+
+def test_a_stroke_that_is_all_but_nothing_is_read() -> None:
+    """A tire's force at 1e-232 m is 0 in floating point: nothing can be compared with it."""
+    recording = Recording.from_arrays(T, 1e-230 * X, pressed(900.0, 1.45), "flat")
+    assert not any("times too" in doubt for doubt in recording.doubts)
