@@ -128,8 +128,9 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
 
     odds: log odds of all sets with it against all without; contested: tempered probability of these
     share: ln of its share of the misfit; alike: ln(1 + effects that this motion cannot tell from it)
-    imitated: of an effect that a law of another shape could be, on one surface: 1 beside the refitted law, else the
-    odds, at most 1, of that law in the place of all such effects, tempered; beside_law: whether it depends on the
+    imitated: of an effect that a law of another shape could be, on one surface: beside the refitted law the number of
+    its parameters of form, which let it follow such a law (one that has a strength alone fits by no accident), else
+    the odds, at most 1, of that law in the place of all such effects, tempered; beside_law: whether it depends on the
     deflection alone and stands beside a refitted law, which may have another form than the catalogue's
     significance: normal probability, two-sided, with which that of its parameters which the recordings determine best
     differs from its neutral value; its standard deviation counts the errors of the forms
@@ -213,7 +214,7 @@ def _imitated(name: str, names: Sequence[str], explanation: Explanation) -> floa
     if name == REFITTED_LAW or not within_law(name):
         return 0.0
     if REFITTED_LAW in names:
-        return 1.0
+        return float(sum(p.role == "form" and not p.optional for p in CATALOGUE[name].parameters))
     own = {n for n in names if not within_law(n)} | {REFITTED_LAW}
     instead = next((e for e in explanation.evidence if set(e.names) == own), None)
     return 0.0 if instead is None else min(instead.probability / max(explanation.probability, 1e-300), 1.0)

@@ -54,7 +54,9 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         error=2.0,
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
-            within_law=lambda name: one_surface and name == "gas_compression",
+            within_law=lambda name: (
+                one_surface and name in ("gas_compression", "bottoming", "deflection_offset")
+            ),
         ),
         model=SimpleNamespace(radii=(np.inf,), fit=SimpleNamespace(problem=problem)),
     )
@@ -125,12 +127,14 @@ def test_an_effect_in_every_set_has_the_largest_odds_that_count() -> None:
 @pytest.mark.parametrize(
     ("names", "imitated"),
     [
-        ("recalibration gas_compression", 1.0),
+        ("recalibration bottoming", 2.0),
+        ("recalibration deflection_offset", 0.0),
         ("recalibration inertia", 0.0),
-        ("bottoming gas_compression", 0.0),
+        ("saturation gas_compression", 0.0),
     ],
 )
 def test_a_refitted_law_imitates_what_it_could_be(names: str, imitated: float) -> None:
+    """An onset and its width may follow a law; an offset has nothing but its size."""
     one = explained(names)
     assert grounds_of_verdict(one, HELD_OUT, LEFT, unexplained=False)["imitated"] == imitated
     assert sum(grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects) == imitated
