@@ -73,7 +73,6 @@ DERIVED = (
     "preprocessing/noise.SMALL",
     "preprocessing/noise.STAYS",
     "preprocessing/noise.TRIMMED",
-    "regressors/dataset.BLURRED",
     "regressors/dataset.BY_CHANCE",
     "regressors/dataset.COUNTED",
     "regressors/excitation.COURSE_DRAWS",

@@ -18,7 +18,7 @@ from radialtire import CATALOGUE, TireModel
 from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor, noise_of
 from ..preprocessing.samples import Recorded
-from ..regressors.dataset import BLURRED, Dataset, dataset_of, samples_of
+from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
 from ..regressors.excitation import AS_GOOD, Excitation, excitation_of
 from ..regressors.signature import (
     LAW,
@@ -92,7 +92,7 @@ class Explanation:
     compared: tuple[BoolArray, ...]
     excitation: Excitation
     _ranking: Ranking = field(repr=False)
-    _recordings: tuple[Recorded, ...] = field(repr=False)
+    _samples: Samples = field(repr=False)
     _like_law: tuple[str, ...] = field(repr=False)
 
     @property
@@ -123,7 +123,7 @@ class Explanation:
         fit = self._ranking.of(frozenset(names))
         if fit is None:
             raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made")
-        own = self._recordings, self._ranking, fit, self.excitation, self.hidden, self._like_law
+        own = self._samples, self._ranking, fit, self.excitation, self.hidden, self._like_law
         return _explanation(*own)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
@@ -141,14 +141,15 @@ class Explanation:
     def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
         """Return the set fitted to the samples `kept` of each recording alone; their whole motion is known."""
         fit = self.model.fit
-        fitted_on = [(r, k) for r, k in zip(self._recordings, kept, strict=True) if k.any()]
+        chosen = [i for i, k in enumerate(kept) if k.any()]
+        samples = self._samples.only(chosen)
         readings = {e.name: e.reading for e in fit.problem.dataset.experiments}
-        own = [r for r, _ in fitted_on]
-        dataset = dataset_of(own, self.model.baseline, [readings[r.name] for r in own])
-        dataset = dataset.only([k for _, k in fitted_on])
+        own = [readings[r.name] for r in samples.recordings]
+        dataset = dataset_of(samples.recordings, self.model.baseline, own)
+        dataset = dataset.corrected(samples.left_out(dataset, fit.tire)).only([kept[i] for i in chosen])
         dataset = _quiet(dataset)
         again = fitted(dataset, [fit.values], discrepancy_of(dataset.misfit, 0.0), fit.variance, -np.inf)
-        return Refitted(again.tire, _residuals(again.tire, self._recordings))
+        return Refitted(again.tire, _residuals(again.tire, self._samples.recordings))
 
     def alternative_model(self, names: Sequence[str]) -> FittedModel | None:
         """Return the fit of another set; None where it was not fitted."""
@@ -186,17 +187,14 @@ def explain_misfit(
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
     ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
     samples = samples_of(recordings, baseline)
-    error = size_of(quiet.stacked(samples.left_out(quiet, ranking.best.tire)))
-    if error > LIKE_NOISE:
-        # The error of a block grows with the square of its length.
-        longest = max(e.size for e in dataset.experiments) * (BLURRED / error) ** 0.5
-        readings = [e.reading for e in dataset.experiments]
-        finer = dataset_of(recordings, baseline, readings, max(1, int(longest)))
-        dataset, raw, quiet = _signatures(finer, recordings, shown, catalogue)
+    left_out = samples.left_out(quiet, ranking.best.tire)
+    if size_of(quiet.stacked(left_out)) > LIKE_NOISE:
+        # What blocks leave out of the best set passed for noise, or for something that another effect is.
+        quiet = _with_saturated_noise(dataset.corrected(left_out), raw)
         ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
     ranking = corrected(ranking, samples)
     like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
-    return _explanation(tuple(recordings), ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+    return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 
 
 def _signatures(
@@ -229,7 +227,7 @@ def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tu
 
 
 def _explanation(
-    recordings: tuple[Recorded, ...],
+    samples: Samples,
     ranking: Ranking,
     chosen: Fit,
     excitation: Excitation,
@@ -272,12 +270,12 @@ def _explanation(
         tuple(n for n in like_law if LAW in chosen.names and n not in chosen.names),
         remainder_of(chosen),
         FittedModel(chosen),
-        _residuals(chosen.tire, recordings),
+        _residuals(chosen.tire, samples.recordings),
         tuple(e.floor for e in chosen.problem.dataset.experiments),
-        compared(recordings),
+        compared(samples.recordings),
         excitation,
         ranking,
-        recordings,
+        samples,
         like_law,
     )
 

@@ -21,7 +21,6 @@ from scipy.stats import binom
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import followed_turns, motion_of, through_turns
 from ..preprocessing.noise import (
-    NEGLIGIBLE,
     SHARE_OF_STEP,
     STANDS_OUT,
     Noise,
@@ -79,13 +78,6 @@ FEWEST_ROWS = 600
 TURN = 0.5
 """Phase p [rad] that a block spans at most, of a motion whose frequency is that of its acceleration over its rate."""
 
-BLURRED = float(np.sqrt((1.0 + NEGLIGIBLE) ** 2 - 1.0))
-"""Part of the noise that blocks may add: together they are more by what is negligible. Straight lines over a phase p
-miss p^2 / 12 of what changes."""
-
-FORMS_APART = 0.005
-"""Part of a misfit to which no effect's form is known; what blocks blur below it does not matter."""
-
 STEPS_LEFT = 0.3
 """Part of a gauge's steps that is left of the motion behind them: smooth over a step, no average takes it out."""
 
@@ -114,7 +106,7 @@ class Experiment:
     floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
     interval [s]: from block to block; reading: noise of the samples [N]
     measured: the channels that were recorded, by their names, averaged over the blocks
-    left_out [N] (n,): what the blocks leave of a response that is known from sample to sample, see `Samples`
+    left_out [N] (n,): what was taken off the misfit, as blocks leave it out of a response: see `Samples`
     """
 
     name: str
@@ -192,12 +184,13 @@ class Dataset:
     def response(self, tire: TireModel) -> FloatArray:
         """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
         pairs = zip(self._stages, self.experiments, strict=True)
-        return self.stacked([stages.simulate(tire) - e.baseline + e.left_out for stages, e in pairs])
+        return self.stacked([stages.simulate(tire) - e.baseline for stages, e in pairs])
 
     def corrected(self, left_out: Sequence[FloatArray]) -> Dataset:
-        """Return the dataset where a response is what it is in blocks and what these leave out [N], a constant."""
+        """Return the dataset whose misfit lacks what the blocks leave out [N] of a response."""
         pairs = zip(self.experiments, left_out, strict=True)
-        return replace(self, experiments=tuple(replace(e, left_out=own) for e, own in pairs))
+        changed = (replace(e, misfit=e.misfit + e.left_out - own, left_out=own) for e, own in pairs)
+        return replace(self, experiments=tuple(changed))
 
     def with_noise(self, noises: Sequence[Noise]) -> Dataset:
         """Return the dataset with another noise [N] of each averaged misfit."""
@@ -229,18 +222,14 @@ def dataset_of(
     recordings: Sequence[Recorded],
     tire: TireModel,
     readings: Sequence[Noise] | None = None,
-    longest: int | None = None,
 ) -> Dataset:
     """Return the recordings in blocks and what `tire`, the baseline, misses of them.
 
     readings: noise of the samples of each recording, if it is known; blocks are as long at least as it remembers
-    longest: samples of a block at most, as far as MOST_ROWS and that allow
     """
     total = sum(r.time.size for r in recordings)
     size = max(1, -(-total // ROWS))
     least = size * ROWS // MOST_ROWS
-    if longest is not None:
-        size = min(size, longest)
     known: Sequence[Noise | None] = readings or [None] * len(recordings)
     experiments = tuple(
         _experiment(r, tire, (least, size), n) for r, n in zip(recordings, known, strict=True)
@@ -253,10 +242,19 @@ def dataset_of(
 
 @dataclass(frozen=True)
 class Samples:
-    """The samples of a dataset's experiments: their motion, and the baseline's force [N] there."""
+    """The samples of a dataset's experiments: the recordings, their motion, and the baseline's force [N] there."""
 
+    recordings: tuple[Recorded, ...]
     motions: tuple[SmoothedMotion, ...]
     baselines: tuple[FloatArray, ...]
+
+    def only(self, kept: Sequence[int]) -> Samples:
+        """Return those of the recordings `kept`."""
+        return Samples(
+            tuple(self.recordings[i] for i in kept),
+            tuple(self.motions[i] for i in kept),
+            tuple(self.baselines[i] for i in kept),
+        )
 
     def left_out(self, dataset: Dataset, tire: TireModel) -> tuple[FloatArray, ...]:
         """Return by how much [N] the average of `tire`'s response over the samples of a block is more than it is there.
@@ -277,7 +275,7 @@ class Samples:
 def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:
     """Return the samples of the recordings as their blocks are made of them; tire: the baseline."""
     motions = tuple(smoothed_motion(r, motion_of(r.time, _read(r)[0])) for r in recordings)
-    return Samples(motions, tuple(simulate(tire, m, m) for m in motions))
+    return Samples(tuple(recordings), motions, tuple(simulate(tire, m, m) for m in motions))
 
 
 def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:
@@ -317,14 +315,11 @@ def _experiment(
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & _rare(lone[turns]))
     floor = noise_floor(reading.level, stiffness, gauge, step, force_step)
-    loudness = float(np.std(misfit)) / max(reading.level, 1e-300)
-    blur = max(BLURRED / max(loudness, 1e-300), FORMS_APART)
-    turn = min(TURN, float(np.sqrt(12.0 * blur)))
-    longest = turn * slow / max(quick * interval, 1e-300)
+    longest = TURN * slow / max(quick * interval, 1e-300)
     least, most = sizes
     # Blocks within the memory of their noise would not be independent of each other.
-    remembered = min(reading.memory, TURN * slow / max(quick * interval, 1e-300))
-    size = int(max(1, least, remembered, min(most, longest, recording.time.size // FEWEST_ROWS)))
+    most = max(min(most, recording.time.size // FEWEST_ROWS), reading.memory)
+    size = int(max(1, least, min(most, longest)))
     whole = recording.time.size // size * size
     if size > 1:
         # A block that holds a turn has no motion of its own.

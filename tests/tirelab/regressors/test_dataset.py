@@ -113,7 +113,6 @@ def test_a_delay_shorter_than_a_block_errs_in_blocks_and_hardly_in_samples() -> 
     lag = CATALOGUE["force_lag"]
     values = tuple({"lag": 0.0, "delay": 0.005}.get(p.name, p.start) for p in lag.parameters)
     coarse = dataset_of([read], TireModel())
-    fine = dataset_of([read], TireModel(), longest=1)
     delayed = arranged(TireModel(), [(lag.name, values)])
     (e,) = coarse.experiments
     assert e.size > 2
@@ -121,8 +120,23 @@ def test_a_delay_shorter_than_a_block_errs_in_blocks_and_hardly_in_samples() -> 
     samples = samples_of([read], TireModel())
     (missed,) = samples.left_out(coarse, delayed)
     assert 0.1 * bound < np.sqrt(np.mean(missed[e.counts] ** 2)) / e.noise < bound
-    assert not samples.left_out(fine, delayed)[0].any()
-    averaged = simulate(delayed, silent)[: missed.size * e.size].reshape(-1, e.size).mean(axis=1)
-    response = coarse.corrected([missed]).response(delayed) * e.noise
-    baseline = simulate(TireModel(), silent)[: missed.size * e.size].reshape(-1, e.size).mean(axis=1)
-    assert response == pytest.approx((averaged - baseline)[e.counts], abs=0.02 * e.noise)
+    response = simulate(delayed, silent) - simulate(TireModel(), silent)
+    averaged = response[: missed.size * e.size].reshape(-1, e.size).mean(axis=1)
+    corrected = coarse.corrected([missed])
+    left = (corrected.misfit - corrected.response(delayed)) * e.noise
+    assert left == pytest.approx((e.misfit - averaged)[e.counts], abs=0.02 * e.noise)
+    # Corrected again, the first correction is taken back.
+    assert corrected.corrected([np.zeros(missed.size)]).misfit == pytest.approx(coarse.misfit, abs=1e-9)
+
+
+def test_blocks_of_one_sample_leave_nothing_out() -> None:
+    time = 0.002 * np.arange(1000)
+    x = 0.015 + 0.005 * np.sin(2.0 * np.pi * 4.0 * time)
+    silent = Recording("sine", time, x, np.full(1000, np.inf), np.zeros(1000))
+    read = replace(silent, force=simulate(TireModel(), silent))
+    dataset = dataset_of([read], TireModel())
+    assert dataset.experiments[0].size == 1
+    lag = CATALOGUE["force_lag"]
+    values = tuple({"lag": 0.005}.get(p.name, p.start) for p in lag.parameters)
+    lagging = arranged(TireModel(), [(lag.name, values)])
+    assert not samples_of([read], TireModel()).left_out(dataset, lagging)[0].any()
