@@ -4,12 +4,15 @@
 
 It takes ziglang (the extra `loader`), half a minute for a platform the first time, and writes beside this file. The
 same sources and the same ziglang give the same bytes in any folder; a test compares them with what is shipped.
+`binaries/made_from.json` keeps the version of ziglang, for another one may give other bytes, and the sources' hash.
 """
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import itertools
+import json
 import os
 import shutil
 import subprocess
@@ -17,6 +20,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 
 from ...errors import TirelabError
@@ -24,6 +28,7 @@ from .kernel import sources
 
 HERE = Path(__file__).parent
 BINARIES = HERE / "binaries"
+MADE_FROM = BINARIES / "made_from.json"
 MODEL = "BicycleTire"
 VERSIONS = (2, 3)
 """The versions of FMI, each with binaries of its own: they differ by one file, which is the interface."""
@@ -88,6 +93,18 @@ def source_files(fmi: int) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted(paths, key=lambda path: path.name)}
 
 
+def made_from() -> dict[str, str]:
+    """Return the version of ziglang that is installed, and the SHA-256 of all that the binaries are made of."""
+    digest = hashlib.sha256()
+    for fmi in VERSIONS:
+        for name, content in source_files(fmi).items():
+            digest.update(f"{fmi} {name} {len(content)}\n".encode() + content)
+    for platform in PLATFORMS:
+        own = (HERE / platform.more).read_bytes() if platform.more else b""
+        digest.update(repr((platform, FLAGS, len(own))).encode() + own)
+    return {"ziglang": metadata.version("ziglang"), "sources": digest.hexdigest()}
+
+
 def write_kernel(folder: Path = HERE) -> None:
     """Translate the kernel."""
     for name, text in sources().items():
@@ -132,6 +149,8 @@ def main(words: Sequence[str]) -> None:
                 library = platform.library(fmi)
                 compile_for(platform, fmi, library, Path(cache))
                 print(f"{library}: {library.stat().st_size} bytes", flush=True)
+    if not words:
+        MADE_FROM.write_text(json.dumps(made_from(), indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

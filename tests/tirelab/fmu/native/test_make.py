@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from pathlib import Path
 
 import pytest
 from tirelab.fmu.loader import Compiler
 from tirelab.fmu.native.kernel import sources
-from tirelab.fmu.native.make import HERE, PLATFORMS, VERSIONS, Platform, c_files, compile_for, source_files
+from tirelab.fmu.native.make import (
+    HERE,
+    MADE_FROM,
+    PLATFORMS,
+    VERSIONS,
+    Platform,
+    c_files,
+    compile_for,
+    made_from,
+    source_files,
+)
+
+
+def require_the_same_ziglang() -> None:
+    pytest.importorskip("ziglang")
+    then, now = json.loads(MADE_FROM.read_text(encoding="utf-8"))["ziglang"], made_from()["ziglang"]
+    if now != then:
+        pytest.skip(f"the binaries were made by ziglang {then}, this is {now}: other bytes prove nothing")
+
+
+def test_the_binaries_were_made_of_these_sources() -> None:
+    """Whatever ziglang is installed here. Where this fails: python -m tirelab.fmu.native.make."""
+    pytest.importorskip("ziglang")
+    assert json.loads(MADE_FROM.read_text(encoding="utf-8"))["sources"] == made_from()["sources"]
 
 
 def test_the_kernel_is_that_of_the_python() -> None:
@@ -19,7 +43,7 @@ def test_the_kernel_is_that_of_the_python() -> None:
 
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_the_binary_for_linux_is_that_of_the_sources(fmi: int, tmp_path: Path) -> None:
-    pytest.importorskip("ziglang")
+    require_the_same_ziglang()
     platform = PLATFORMS[0]
     assert platform.fmi3 == "x86_64-linux"
     compile_for(platform, fmi, tmp_path / "made")
@@ -31,7 +55,7 @@ def test_the_binary_for_linux_is_that_of_the_sources(fmi: int, tmp_path: Path) -
 @pytest.mark.parametrize("platform", PLATFORMS[1:], ids=lambda platform: str(platform.fmi3))
 def test_the_other_binaries_are_those_of_the_sources(platform: Platform, fmi: int, tmp_path: Path) -> None:
     """Minutes, where ziglang has to make the C library of Windows first."""
-    pytest.importorskip("ziglang")
+    require_the_same_ziglang()
     compile_for(platform, fmi, tmp_path / "made")
     assert (tmp_path / "made").read_bytes() == platform.library(fmi).read_bytes()
 
