@@ -32,6 +32,13 @@ EXAMPLE_UNITS: Mapping[str, str] = {
 }
 """The unit of each channel that advice names."""
 
+PULLS = 0.1
+"""A force of the other sign, over the largest one, beyond which what was recorded is hardly a tire."""
+
+OF_A_PART = (
+    " (the force has both signs: a damper or another part has none, `tirelab inspect FILE --part` keeps that)"
+)
+
 MOST_COLUMNS = 16
 """So many columns are looked at for one that may be a channel."""
 
@@ -105,6 +112,8 @@ def asked(
         part=settings.part,
     )
     parts = _parts(origin, headers, matches, lacking, whole)
+    if radius is not None and origin.kind == "file" and _pulls(sized.get("force")):
+        parts = [(what + OF_A_PART if "radius" in what else what, advice) for what, advice in parts]
     if len(parts) == 1 and len(lacking.units) < 2:
         return IncompleteRecording(parts[0][0], parts[0][1], whole)
     options = [
@@ -172,6 +181,14 @@ def _parts(
         others = [part for part in parts if "has no unit" not in part[0]]
         parts = [*others, (f"{origin}: no unit for {named}", "")]
     return parts
+
+
+def _pulls(force: FloatArray | None) -> bool:
+    """Whether a force has both signs."""
+    if force is None:
+        return False
+    ends = sorted((abs(float(np.nanmin(force))), abs(float(np.nanmax(force)))))
+    return bool(np.nanmin(force) < 0.0 < np.nanmax(force)) and ends[0] > PULLS * ends[1]
 
 
 def _numbers(table: Table, matches: Mapping[str, Match], headers: Sequence[Header]) -> dict[int, FloatArray]:

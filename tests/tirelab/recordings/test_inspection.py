@@ -87,6 +87,18 @@ def test_what_is_kept_reads_the_same(press: Path) -> None:
         read_recording(other)
 
 
+@pytest.mark.parametrize(("units", "pulls"), [(True, 200.0), (False, 200.0), (True, 10.0)])
+def test_what_pulls_is_offered_to_be_no_tire(tmp_path: Path, units: bool, pulls: float) -> None:
+    """A damper has no surface; of a tire whose force is hardly negative a radius alone is asked for."""
+    names = ("time [s]", "travel [mm]", "force [N]") if units else ("time", "travel", "force")
+    turn = np.linspace(0.0, 20.0, 300)
+    force = np.where(np.cos(turn) > 0.0, 300.0, pulls) * np.cos(turn)
+    damper = write_rows(tmp_path / "damper.csv", ",".join(names), turn, 10.0 * np.sin(turn), force)
+    with pytest.raises(RecordingError, match="radius of the surface is not known") as told:
+        read_recording(damper)
+    assert ("tirelab inspect FILE --part" in str(told.value)) == (pulls == 200.0)
+
+
 def test_what_others_wrote_there_stays(press: Path) -> None:
     file = press.with_name("recording.toml")
     file.write_text('# by hand\nradius = "25.4 cm"  # the bump\n', encoding="utf-8")
