@@ -127,7 +127,8 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     ]
     clean = not verdict["unexplained"] and not titles.more_than_noise(max(errors), fit["noise"])
     if words.told(verdict["confidence"]) >= SURE and clean:
-        said = [_left_in_order(verdict), *verdict.get("not_compared", [])]
+        surer = f"To be surer still, drive {test['file']}." if test else ""
+        said = [_left_in_order(verdict), *verdict.get("not_compared", []), surer]
         return NextStep(given.use if verdict["effects"] else given.leave, " ".join(filter(None, said)))
     if test is not None:
         return NextStep(_drive(test), _decides(test, verdict), drive=True)

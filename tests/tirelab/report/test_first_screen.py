@@ -212,6 +212,15 @@ def test_a_tire_that_can_be_used_tells_what_it_leaves_in_order() -> None:
     assert first_screen.next_step(given).why == ""
 
 
+def test_a_recording_that_would_make_a_sure_verdict_surer_is_named() -> None:
+    """Its file is written in any case."""
+    given = diagnosis(
+        {"inertia": 9.0}, 0.97, alternatives=[[]], separating_test={**TEST, "file": "drive.csv"}
+    )
+    step = first_screen.next_step(given)
+    assert (step.action, step.why) == ("Nothing: use this tire.", "To be surer still, drive drive.csv.")
+
+
 def test_samples_that_were_not_compared_are_told() -> None:
     given = diagnosis({}, 0.95)
     given["verdict"]["not_compared"] = [
