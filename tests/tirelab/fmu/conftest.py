@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
@@ -95,6 +96,28 @@ def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) ->
         )
     assert result.returncode == 0, f"{script} exited with {result.returncode}:\n{result.stderr}"
     return result.stdout
+
+
+@pytest.fixture(scope="session")
+def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU add.fmu of OpenModelica (y = u1 + u2) that the package gemseo-fmu ships, without what that needs."""
+    folder = tmp_path_factory.mktemp("shipped")
+    words = [
+        "download",
+        "--quiet",
+        "--no-deps",
+        "--only-binary",
+        ":all:",
+        "--dest",
+        str(folder),
+        "gemseo-fmu==3.1.1",
+    ]
+    done = subprocess.run([sys.executable, "-m", "pip", *words], capture_output=True, timeout=300)
+    wheels = list(folder.glob("*.whl"))
+    if done.returncode or not wheels or sys.platform != "linux":
+        pytest.skip("the package gemseo-fmu cannot be had here, or not for this machine")
+    with zipfile.ZipFile(wheels[0]) as wheel:
+        return Path(wheel.extract("gemseo_fmu/problems/fmu_files/linux/add.fmu", folder))
 
 
 @pytest.fixture(scope="session")

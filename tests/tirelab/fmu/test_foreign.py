@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 import zipfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -173,28 +171,6 @@ def test_one_without_a_binary_for_this_machine_is_refused(spring: Path, tmp_path
                 new.writestr(name, old.read(name))
     with pytest.raises(TirelabError, match="no binary for this machine"):
         read_foreign(Simulation(stripped, FORCE))
-
-
-@pytest.fixture(scope="module")
-def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The FMU add.fmu of OpenModelica (y = u1 + u2) that the package gemseo-fmu ships, without what that needs."""
-    folder = tmp_path_factory.mktemp("shipped")
-    words = [
-        "download",
-        "--quiet",
-        "--no-deps",
-        "--only-binary",
-        ":all:",
-        "--dest",
-        str(folder),
-        "gemseo-fmu==3.1.1",
-    ]
-    done = subprocess.run([sys.executable, "-m", "pip", *words], capture_output=True, timeout=300)
-    wheels = list(folder.glob("*.whl"))
-    if done.returncode or not wheels or sys.platform != "linux":
-        pytest.skip("the package gemseo-fmu cannot be had here, or not for this machine")
-    with zipfile.ZipFile(wheels[0]) as wheel:
-        return Path(wheel.extract("gemseo_fmu/problems/fmu_files/linux/add.fmu", folder))
 
 
 @pytest.mark.slow
