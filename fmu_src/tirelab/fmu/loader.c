@@ -176,11 +176,21 @@ static int allowed(const Instance *self, int states, String function)
     return 0;
 }
 
-/* The frame of every function of an instance. */
-#define ENTER(states, function) \
+/* Whether there is what a pointer should lead to; told where it is NULL. */
+static int given(const Instance *self, int there, String function)
+{
+    char line[200];
+    snprintf(line, sizeof line, "fmi2%s: an argument is NULL", function);
+    if (!there)
+        tell(self, ERROR, NULL, line);
+    return there;
+}
+
+/* The frame of every function of an instance; there: whether its arguments are not NULL. */
+#define ENTER(states, function, there) \
     Instance *self = c; \
     int held; \
-    if (!allowed(self, states, function) || !take_python(&held)) \
+    if (!allowed(self, states, function) || !given(self, there, function) || !take_python(&held)) \
         return ERROR;
 #define LEAVE(where, result) \
     Status status = conclude(self, where, result); \
@@ -189,7 +199,7 @@ static int allowed(const Instance *self, int states, String function)
 #define METHOD(Name, name, next) \
     EXPORT Status fmi2##Name(void *c) \
     { \
-        ENTER(MAY_##Name, #Name) \
+        ENTER(MAY_##Name, #Name, 1) \
         Status status = conclude(self, name, python.PyObject_CallMethod(self->slave, name, NULL)); \
         leave_python(held); \
         self->state = status == OK ? next : self->state; \
@@ -199,7 +209,7 @@ static int allowed(const Instance *self, int states, String function)
     EXPORT Status fmi2Set##Name(void *c, const Reference v[], size_t n, const type x[]) \
     { \
         static Object *method; \
-        ENTER(may_set, "Set" #Name) \
+        ENTER(may_set, "Set" #Name, !n || (v && x)) \
         Object *values = python.PyTuple_New((ptrdiff_t)n); \
         for (size_t i = 0; i < n; i++) \
             python.PyTuple_SetItem(values, (ptrdiff_t)i, to_python(x[i])); \
@@ -208,7 +218,7 @@ static int allowed(const Instance *self, int states, String function)
     EXPORT Status fmi2Get##Name(void *c, const Reference v[], size_t n, type x[]) \
     { \
         static Object *method; \
-        ENTER(MAY_Get, "Get" #Name) \
+        ENTER(MAY_Get, "Get" #Name, !n || (v && x)) \
         Object *values = call(self, &method, "get_" name, tuple_of(&self->got, v, n), NULL), *value; \
         for (size_t i = 0; values && i < n && (value = python.PySequence_GetItem(values, (ptrdiff_t)i)); i++) { \
             x[i] = (type)from_python(value); \
@@ -321,7 +331,7 @@ static Object *optional(int given, double value)
 
 EXPORT Status fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, double start, int has_stop, double stop)
 {
-    ENTER(MAY_SetupExperiment, "SetupExperiment")
+    ENTER(MAY_SetupExperiment, "SetupExperiment", 1)
     self->reached = start;
     LEAVE("setup_experiment", python.PyObject_CallMethod(self->slave, "setup_experiment", "(dNN)", start,
                                                          optional(has_stop, stop), optional(has_tolerance, tolerance)))
@@ -329,7 +339,7 @@ EXPORT Status fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, 
 
 EXPORT Status fmi2Reset(void *c)
 {
-    ENTER(MAY_Reset, "Reset")
+    ENTER(MAY_Reset, "Reset", 1)
     Object *slave = python.PyObject_CallFunction(part("make_again"), "(O)", self->slave);
     LEAVE("fmi2Reset", adopt(self, slave) ? python.PyBool_FromLong(1) : NULL)
 }
@@ -338,7 +348,7 @@ EXPORT Status fmi2DoStep(void *c, double time, double step, int no_rewind)
 {
     static Object *method;
     (void)no_rewind;
-    ENTER(MAY_DoStep, "DoStep")
+    ENTER(MAY_DoStep, "DoStep", 1)
     Object *start = python.PyFloat_FromDouble(time);
     Object *result = call(self, &method, "do_step", start, python.PyFloat_FromDouble(step));
     python.Py_DecRef(start);
@@ -354,7 +364,7 @@ EXPORT Status fmi2DoStep(void *c, double time, double step, int no_rewind)
     EXPORT Status fmi2Get##Name##Status(void *c, int kind, type *x) \
     { \
         Instance *self = c; \
-        if (!allowed(self, MAY_GetStatus, "Get" #Name "Status")) \
+        if (!allowed(self, MAY_GetStatus, "Get" #Name "Status") || !given(self, x != NULL, "Get" #Name "Status")) \
             return ERROR; \
         if (kind != (known)) \
             return DISCARD; \
@@ -369,7 +379,7 @@ GET_STATUS(Boolean, int, HAS_TERMINATED, 0)
 
 EXPORT Status fmi2GetFMUstate(void *c, void **state)
 {
-    ENTER(MAY_FMUstate, "GetFMUstate")
+    ENTER(MAY_FMUstate, "GetFMUstate", state != NULL)
     Object *copy = python.PyObject_CallFunction(part("save"), "(Oid)", self->slave, (int)self->state, self->reached);
     if (copy) {
         python.Py_DecRef(*state); /* by the standard NULL or a state handed out before */
@@ -380,9 +390,9 @@ EXPORT Status fmi2GetFMUstate(void *c, void **state)
 
 EXPORT Status fmi2SetFMUstate(void *c, void *state)
 {
-    ENTER(MAY_FMUstate, "SetFMUstate")
+    ENTER(MAY_FMUstate, "SetFMUstate", state != NULL)
     int stage;
-    Object *found = state ? python.PyObject_CallFunction(part("restore"), "(OO)", self->slave, state) : NULL;
+    Object *found = python.PyObject_CallFunction(part("restore"), "(OO)", self->slave, state);
     if (found && python.PyArg_ParseTuple(found, "id", &stage, &self->reached))
         self->state = (State)stage;
     LEAVE("_set_fmu_state", found)
@@ -390,7 +400,7 @@ EXPORT Status fmi2SetFMUstate(void *c, void *state)
 
 EXPORT Status fmi2FreeFMUstate(void *c, void **state)
 {
-    ENTER(MAY_FMUstate, "FreeFMUstate")
+    ENTER(MAY_FMUstate, "FreeFMUstate", 1)
     if (state) {
         python.Py_DecRef(*state);
         *state = NULL;
@@ -404,7 +414,7 @@ static Status serialize(Instance *c, void *state, char bytes[], size_t *size)
 {
     char *data = NULL;
     ptrdiff_t length = 0;
-    ENTER(MAY_FMUstate, "SerializeFMUstate")
+    ENTER(MAY_FMUstate, "SerializeFMUstate", state && size)
     Object *text = python.PyObject_CallMethod(self->slave, "_fmu_state_to_bytes", "(O)", state);
     if (text && !python.PyBytes_AsStringAndSize(text, &data, &length) && bytes)
         memcpy(bytes, data, (size_t)length < *size ? (size_t)length : *size);
@@ -417,13 +427,13 @@ EXPORT Status fmi2SerializedFMUstateSize(void *c, void *state, size_t *size) { r
 EXPORT Status fmi2SerializeFMUstate(void *c, void *state, char bytes[], size_t size)
 {
     size_t needed = size;
-    Status status = serialize(c, state, bytes, &needed);
+    Status status = serialize(c, bytes ? state : NULL, bytes, &needed);
     return status == OK && needed > size ? ERROR : status;
 }
 
 EXPORT Status fmi2DeSerializeFMUstate(void *c, const char bytes[], size_t size, void **state)
 {
-    ENTER(MAY_FMUstate, "DeSerializeFMUstate")
+    ENTER(MAY_FMUstate, "DeSerializeFMUstate", bytes && state)
     Object *copy = python.PyObject_CallMethod(self->slave, "_fmu_state_from_bytes", "(N)",
                                               python.PyBytes_FromStringAndSize(bytes, (ptrdiff_t)size));
     python.Py_IncRef(*state = copy);

@@ -3,6 +3,7 @@
  *
  *     cc -fsanitize=address,undefined fuzz.c kernel.c tire.c instance.c fmi2.c -lm -o fuzz && ./fuzz RESOURCES GUID SECONDS SEED
  *
+ * With -DCO_SIMULATION_ONLY and linked to the loader's library in place of these sources: the Python FMU.
  * Prints how many calls were made and how many gave each status; a fault ends it through the sanitizers.
  */
 #include "fuzz.h"
@@ -26,11 +27,18 @@ int fmi2SerializedFMUstateSize(void *, void *, size_t *), fmi2SerializeFMUstate(
 int fmi2DeSerializeFMUstate(void *, const char *, size_t, void **);
 int fmi2GetDirectionalDerivative(void *, const unsigned *, size_t, const unsigned *, size_t, const double *, double *);
 int fmi2DoStep(void *, double, double, int), fmi2GetRealStatus(void *, int, double *), fmi2CancelStep(void *);
+#ifdef CO_SIMULATION_ONLY
+#define KINDS 1 + 0 *
+#define OF_MODEL_EXCHANGE(call) 0
+#else
+#define KINDS
+#define OF_MODEL_EXCHANGE(call) call
 int fmi2EnterEventMode(void *), fmi2NewDiscreteStates(void *, void *), fmi2EnterContinuousTimeMode(void *);
 int fmi2CompletedIntegratorStep(void *, int, int *, int *), fmi2SetTime(void *, double);
 int fmi2SetContinuousStates(void *, const double *, size_t), fmi2GetContinuousStates(void *, double *, size_t);
 int fmi2GetDerivatives(void *, double *, size_t), fmi2GetEventIndicators(void *, double *, size_t);
 int fmi2GetNominalsOfContinuousStates(void *, double *, size_t);
+#endif
 
 static void told(void *environment, const char *name, int status, const char *category, const char *format, ...)
 {
@@ -53,7 +61,7 @@ int main(int argc, char **argv)
     while (time(NULL) < end) {
         static const char *const guids[] = {NULL, "", "{00000000-0000-0000-0000-000000000000}"};
         static const char *const places[] = {NULL, "", "file:///nowhere", "file://%zz%", "file:"};
-        void *tire = fmi2Instantiate("tire", (int)draw(2), argv[2], argv[1], &callbacks, 0, 0);
+        void *tire = fmi2Instantiate("tire", KINDS (int)draw(2), argv[2], argv[1], &callbacks, 0, 0);
         void *state = NULL;
         double time_now = 0;
         if (!tire)
@@ -104,16 +112,16 @@ int main(int argc, char **argv)
             case 18: status = fmi2GetDirectionalDerivative(tire, v, draw(3), v + 2, draw(3), x, y); break;
             case 19: status = fmi2GetRealStatus(tire, (int)draw(4), y); break;
             case 20: status = fmi2CancelStep(tire); break;
-            case 21: status = fmi2EnterEventMode(tire); break;
-            case 22: status = fmi2NewDiscreteStates(tire, draw(9) ? y : NULL); break;
-            case 23: status = fmi2EnterContinuousTimeMode(tire); break;
-            case 24: status = fmi2CompletedIntegratorStep(tire, 1, flags, draw(9) ? flags + 1 : NULL); break;
-            case 25: status = fmi2SetTime(tire, draw(3) ? time_now += 1e-3 : real()); break;
-            case 26: status = fmi2SetContinuousStates(tire, x, some); break;
-            case 27: status = fmi2GetContinuousStates(tire, y, some); break;
-            case 28: status = fmi2GetDerivatives(tire, y, some); break;
-            case 29: status = fmi2GetEventIndicators(tire, y, draw(2)); break;
-            case 30: status = fmi2GetNominalsOfContinuousStates(tire, y, some); break;
+            case 21: status = OF_MODEL_EXCHANGE(fmi2EnterEventMode(tire)); break;
+            case 22: status = OF_MODEL_EXCHANGE(fmi2NewDiscreteStates(tire, draw(9) ? y : NULL)); break;
+            case 23: status = OF_MODEL_EXCHANGE(fmi2EnterContinuousTimeMode(tire)); break;
+            case 24: status = OF_MODEL_EXCHANGE(fmi2CompletedIntegratorStep(tire, 1, flags, draw(9) ? flags + 1 : NULL)); break;
+            case 25: status = OF_MODEL_EXCHANGE(fmi2SetTime(tire, draw(3) ? time_now += 1e-3 : real())); break;
+            case 26: status = OF_MODEL_EXCHANGE(fmi2SetContinuousStates(tire, x, some)); break;
+            case 27: status = OF_MODEL_EXCHANGE(fmi2GetContinuousStates(tire, y, some)); break;
+            case 28: status = OF_MODEL_EXCHANGE(fmi2GetDerivatives(tire, y, some)); break;
+            case 29: status = OF_MODEL_EXCHANGE(fmi2GetEventIndicators(tire, y, draw(2))); break;
+            case 30: status = OF_MODEL_EXCHANGE(fmi2GetNominalsOfContinuousStates(tire, y, some)); break;
             case 31: status = fmi2GetReal(tire, NULL, count, y); break;
             default: {
                 double reached = 0;
