@@ -279,16 +279,18 @@ def _in_order(fits: Iterable[Fit], discrepancy: Discrepancy) -> Ranking:
 def corrected(ranking: Ranking, samples: Samples) -> Ranking:
     """Return the ranking where what can still win is fitted to the samples: what its blocks leave out is added to them.
 
+    So is every part of it: an effect beside it may have been found for what the blocks leave out of the others.
     A deferred correction: what the blocks leave out is taken at the optimum, and the fit repeated with it. H. J.
     Stetter, "The defect correction principle and discretization methods", Numer. Math. 29 (1978) 425-443.
     """
-    return _in_order(
-        (
-            _corrected(f, samples, ranking.discrepancy) if ranking.behind(f) < LOST else f
-            for f in ranking.fits
-        ),
-        ranking.discrepancy,
+    winning = [frozenset(f.names) for f in ranking.fits if ranking.behind(f) < LOST]
+    found = (
+        _corrected(f, samples, ranking.discrepancy)
+        if any(names.issuperset(f.names) for names in winning)
+        else f
+        for f in ranking.fits
     )
+    return _in_order(found, ranking.discrepancy)
 
 
 def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
