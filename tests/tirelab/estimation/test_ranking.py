@@ -118,3 +118,26 @@ def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
     left = [r.best.residual.size**-0.5 * r.best.power**0.5 for r in (in_blocks, of_samples)]
     assert left[1] < left[0]
     assert of_samples.of(frozenset()) is in_blocks.of(frozenset())
+
+
+def test_a_part_of_what_can_win_is_corrected_however_far_behind_it_is() -> None:
+    """What the blocks leave out of a delay passed for a mass beside it; a rival that is no part of it stays."""
+    time = 0.002 * np.arange(16_000)
+    x = 0.010 - 0.008 * np.cos(2.0 * np.pi * 1.5 * time)
+    silent = Recording("cycles", time, x, np.full(16_000, np.inf), np.zeros(16_000))
+    late = (0.005, 0.01, 0.0)
+    force = simulate(arranged(TireModel(), [("force_lag", late)]), silent)
+    dataset = dataset_of([replace(silent, force=force)], TireModel())
+    noise = discrepancy_of(dataset.misfit, 0.0)
+    sets = (
+        {"force_lag": late, "inertia": (1.0,)},
+        {"force_lag": late},
+        {"inertia": (1.0,)},
+        {"force_drift": (0.0, 0.0)},
+    )
+    fits = tuple(fitted(dataset, [values], noise, 1.0, -np.inf) for values in sets)
+    found = corrected(Ranking(fits, (0.0, -90.0, -90.0, -90.0), noise), samples_of([silent], TireModel()))
+    names = [frozenset(values) for values in sets]
+    changed = [found.of(n) is not fit for n, fit in zip(names, fits, strict=True)]
+    assert changed[:2] == [True, True]
+    assert not changed[3]
