@@ -180,6 +180,13 @@ def test_the_wheel_works(
     works(installed(python, built.wheel, tmp_path), version, repository, tmp_path)
 
 
+@pytest.mark.parametrize("python_version", VERSIONS)
+def test_what_it_needs_can_be_had_for_each_python(python_version: str, built: Built, tmp_path: Path) -> None:
+    """The packages that it needs have wheels for each of them, whether or not that interpreter is here."""
+    words = ("--dry-run", "-q", "--target", tmp_path, "--only-binary", ":all:", "--python-version")
+    done(sys.executable, "-m", "pip", "install", *words, python_version, built.wheel, cwd=tmp_path)
+
+
 def test_the_source_archive_installs(built: Built, version: str, tmp_path: Path) -> None:
     python = installed(Path(sys.executable), built.source, tmp_path)
     assert done(python, "-I", "-m", "tirelab", "--version", cwd=tmp_path).split()[-1] == version
