@@ -329,7 +329,7 @@ def _told(chosen: int) -> list[str]:
         "bounds of the effort were changed all together: "
         + " and ".join(changed)
         + " verdicts became others.",
-        "The command:",
+        "They were taken before what can win was fitted to the samples. The command:",
         "",
         "```sh",
         f"python tests/sensitivity.py --seed {run['seed']} --trials {run['trials']} --each {run['each']}{only}",
