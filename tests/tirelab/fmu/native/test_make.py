@@ -41,22 +41,30 @@ def test_the_kernel_is_that_of_the_python() -> None:
         assert (HERE / name).read_text(encoding="utf-8") == text, f"{name} is not that of radialtire"
 
 
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where ziglang keeps the C libraries that it makes, for all tests here."""
+    return tmp_path_factory.mktemp("cache")
+
+
 @pytest.mark.parametrize("fmi", VERSIONS)
-def test_the_binary_for_linux_is_that_of_the_sources(fmi: int, tmp_path: Path) -> None:
+def test_the_binary_for_linux_is_that_of_the_sources(fmi: int, cache: Path, tmp_path: Path) -> None:
     require_the_same_ziglang()
     platform = PLATFORMS[0]
     assert platform.fmi3 == "x86_64-linux"
-    compile_for(platform, fmi, tmp_path / "made")
+    compile_for(platform, fmi, tmp_path / "made", cache)
     assert (tmp_path / "made").read_bytes() == platform.library(fmi).read_bytes()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fmi", VERSIONS)
 @pytest.mark.parametrize("platform", PLATFORMS[1:], ids=lambda platform: str(platform.fmi3))
-def test_the_other_binaries_are_those_of_the_sources(platform: Platform, fmi: int, tmp_path: Path) -> None:
+def test_the_other_binaries_are_those_of_the_sources(
+    platform: Platform, fmi: int, cache: Path, tmp_path: Path
+) -> None:
     """Minutes, where ziglang has to make the C library of Windows first."""
     require_the_same_ziglang()
-    compile_for(platform, fmi, tmp_path / "made")
+    compile_for(platform, fmi, tmp_path / "made", cache)
     assert (tmp_path / "made").read_bytes() == platform.library(fmi).read_bytes()
 
 
