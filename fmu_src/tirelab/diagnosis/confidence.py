@@ -171,6 +171,11 @@ def shared(probability: float, alike: int) -> float:
     return probability / (probability + (1.0 - probability) * (1.0 + alike))
 
 
+def of_all(probability: float, effects: Sequence[float]) -> float:
+    """Return a verdict's probability beside those of the effects that it names: it is no surer than any of them."""
+    return min((probability, *effects))
+
+
 def unshared(probability: float, alike: int) -> float:
     """Return the probability of which `shared` made this one: that of the verdict and the sets alike together."""
     return probability * (1.0 + alike) / (1.0 + probability * alike)

@@ -23,6 +23,7 @@ from .confidence import (
     alternatives_of,
     grounds_of_effect,
     grounds_of_verdict,
+    of_all,
     probability,
     shared,
 )
@@ -93,6 +94,7 @@ def diagnose(
     unexplained = tuple(by for by in unexplained_by(left, shown) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
     confidence = shared(probability("verdict", grounds), len(explanation.confounded))
+    confidence = of_all(confidence, [effect.probability for effect in effects])
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(

@@ -321,14 +321,8 @@ def _experiment(
     most = max(min(most, recording.time.size // FEWEST_ROWS), reading.memory)
     size = int(max(1, least, min(most, longest)))
     whole = recording.time.size // size * size
-    if size > 1:
-        # A block that holds a turn has no motion of its own.
-        turns = np.zeros_like(turns)
     good = (resolved | turns)[:whole].reshape(-1, size)
     counts: BoolArray = np.asarray(good.all(axis=1))
-    if size > 1:
-        # Blocks cut a turn short: what depends on the turning point errs in the next one.
-        counts = np.asarray(np.convolve(~counts, np.ones(3), "same") < 0.5)
     if counts.mean() < COUNTED:
         good, counts = np.ones_like(good), np.ones_like(counts)
     counts &= followed[:whole].reshape(-1, size).all(axis=1)

@@ -36,7 +36,7 @@ from .calibration import skill as brier_skill
 from .commitment import draw_and_commit
 from .folders import Folders, read_json
 from .score import Score, right_sets, sizes_over_noise
-from .wide_kinds import sound
+from .wide_kinds import holds
 
 FloatArray = NDArray[np.float64]
 
@@ -54,8 +54,8 @@ class Row:
 
 
 def verdict_row(score: Score, grounds: Mapping[str, float]) -> Row:
-    """Return the row of a verdict; it is right in the sense of its kind (`wide_kinds.sound`)."""
-    return Row(f"{score.kind} {score.trial}", grounds, sound(score))
+    """Return the row of a verdict; it is right where all that it names holds (`wide_kinds.holds`)."""
+    return Row(f"{score.kind} {score.trial}", grounds, holds(score))
 
 
 def effect_rows(score: Score, grounds: Mapping[str, Mapping[str, float]]) -> list[Row]:

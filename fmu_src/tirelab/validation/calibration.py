@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from .metrics import CONFIDENCE_EDGES, COVERAGE, RESAMPLES, Mean, Point, Rate, curve
 from .score import Score
-from .wide_kinds import is_wide, named, several_answers, sound
+from .wide_kinds import holds, is_wide, named, several_answers, sound
 
 Pair = tuple[float, bool]
 """A stated probability, and whether it came true."""
 
 
 def confidence_pairs(scores: Sequence[Score]) -> list[list[Pair]]:
-    """The confidence of every verdict, and whether it was right in the sense of its kind (`wide_kinds.sound`)."""
-    return [[(s.confidence, sound(s))] for s in scores if s.confidence is not None]
+    """The confidence of every verdict, and whether all that it names held (`wide_kinds.holds`)."""
+    return [[(s.confidence, holds(s))] for s in scores if s.confidence is not None]
 
 
 def effect_pairs(scores: Sequence[Score]) -> list[list[Pair]]:

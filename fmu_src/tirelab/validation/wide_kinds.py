@@ -45,7 +45,7 @@ def claimed(score: Score) -> Names:
 
 
 def sound(score: Score) -> bool:
-    """Whether the verdict is right in the sense of its kind; this is what its confidence is compared with.
+    """Whether the verdict is right in the sense of its kind.
 
     loud, pressure: the named effects are a right set; press: they are, whether or not the law is refitted; foreign:
     they hold a right set, and nothing else is above a half; outside: nothing that is not there is above a half; else:
@@ -60,6 +60,14 @@ def sound(score: Score) -> bool:
     if is_wide(score):
         return named(score) in _plain(score.right)
     return score.exact
+
+
+def holds(score: Score) -> bool:
+    """Whether the verdict is sound and every effect that it names is there, however unlikely it calls that one.
+
+    This is what its confidence is compared with: it is a statement on all that the verdict names.
+    """
+    return sound(score) and named(score) <= frozenset().union(*_plain(score.right))
 
 
 def sound_alternative(score: Score) -> bool:

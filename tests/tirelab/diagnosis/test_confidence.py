@@ -26,6 +26,7 @@ from tirelab.diagnosis.confidence import (
     grounds_of_effect,
     grounds_of_verdict,
     insufficient_excitation,
+    of_all,
     probability,
     reason_of,
     shared,
@@ -156,6 +157,11 @@ def test_a_refitted_law_in_an_effects_place_imitates_it_as_far_as_it_is_likely()
     assert [grounds_of_effect(e, one, HELD_OUT)["imitated"] for e in one.effects] == [1.0, 0.0]
     another = explained("gas_compression inertia", ("recalibration", 0.0))
     assert grounds_of_verdict(another, HELD_OUT, LEFT, unexplained=False)["imitated"] == 0.0
+
+
+def test_a_verdict_is_no_surer_than_an_effect_that_it_names() -> None:
+    assert of_all(0.9, [0.95, 0.3]) == 0.3
+    assert of_all(0.9, [0.95]) == of_all(0.9, []) == 0.9
 
 
 def test_what_speaks_for_sets_without_an_effect_contests_it() -> None:

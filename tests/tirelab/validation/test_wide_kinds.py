@@ -13,6 +13,7 @@ from tirelab.validation.score import Score
 from tirelab.validation.wide_kinds import (
     at_floor,
     corrected,
+    holds,
     kind_criteria,
     several_answers,
     sound,
@@ -39,6 +40,16 @@ def test_a_loud_verdict_names_all_and_nothing_else_but_a_remainder(score: Make) 
 def test_in_a_kind_that_is_drawn_a_remainder_is_no_right_name(score: Make) -> None:
     assert not sound(score("single", "friction", "friction unknown"))
     assert sound(score("open", "unknown", "unknown"))
+
+
+def test_what_a_verdict_names_has_to_be_there_for_it_to_hold_however_unlikely_it_is_called(
+    score: Make,
+) -> None:
+    unlikely = score("foreign", "damping", "damping lag", probabilities={"damping": 0.9, "lag": 0.3})
+    assert sound(unlikely)
+    assert not holds(unlikely)
+    assert holds(score("foreign", "damping", "damping unknown", probabilities={"damping": 0.9}))
+    assert not holds(score("loud", "friction", None))
 
 
 def test_the_truth_of_a_first_file_may_be_an_alternative(score: Make) -> None:
