@@ -1,0 +1,58 @@
+"""Confidences of a proof by the present weights."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from tirelab.diagnosis.confidence import OF_VERDICT, probability
+from tirelab.validation.folders import Folders
+from tirelab.validation.restate import main, restated, restated_scores
+from tirelab.validation.score import Score
+
+GROUNDS = dict.fromkeys(OF_VERDICT, 0.0) | {"significance": 1.0, "loudness": 4.0, "nothing": 0.0}
+
+
+def verdict(*effects: float, alike: int = 0) -> dict[str, object]:
+    grounds = {**GROUNDS, "alike": math.log1p(alike)}
+    return {"grounds": grounds, "effects": [{"name": "lag", "probability": p} for p in effects]}
+
+
+def test_it_is_the_present_probability_shared_and_no_surer_than_an_effect() -> None:
+    present = probability("verdict", GROUNDS)
+    assert restated(verdict(1.0)) == pytest.approx(present)
+    assert restated(verdict(0.01)) == 0.01
+    # Two others share the odds: a third of them each.
+    alone = probability("verdict", {**GROUNDS, "alike": math.log1p(2)})
+    assert restated(verdict(1.0, alike=2)) == pytest.approx(alone / (alone + 3.0 * (1.0 - alone)))
+
+
+def test_the_verdicts_of_a_folder_are_restated_and_scored(
+    tmp_path: Path, score: Callable[..., Score]
+) -> None:
+    folders = Folders(tmp_path)
+    for number, (said, stated) in enumerate(
+        (("lag", 0.9), ("friction", 0.2), ("lag", 0.8), ("friction", 0.3))
+    ):
+        kept = {**score("loud", "lag", said).to_json(), "confidence": 0.5}
+        folders.score(f"{number:04d}").parent.mkdir(parents=True, exist_ok=True)
+        folders.score(f"{number:04d}").write_text(json.dumps(kept), encoding="utf-8")
+        folder = folders.verdict(f"{number:04d}")
+        folder.mkdir(parents=True)
+        (folder / "diagnosis.json").write_text(json.dumps({"verdict": verdict(stated)}), encoding="utf-8")
+    found = [s.confidence for s in restated_scores(folders)]
+    assert found == [min(probability("verdict", GROUNDS), p) for p in (0.9, 0.2, 0.8, 0.3)]
+    told = CliRunner().invoke(main, [str(tmp_path)])
+    assert told.exit_code == 0, told.output
+    assert "0 of 2 held" in told.output
+    assert told.output.startswith("Brier skill of the confidence: ")
+
+
+def test_a_folder_without_scores_is_refused(tmp_path: Path) -> None:
+    told = CliRunner().invoke(main, [str(tmp_path)])
+    assert told.exit_code == 1
+    assert "holds no scores; finish `tirelab prove` there first" in told.output
