@@ -48,7 +48,7 @@ def skill(trials: Sequence[Sequence[Pair]]) -> Mean:
 
 
 def reliability(scores: Sequence[Score]) -> list[Point]:
-    """How often verdicts are right in the sense of their kind, by classes of their stated confidence."""
+    """How often all that verdicts name held, by classes of their stated confidence."""
     return curve([pair for pairs in confidence_pairs(scores) for pair in pairs], CONFIDENCE_EDGES)
 
 
