@@ -107,6 +107,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="cases with this text in their names alone")
     given = parser.parse_args()
+    if next(given.out.glob("*/train_*.csv"), None) is not None:
+        parser.error(f"{given.out} holds recordings; give a folder of its own for what is written")
     given.out.mkdir(parents=True, exist_ok=True)
     if given.kept is None and not (given.out / "trials").exists():
         draw(given.program, given.out, given.seed, given.trials)
