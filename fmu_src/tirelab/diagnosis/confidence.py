@@ -176,6 +176,12 @@ def of_all(probability: float, effects: Sequence[float]) -> float:
     return min((probability, *effects))
 
 
+def confidence_of(grounds: Grounds, effects: Sequence[float]) -> float:
+    """Return the confidence of a verdict with these grounds that names effects of these probabilities."""
+    alike = round(math.expm1(grounds["alike"]))
+    return of_all(shared(probability("verdict", grounds), alike), effects)
+
+
 def unshared(probability: float, alike: int) -> float:
     """Return the probability of which `shared` made this one: that of the verdict and the sets alike together."""
     return probability * (1.0 + alike) / (1.0 + probability * alike)

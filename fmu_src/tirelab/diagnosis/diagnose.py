@@ -21,11 +21,10 @@ from .confidence import (
     REACHED,
     Alternative,
     alternatives_of,
+    confidence_of,
     grounds_of_effect,
     grounds_of_verdict,
-    of_all,
     probability,
-    shared,
 )
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
@@ -93,8 +92,7 @@ def diagnose(
     shown = _places_told(localize(fitted, dataset, residuals, levels, residuals), timed)
     unexplained = tuple(by for by in unexplained_by(left, shown) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
-    confidence = shared(probability("verdict", grounds), len(explanation.confounded))
-    confidence = of_all(confidence, [effect.probability for effect in effects])
+    confidence = confidence_of(grounds, [effect.probability for effect in effects])
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(

@@ -9,7 +9,6 @@ Printed are the Brier skill and how often verdicts of each class held (`wide_kin
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import Any
 
 import click
 
-from ..diagnosis.confidence import of_all, probability, shared
+from ..diagnosis.confidence import confidence_of
 from .calibration import confidence_pairs, reliability, skill
 from .folders import Folders, read_json
 from .score import Score
@@ -25,10 +24,7 @@ from .score import Score
 
 def restated(verdict: Mapping[str, Any]) -> float:
     """Return the confidence of a `verdict` of diagnosis.json by the present weights."""
-    grounds = verdict["grounds"]
-    alike = round(math.expm1(grounds["alike"]))
-    own = shared(probability("verdict", grounds), alike)
-    return of_all(own, [effect["probability"] for effect in verdict["effects"]])
+    return confidence_of(verdict["grounds"], [effect["probability"] for effect in verdict["effects"]])
 
 
 def restated_scores(folders: Folders) -> list[Score]:

@@ -99,22 +99,30 @@ def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
     assert first.values[1:] == pytest.approx(damper.values[drawn][1:])
 
 
-def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
-    """Cycles of 1.5 Hz every 2 ms, in blocks of several samples, read 10 ms late behind a low-pass of 5 ms."""
+LATE = (0.005, 0.01, 0.0)
+"""Low-pass of 5 ms and delay of 10 ms."""
+
+
+def late_cycles() -> Recording:
+    """Return cycles of 1.5 Hz every 2 ms whose force is read late."""
     time = 0.002 * np.arange(16_000)
     x = 0.010 - 0.008 * np.cos(2.0 * np.pi * 1.5 * time)
     silent = Recording("cycles", time, x, np.full(16_000, np.inf), np.zeros(16_000))
-    true = (0.005, 0.01, 0.0)
-    force = simulate(arranged(TireModel(), [("force_lag", true)]), silent)
-    read = replace(silent, force=force + np.random.default_rng(3).normal(size=16_000))
+    return replace(silent, force=simulate(arranged(TireModel(), [("force_lag", LATE)]), silent))
+
+
+def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
+    """Cycles of 1.5 Hz every 2 ms, in blocks of several samples, read 10 ms late behind a low-pass of 5 ms."""
+    late = late_cycles()
+    read = replace(late, force=late.force + np.random.default_rng(3).normal(size=16_000))
     dataset = dataset_of([read], TireModel())
     assert dataset.experiments[0].size >= 2
     noise = discrepancy_of(dataset.misfit, 0.0)
     in_blocks = ranked(dataset, signatures_of(("force_lag",), dataset), noise, [], lambda name: ())
     of_samples = corrected(in_blocks, samples_of([read], TireModel()))
     assert of_samples.best.names == ("force_lag",)
-    late = sum(of_samples.best.values["force_lag"][:2])
-    assert late == pytest.approx(0.015, abs=2e-5)
+    total = sum(of_samples.best.values["force_lag"][:2])
+    assert total == pytest.approx(0.015, abs=2e-5)
     left = [r.best.residual.size**-0.5 * r.best.power**0.5 for r in (in_blocks, of_samples)]
     assert left[1] < left[0]
     assert of_samples.of(frozenset()) is in_blocks.of(frozenset())
@@ -122,21 +130,17 @@ def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
 
 def test_a_part_of_what_can_win_is_corrected_however_far_behind_it_is() -> None:
     """What the blocks leave out of a delay passed for a mass beside it; a rival that is no part of it stays."""
-    time = 0.002 * np.arange(16_000)
-    x = 0.010 - 0.008 * np.cos(2.0 * np.pi * 1.5 * time)
-    silent = Recording("cycles", time, x, np.full(16_000, np.inf), np.zeros(16_000))
-    late = (0.005, 0.01, 0.0)
-    force = simulate(arranged(TireModel(), [("force_lag", late)]), silent)
-    dataset = dataset_of([replace(silent, force=force)], TireModel())
+    read = late_cycles()
+    dataset = dataset_of([read], TireModel())
     noise = discrepancy_of(dataset.misfit, 0.0)
     sets = (
-        {"force_lag": late, "inertia": (1.0,)},
-        {"force_lag": late},
+        {"force_lag": LATE, "inertia": (1.0,)},
+        {"force_lag": LATE},
         {"inertia": (1.0,)},
         {"force_drift": (0.0, 0.0)},
     )
     fits = tuple(fitted(dataset, [values], noise, 1.0, -np.inf) for values in sets)
-    found = corrected(Ranking(fits, (0.0, -90.0, -90.0, -90.0), noise), samples_of([silent], TireModel()))
+    found = corrected(Ranking(fits, (0.0, -90.0, -90.0, -90.0), noise), samples_of([read], TireModel()))
     names = [frozenset(values) for values in sets]
     changed = [found.of(n) is not fit for n, fit in zip(names, fits, strict=True)]
     assert changed[:2] == [True, True]

@@ -8,15 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct {
-    void (*logger)(void *, const char *, int, const char *, const char *, ...);
-    void *(*allocate)(size_t, size_t);
-    void (*release)(void *);
-    void *finished, *environment;
-} Callbacks;
+#include "callbacks.h"
 
-void *fmi2Instantiate(const char *, int, const char *, const char *, const Callbacks *, int, int);
-void fmi2FreeInstance(void *);
 int fmi2SetupExperiment(void *, int, double, double, int, double);
 int fmi2EnterInitializationMode(void *), fmi2ExitInitializationMode(void *);
 int fmi2GetReal(void *, const unsigned *, size_t, double *), fmi2SetReal(void *, const unsigned *, size_t, const double *);

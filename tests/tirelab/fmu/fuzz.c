@@ -6,17 +6,9 @@
  * With -DCO_SIMULATION_ONLY and linked to the loader's library in place of these sources: the Python FMU.
  * Prints how many calls were made and how many gave each status; a fault ends it through the sanitizers.
  */
+#include "callbacks.h"
 #include "fuzz.h"
 
-typedef struct {
-    void (*logger)(void *, const char *, int, const char *, const char *, ...);
-    void *(*allocate)(size_t, size_t);
-    void (*release)(void *);
-    void *finished, *environment;
-} Callbacks;
-
-void *fmi2Instantiate(const char *, int, const char *, const char *, const Callbacks *, int, int);
-void fmi2FreeInstance(void *);
 int fmi2SetDebugLogging(void *, int, size_t, const char *const *), fmi2SetupExperiment(void *, int, double, double, int, double);
 int fmi2EnterInitializationMode(void *), fmi2ExitInitializationMode(void *), fmi2Terminate(void *), fmi2Reset(void *);
 int fmi2GetReal(void *, const unsigned *, size_t, double *), fmi2SetReal(void *, const unsigned *, size_t, const double *);
