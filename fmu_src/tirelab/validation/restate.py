@@ -40,7 +40,7 @@ def restated_scores(folders: Folders) -> list[Score]:
 
 
 @click.command()
-@click.argument("folder", metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
 def main(folder: Path) -> None:
     """State the confidences of the proof in DIR by the present weights."""
     scores = restated_scores(Folders(folder))
