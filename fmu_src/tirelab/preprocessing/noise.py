@@ -13,18 +13,19 @@ The floor is that of all sources together, counted on the recorded samples:
 
 A filter before the converter smooths the noise of a force: neighbours err alike. How many do so shows in differences
 over growing lags, which rise until the lag is the noise's memory and then stay, where a smooth misfit rises on
-(variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). A misfit is
-smooth where the motion is slow, so each lag is looked at there: a quick part of a recording does not hide the memory
-that a slow part shows. What comes again at the same deflection is no noise, however quick it is: a ripple of the tread.
-Nor is what comes again on the same way from a turn: the knee of a loop, which a linear model follows in part. So the
-lags are looked at once more in what differs between visits of one place (pure error of replicates: N. R. Draper, H.
-Smith, Applied Regression Analysis, 1998, 2.1), and the least of these levels is the noise's.
+(variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). They stay too
+where they have reached all that varies, which is what a short recording can show. A misfit is smooth where the motion
+is slow, so each lag is looked at there: a quick part of a recording does not hide the memory that a slow part shows.
+What comes again at the same deflection is no noise, however quick it is: a ripple of the tread. Nor is what comes again
+on the same way from a turn: the knee of a loop, which a linear model follows in part. So the lags are looked at once
+more in what differs between visits of one place (pure error of replicates: N. R. Draper, H. Smith, Applied Regression
+Analysis, 1998, 2.1), and the least of these levels is the noise's.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -247,24 +248,76 @@ def noise_of(
 
     interval [s] from sample to sample; deflection [m], rate [m/s] and acceleration [m/s^2]: the motion beside them
     """
-    span = float(np.ptp(deflection))
+    motion = rate * interval, acceleration * interval**2, float(np.ptp(deflection))
     lags, slow = [1], np.ones(residual.size, dtype=bool)
     while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
-        slower = _slow(rate * interval, acceleration * interval**2, span, 2 * lags[-1])
+        slower = _slow(*motion, 2 * lags[-1])
         if slower.sum() < FEWEST_LAGS * 2 * lags[-1]:
             break
         lags.append(2 * lags[-1])
         slow = slower
-    found = _resting([_level(_third_differences(residual, lag)[_inner(slow, lag)]) for lag in lags])
-    if found.memory == 1:
-        return Noise(white_level(residual), 1)
-    for one, other in _visits(deflection, found.memory):
-        seen = slow[one] & slow[other]
-        visits = one[seen], other[seen]
-        if visits[0].size >= FEWEST_LAGS * found.memory:
-            own = _resting([_level_between(residual, lag, *visits) for lag in lags])
-            found = min(found, own, key=lambda noise: noise.level)
-    return found
+    levels = [_level_of(residual, lag, slow) for lag in lags]
+    if last := _staying(levels):
+        found = _at(levels, last)
+        if found.memory == 1:
+            return Noise(white_level(residual), 1)
+        if _oscillates(residual, found, slow):
+            return Noise(min(levels), 1)
+        between = (
+            [_level_between(residual, lag, *v) for lag in lags] for v in _seen(deflection, found.memory, slow)
+        )
+        return min((found, *(_at(own, _staying(own)) for own in between)), key=lambda noise: noise.level)
+    for last in reversed(range(1, len(lags))):
+        found, lag = _at(levels, last), lags[last]
+        most = _varied(residual, lag, slow)
+        if found.memory == 1 or any(_rises(levels)[last:]) or levels[last] * STAYS < most:
+            continue
+        if _oscillates(residual, found, slow):
+            continue
+        visits = _seen(deflection, found.memory, slow)
+        least = min([levels[last], *(_level_between(residual, lag, *v) for v in visits)])
+        if least * STAYS >= most and not any(
+            _follows(v, lag, slow, visits) for v in (deflection, rate, acceleration)
+        ):
+            return Noise(least, found.memory)
+    return Noise(white_level(residual), 1)
+
+
+def _oscillates(residual: FloatArray, noise: Noise, seen: BoolArray) -> bool:
+    """Return whether differences over its memory are larger than over longer lags, or than all that varies.
+
+    Third differences of a sine have a level of up to 1.8 times its own, of other lags next to none.
+    """
+    level = _level_of(residual, noise.memory, seen)
+    return level > STAYS**2 * min(noise.level, _varied(residual, noise.memory, seen))
+
+
+def _seen(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[IntArray, IntArray]]:
+    """Return the pairs of each kind of visit (`_visits`) of which both samples are `seen`, where they are enough."""
+    pairs = [
+        (one[both], other[both])
+        for one, other in _visits(deflection, memory)
+        for both in [seen[one] & seen[other]]
+    ]
+    return [p for p in pairs if p[0].size >= FEWEST_LAGS * memory]
+
+
+def _follows(
+    course: FloatArray, lag: int, seen: BoolArray, visits: Sequence[tuple[IntArray, IntArray]]
+) -> bool:
+    """Return whether a misfit in proportion to a course of the motion could pass for noise that stays over a lag.
+
+    With a part r of all that varies of it seen over the lag, beside white noise: to rise by STAYS, and to come within
+    STAYS of the whole, takes r^2 >= STAYS^2 - 1.
+    """
+    levels = [_level_of(course, lag, seen), *(_level_between(course, lag, *v) for v in visits)]
+    return bool(min(levels) ** 2 >= (STAYS**2 - 1.0) * _varied(course, lag, seen) ** 2)
+
+
+def _varied(values: FloatArray, lag: int, seen: BoolArray) -> float:
+    """Return the root mean square of values about their mean over four lags, where they are `seen`."""
+    varied = values - uniform_filter1d(values, 4 * lag + 1, mode="nearest")
+    return float(np.sqrt(np.mean(varied[seen] ** 2)))
 
 
 def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolArray:
@@ -280,15 +333,24 @@ def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolAr
     return np.asarray((rests | follows) & (np.pi * change_there * lag <= LONGEST_PHASE * span))
 
 
-def _resting(levels: list[float]) -> Noise:
-    """Return the noise that levels over doubled lags show: where they rise and then stay, else that of the first."""
-    # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
-    highest = list(itertools.accumulate(levels, max))
-    rises = [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
+def _staying(levels: list[float]) -> int:
+    """Return the last of the levels over doubled lags from which on they are seen to stay, 0 where none is."""
     # One doubling without a rise may be chance between two rises: a level holds over a factor of four.
-    last = max((i + 1 for i, pair in enumerate(itertools.pairwise(rises)) if not any(pair)), default=0)
-    risen = [i for i in range(last) if rises[i]]
+    pairs = enumerate(itertools.pairwise(_rises(levels)))
+    return max((i + 1 for i, pair in pairs if not any(pair)), default=0)
+
+
+def _at(levels: list[float], last: int) -> Noise:
+    """Return the noise whose levels over doubled lags rise up to the last one; that of the first if none does."""
+    risen = [i for i, rise in enumerate(_rises(levels)[:last]) if rise]
     return Noise(levels[last], 2 ** (risen[-1] + 1)) if risen else Noise(levels[0], 1)
+
+
+def _rises(levels: list[float]) -> list[bool]:
+    """Return whether each level but the first is a rise over those before it."""
+    # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
+    highest = itertools.accumulate(levels, max)
+    return [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
 
 
 def _visits(deflection: FloatArray, memory: int) -> Iterator[tuple[IntArray, IntArray]]:
@@ -314,6 +376,11 @@ def _level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArra
     _inner(differences, lag)[:] = _third_differences(residual, lag)
     between = differences[one] - differences[other]
     return _level(between[np.isfinite(between)]) / float(np.sqrt(2.0))
+
+
+def _level_of(values: FloatArray, lag: int, seen: BoolArray) -> float:
+    """Return the level as of `white_level`, over a lag, where the values are `seen`."""
+    return _level(_third_differences(values, lag)[_inner(seen, lag)])
 
 
 def _level(third_differences: FloatArray) -> float:

@@ -428,3 +428,39 @@ def test_a_memory_is_seen_where_the_motion_is_hardly_slower() -> None:
     assert noise_beside(noise, 0.02 * np.sin(cycle)).memory > 1
     loop = np.sign(np.cos(cycle)) * (1.0 - np.exp(-40.0 * np.abs(np.sin(cycle))))
     assert noise_beside(10.0 * loop + 0.1 * WHITE[:1800], 0.02 * np.sin(cycle)).memory == 1
+
+
+QUICK = 0.5 * DEPTH * (1.0 - np.cos(2.0 * np.pi * np.arange(600) / 80.0))
+"""A short recording: its motion is slow over four or eight samples only."""
+
+
+@pytest.mark.parametrize("cut_off", [0.15, 0.4])
+def test_filtered_noise_of_a_short_recording_is_seen(cut_off: float) -> None:
+    """No lag shows that its level stays, but it has reached all that varies: of 100 drawn noises ten are missed."""
+    seen = 0
+    for seed in range(100):
+        noise = lfilter(*butter(2, cut_off), np.random.default_rng([9, seed]).normal(0.0, 1.0, 700))[100:]
+        seen += noise_beside(noise / np.std(noise), QUICK).level > 0.7
+    assert seen >= 90
+
+
+@pytest.mark.parametrize("size", [0.5, 1.0, 2.0, 20.0])
+@pytest.mark.parametrize("motion", [QUICK, ROUGH[:1200]], ids=["cycles", "ride"])
+@pytest.mark.parametrize("order", [1, 2], ids=["rate", "acceleration"])
+def test_a_misfit_of_rate_or_acceleration_is_no_noise(order: int, motion: FloatArray, size: float) -> None:
+    """However few samples a cycle has; the level of 600 white samples is known to a tenth (three standard errors)."""
+    misfit = motion
+    for _ in range(order):
+        misfit = np.gradient(misfit)
+    found = noise_beside(size * misfit / np.std(misfit) + WHITE[: motion.size], motion)
+    assert found.memory == 1
+    assert found.level == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize("period", [4.6, 5.3, 9.7])
+def test_an_oscillation_of_its_own_frequency_is_no_noise(period: float) -> None:
+    """A shaker next door: over some lags its differences are larger than all that varies, over others smaller."""
+    number = np.arange(WHITE.size)
+    shaker = np.sqrt(2.0) * np.sin(2.0 * np.pi * number / period) * np.sin(2.0 * np.pi * number / 3000.0) ** 2
+    found = noise_beside(2.3 * shaker + WHITE, MOTION)
+    assert found.memory == 1
