@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+import venv
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,31 @@ def test_sections_stand_in_their_order(repository: Path) -> None:
 
 def test_the_readme_is_short(repository: Path) -> None:
     assert len((repository / "README.md").read_text().splitlines()) <= 150
+
+
+@pytest.mark.parametrize(
+    ("page", "begins"),
+    [
+        ("README.md", "## Your own tire in five minutes\n\n"),
+        ("examples/docs/five_minutes.md", "# Your own tire in five minutes\n\n"),
+    ],
+)
+def test_tirelab_is_a_command_before_the_reader_types_it(
+    repository: Path, tmp_path: Path, page: str, begins: str
+) -> None:
+    task = (repository / page).read_text(encoding="utf-8").partition(begins)[2]
+    (line, *again) = re.findall(r"\. \.venv/bin/activate", task)
+    assert again == []
+    assert task.index(line) < min(m.start() for m in re.finditer(r"`tirelab \w|\$ tirelab ", task))
+    venv.create(tmp_path / ".venv", with_pip=False)
+    program = tmp_path / ".venv" / "bin" / "tirelab"
+    program.write_text("#!/bin/sh\necho it runs\n")
+    program.chmod(0o755)
+    for before, status in (("", 127), (f"{line} && ", 0)):
+        done = subprocess.run(
+            ["bash", "-c", f"{before}tirelab"], cwd=tmp_path, env={"PATH": "/usr/bin:/bin"}, check=False
+        )
+        assert done.returncode == status
 
 
 def test_every_effect_is_in_the_table_of_effects(repository: Path) -> None:
