@@ -28,6 +28,7 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
     from ..computing.staging import staged
     from ..fmu.replay import description_of, replay
+    from ..recordings.zero import refuse_far_zeros
     from ..report.comparison import compare, plot
 
     if fmu is not None and tire is not None:
@@ -35,6 +36,8 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
     believed = fmu or (TireModel() if tire is None else read_tire(tire))
     part = isinstance(believed, TireModel) and believed.is_part
     recorded = (reading.of_part() if part else reading)(recording)
+    if isinstance(believed, TireModel):
+        refuse_far_zeros([recorded])
     for note in recorded.notes:
         output.note(note)
     with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:

@@ -137,12 +137,13 @@ def _show_assumed(console: Console, file: Path, reading: Reading, error: Tirelab
     if not isinstance(error, IncompleteRecording):
         return
     guessed = error.settings
-    choices = replace(reading, columns=guessed.columns, units=guessed.units, radius=guessed.radius)
+    radius = reading.radius if guessed.radius is None else guessed.radius
+    choices = replace(reading, columns=guessed.columns, units=guessed.units, radius=radius, zero=guessed.zero)
     try:
         found = inspect_recording(file, choices)
     except TirelabError:
         return
-    console.print(f"ASSUMED, and not written: {' '.join(error.words())}", soft_wrap=True)
+    console.print(f"ASSUMED, and not written: {shlex.join(error.words())}", soft_wrap=True)
     _show(console, found, assumed=True)
 
 
@@ -163,11 +164,14 @@ def _show(console: Console, one: Inspection, *, assumed: bool = False) -> None:
     from ..report.terminal import printable
 
     table = Table(title=printable(one.recording.name), title_justify="left", box=None, pad_edge=False)
-    for head in ("channel", "column", "read in", "values", "step", "sign"):
+    heads = ["channel", "column", "read in", "values", "step", "sign"]
+    with_zero = any(row.zero for row in one.channels)
+    for head in [*heads, "zero"] if with_zero else heads:
         table.add_column(head, overflow="fold")
     for row in one.channels:
         column = "assumed" if assumed and row.column == GIVEN else row.column
-        cells = (row.channel, column, row.unit, row.span, row.step, row.remark)
+        cells = [row.channel, column, row.unit, row.span, row.step, row.remark]
+        cells += [row.zero] if with_zero else []
         table.add_row(*(Text(printable(cell)) for cell in cells))
     console.print(table)
     for name, text in one.facts:

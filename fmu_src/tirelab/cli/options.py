@@ -83,6 +83,12 @@ _READING = (
     ),
     click.option("--units", metavar="NAME=UNIT,...", help="Units of quantities, over what the file says."),
     click.option(
+        "--zero",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="What a gauge reads when nothing is loaded, which is subtracted: deflection=30mm; may be repeated.",
+    ),
+    click.option(
         "--radius", metavar="R", help="Surface of a recording without a radius column: flat, 25.4cm, ..."
     ),
     click.option(
@@ -104,7 +110,7 @@ _READING = (
         help="Read this file of settings, not the recording.toml beside each recording.",
     ),
 )
-_NAMES = ("columns", "units", "radius", "sampling", "skip_rows", "start", "stop", "settings")
+_NAMES = ("columns", "units", "zero", "radius", "sampling", "skip_rows", "start", "stop", "settings")
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -121,6 +127,12 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
             said["units"] = parse_units(said["units"] or "")
         else:
             said["columns"], said["units"] = {}, {}
+        if said["zero"]:
+            from ..recordings.zero import parse_zeros
+
+            said["zero"] = parse_zeros(said["zero"])
+        else:
+            said["zero"] = {}
         return command(*args, reading=Reading(**said), **options)
 
     with_options: Callable[..., Any] = with_reading

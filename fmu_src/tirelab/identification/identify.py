@@ -12,6 +12,7 @@ from radialtire.tirefile import LAWS
 
 from ..errors import TirelabError
 from ..recordings.recording import Recording
+from ..recordings.zero import refuse_far_zeros
 from .forms import Form, HullForm, form_of
 from .intervals import profile
 from .joint import JointFit, joint_fit
@@ -49,6 +50,7 @@ def identify(
     """
     if law not in ("auto", *LAWS):
         raise TirelabError(f"no law is named {law!r}; known are auto, {', '.join(LAWS)}")
+    refuse_far_zeros(recordings)
     surfaces = surfaces_of(recordings)
     chosen, why = _law_for(surfaces, law)
     pairs = []

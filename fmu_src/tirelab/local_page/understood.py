@@ -85,9 +85,8 @@ def understood(file: Path, name: str) -> Understood:
         return Understood(headers, _planned(first, table), problem=_by_name(str(error), file, name))
     more = (("tests", f"{1 + len(others)} side by side, each a recording; of the first:"),) if others else ()
     notes = (*found.remarks, *(f"it says: {text}" for text in found.recording.provenance))
-    return Understood(
-        headers, _channels(found, headers), (*more, *found.facts), notes, found.recording.doubts
-    )
+    doubts = tuple(_by_name(doubt, file, name) for doubt in found.recording.doubts)
+    return Understood(headers, _channels(found, headers), (*more, *found.facts), notes, doubts)
 
 
 def _channels(found: Inspection, headers: tuple[str, ...]) -> tuple[Channel, ...]:

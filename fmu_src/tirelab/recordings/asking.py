@@ -65,6 +65,8 @@ class IncompleteRecording(RecordingError):
             words += ["--radius", radius if isinstance(radius, str) else f"{radius!r}m"]
         if self.settings.sampling is not None:
             words += ["--sampling", str(self.settings.sampling)]
+        for name, text in self.settings.zero.items():
+            words += ["--zero", f"{name}={text}"]
         return words
 
 
@@ -110,6 +112,7 @@ def asked(
         settings.radius if radius is None else radius,
         sampling=settings.sampling,
         part=settings.part,
+        zero=settings.zero,
     )
     parts = _parts(origin, headers, matches, lacking, whole)
     if radius is not None and origin.kind == "file" and _pulls(sized.get("force")):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from .assignments import assignments
 from .formats import Header, RecordingError
 from .formats.table import quoted
+from .origin import in_quotes
 from .units import measures
 from .vocabulary import foreign_channel, is_measured, name_and_unit, without_count
 
@@ -90,14 +91,7 @@ def parse_units(text: str) -> dict[str, str]:
 
 def assignments_text(values: Mapping[str, str]) -> str:
     """The text of an option that `parse_columns` and `parse_units` read as these values, quoted where needed."""
-    return ",".join(f"{name}={_in_quotes(value)}" for name, value in values.items())
-
-
-def _in_quotes(value: str) -> str:
-    if not set(value) & set(",\"'"):
-        return value
-    # A double quote cannot stand between double quotes: it gets single ones.
-    return "'\"'".join(f'"{piece}"' if piece else "" for piece in value.split('"'))
+    return ",".join(f"{name}={in_quotes(value)}" for name, value in values.items())
 
 
 def known_channel(name: str, where: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 
 
@@ -15,6 +16,7 @@ class Choices:
     sampling: "10 Hz"; skip_rows: above the table; each as for `read_recording`. start, stop: of the part that is read
     of every file, "10s" or a row, where the file's name does not say it; settings: a file that is read instead of the
     recording.toml beside each recording. part: a damper or a bushing, and no tire: it has no ground to be pressed on.
+    zero: channel -> what its gauge reads when nothing is loaded, "30 mm", which is subtracted.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -26,3 +28,31 @@ class Choices:
     stop: str = ""
     settings: Path | None = None
     part: bool = False
+    zero: Mapping[str, str] = field(default_factory=dict)
+
+    def words(self) -> list[str]:
+        """Return the words of a command line that read recordings in the same way."""
+        from .channels import assignments_text
+
+        words = []
+        for option, values in (("--columns", self.columns), ("--units", self.units)):
+            if values:
+                words += [option, assignments_text(values)]
+        if self.radius is not None:
+            words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
+        elif self.part:
+            words += ["--radius", "flat"]  # not every command has a word for a part
+        if self.sampling is not None:
+            sampling = self.sampling if isinstance(self.sampling, str) else f"{self.sampling!r}Hz"
+            words += ["--sampling", sampling]
+        words += [word for name, text in self.zero.items() for word in ("--zero", f"{name}={text}")]
+        if self.skip_rows is not None:
+            words += ["--skip-rows", str(self.skip_rows)]
+        words += ["--from", self.start] if self.start else []
+        words += ["--to", self.stop] if self.stop else []
+        words += ["--settings", str(self.settings)] if self.settings is not None else []
+        return words
+
+
+def _with_unit(radius: float) -> str:
+    return f"{float(radius)!r}m" if isfinite(radius) else "flat"

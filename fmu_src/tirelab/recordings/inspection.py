@@ -17,6 +17,7 @@ from .formats.delimited import DelimitedTable
 from .matching import recognised
 from .plausibility import force_begins
 from .recording import Recording, Understood, understand
+from .zero import Zero
 
 FloatArray = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ class ChannelFound:
     """One channel as it was understood, in words.
 
     column: its name in the file; unit: in which it was read; span: least and greatest value; step: between readings, ""
-    where they lie on no grid; remark: of its sign
+    where they lie on no grid; remark: of its sign; zero: what was subtracted
     """
 
     channel: str
@@ -50,6 +51,7 @@ class ChannelFound:
     span: str
     step: str
     remark: str
+    zero: str = ""
 
 
 @dataclass(frozen=True)
@@ -123,13 +125,9 @@ def step_of(values: FloatArray) -> float | None:
 
 def _facts(found: Understood) -> list[tuple[str, str]]:
     recording = found.recording
-    part = found.plan.part
+    part = found.plan.settings.part
     zero = force_begins(recording.deflection, recording.force, recording.surface_radius)
-    begins = (
-        "not seen in these readings"
-        if zero is None
-        else f"the force begins at {round(1e3 * zero.begins, 1) + 0.0:.1f} mm"
-    )
+    begins = "not seen in these readings" if zero is None else _begins_text(zero)
     return [
         ("table", _table_text(found)),
         ("samples", f"{len(recording)}"),
@@ -137,6 +135,12 @@ def _facts(found: Understood) -> list[tuple[str, str]]:
         ("surface", "none: a part, not a tire" if part else surface_text(recording.surface_radius)),
         ("zero", begins),
     ]
+
+
+def _begins_text(zero: Zero) -> str:
+    if zero.off and not zero.seen:
+        return f"not seen: {zero.sentence()}"
+    return f"the force begins at {round(1e3 * zero.begins, 1) + 0.0:.1f} mm{'' if zero.seen else ', extrapolated'}"
 
 
 def _table_text(found: Understood) -> str:
@@ -175,7 +179,7 @@ def _sampling_text(recording: Recording) -> str:
 def _channels(found: Understood) -> list[ChannelFound]:
     rows = []
     for name, values in found.recording.channels():
-        if name == "radius" and found.plan.part and "radius" not in found.plan.matches:
+        if name == "radius" and found.plan.settings.part and "radius" not in found.plan.matches:
             continue
         unit, factor = SHOWN_IN.get(name, (_si(name), 1.0))
         finite = values[np.isfinite(values)] * factor
@@ -193,7 +197,8 @@ def _channels(found: Understood) -> list[ChannelFound]:
                 found.found.units.get(name, ""),
                 span,
                 "" if step is None else f"{step:.3g} {unit}",
-                "turned in sign" if name in found.found.turned else "",
+                "turned in sign" if name in found.found.counted.gauges.turned else "",
+                found.plan.settings.zero.get(name, ""),
             )
         )
     return rows
@@ -216,7 +221,6 @@ def _si(name: str) -> str:
 def _settings(found: Understood) -> dict[str, Any]:
     """Return the settings that read the file the same again, and for people what stands above the table."""
     plan, recording = found.plan, found.recording
-    texts = [header.text for header in found.table.headers]
     settings: dict[str, Any] = {}
     if isinstance(found.table, DelimitedTable) and found.table.layout.table_line > 1:
         layout = found.table.layout
@@ -225,21 +229,21 @@ def _settings(found: Understood) -> dict[str, Any]:
             settings["skip_rows"] = layout.table_line - 1
     columns = {}
     for name, match in plan.matches.items():
-        text = texts[match.index]
-        plain = texts.count(text) == 1 and text[:1] not in "+-#"
-        sign = match.sign if match.sign else -1 if name in found.found.turned else 0
+        sign = match.sign if match.sign else -1 if name in found.found.counted.gauges.turned else 0
         if name in ("deflection", "force") and not sign:
             sign = 1
-        columns[name] = {1: "+", -1: "-", 0: ""}[sign] + (text if plain else f"#{match.index + 1}")
+        columns[name] = {1: "+", -1: "-", 0: ""}[sign] + plan.names[name]
     if not recording.timed:
         columns["time"] = ""
     if plan.radius is not None and "radius" in recognised(found.table.headers, {}):
         columns["radius"] = ""  # or the column would go over the radius that was given
     settings["columns"] = columns
     settings["units"] = dict(found.found.units)
+    if plan.settings.zero:
+        settings["zero"] = dict(plan.settings.zero)
     for name, value in plan.constants.items():
         settings[name] = f"{value!r} {UNIT_OF[name]}"
-    if plan.part:
+    if plan.settings.part:
         settings["part"] = True
     elif plan.radius is not None:
         settings["radius"] = "flat" if np.isinf(plan.radius) else f"{plan.radius!r} m"

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from .asking import Lacking, asked, rises
 from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column
+from .counting import Counted, count_from_zero
 from .formats import Columns, Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
-from .matching import Match, match_channels, recognised
+from .matching import Match, match_channels, option_name, recognised
 from .metadata import Settings
 from .origin import Origin
 from .pieces import Piece, samples_within
-from .plausibility import YEAR_2001, YEAR_2096, doubts_of, too_deep
+from .plausibility import YEAR_2001, YEAR_2096, Doubts, doubts_of, too_deep
 from .rows import Rows, complete_rows
 from .samples import gap_notes
 from .sign_convention import compressive_signs
@@ -47,7 +48,7 @@ class Plan:
 
     interval: between samples [s] where no column gives the time; timed: whether the time was measured, or its interval
     given; trials: how many tests stand side by side in the table; constants: of channels that no column holds [SI]
-    part: whether it is of a part, and not of a tire
+    names: how the options call each column; settings: what was said beside the table
     """
 
     origin: Origin
@@ -60,7 +61,8 @@ class Plan:
     timed: bool = True
     trials: int = 1
     constants: Mapping[str, float] = field(default_factory=dict)
-    part: bool = False
+    names: Mapping[str, str] = field(default_factory=dict)
+    settings: Settings = Settings()  # noqa: RUF009
 
     @property
     def wanted(self) -> tuple[Wanted, ...]:
@@ -72,8 +74,7 @@ class Plan:
 class Interpreted:
     """Channels in SI with compression positive, by name, and the rows that they came from.
 
-    doubt: why the signs could not be determined, "" where they could
-    turned: the channels of which the sign was turned; units: of the channels as they were read
+    counted: how the gauges count; units: of the channels as they were read
     doubts: what is doubtful of their sizes; first: how many samples were left out before those of the piece
     part: whether it is of a part, and not of a tire
     """
@@ -81,10 +82,9 @@ class Interpreted:
     values: Mapping[str, FloatArray]
     rows: Rows
     notes: tuple[str, ...]
-    doubt: str
-    turned: tuple[str, ...] = ()
+    counted: Counted
     units: Mapping[str, str] = field(default_factory=dict)
-    doubts: tuple[str, ...] = ()
+    doubts: Doubts = Doubts()  # noqa: RUF009
     first: int = 0
     part: bool = False
 
@@ -104,12 +104,8 @@ class Interpreted:
             still = f"is {deflection[0]:.6g} m in every row"
             naming = self.rows.origin.columns(deflection="NAME")
             raise self.error(0, "deflection", f"{still}; name the column that moves with {naming}")
-        if self.doubt:
-            naming = self.rows.origin.columns(deflection="-NAME", force="+NAME")
-            raise RecordingError(
-                f"{self.rows.origin}: which way the rig counts cannot be determined ({self.doubt}); say it with "
-                f"a sign before each column, + to keep and - to turn it: {naming}"
-            )
+        if self.counted.fault is not None:
+            raise self.counted.fault
         deepest = int(np.argmax(deflection))
         if deflection[deepest] > DEEPEST and not self.part:
             guess = too_deep(self.rows.origin, float(np.ptp(deflection)), self.units.get("deflection", ""))
@@ -158,7 +154,8 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         not no_time,
         found.trials,
         constants,
-        settings.part,
+        {name: option_name(table.headers, match.index) for name, match in matches.items()},
+        settings,
     )
 
 
@@ -228,7 +225,8 @@ def interpret(
     notes += _unit_notes(plan.conversions, plan.headers)
     if since_1970:
         notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
-    doubt, turned = _turn_signs(values, plan, notes)
+    counted = count_from_zero(values, plan.origin, plan.matches, plan.names, plan.settings)
+    notes += counted.notes
     believed = values.get("believed_force")
     if believed is not None and float(np.dot(believed, values["force"])) < 0.0:
         values["believed_force"] = -believed
@@ -248,9 +246,10 @@ def interpret(
         column = f"column {quoted(header.text)}"
         return column if sample is None else f"{rows.place(sample + first)}, {column}"
 
-    doubts = () if doubt else doubts_of(plan.origin, values, units, where, plan.part)
-    notes += [f"doubtful: {sentence}" for sentence in doubts]
-    return Interpreted(values, rows, tuple(notes), doubt, turned, units, doubts, first, plan.part)
+    part_alone = plan.settings.part
+    doubts = Doubts() if counted.fault else doubts_of(counted.gauges, values, units, where, part_alone)
+    notes += [f"doubtful: {sentence}" for sentence in doubts.sentences]
+    return Interpreted(values, rows, tuple(notes), counted, units, doubts, first, part_alone)
 
 
 def _part_text(piece: Piece) -> str:
@@ -366,30 +365,3 @@ def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Hea
                 f"pressure is absolute: the standard atmosphere, {STANDARD_ATMOSPHERE:.0f} Pa, taken off"
             )
     return notes
-
-
-def _turn_signs(values: dict[str, FloatArray], plan: Plan, notes: list[str]) -> tuple[str, tuple[str, ...]]:
-    """Turn channels that count the other way round; return why, where that cannot be determined, and those turned.
-
-    A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are.
-    """
-    matches = plan.matches
-    asked_for = tuple(name for name, match in matches.items() if match.sign < 0 and name in values)
-    for name, match in matches.items():
-        if match.sign < 0 and name in values:
-            values[name] = -values[name]
-            notes.append(f"{name} turned in sign, as asked")
-    signs = compressive_signs(values["deflection"], values["force"])
-    given = {name for name in ("deflection", "force") if matches[name].sign}
-    turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
-    if len(given) == 2:
-        return "", asked_for
-    if plan.part and signs.doubt and not signs.falls:
-        return "", asked_for
-    if signs.doubt or turned & given:
-        return signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned", asked_for
-    for name in sorted(turned):
-        values[name] = -values[name]
-    if turned:
-        notes.append(f"the rig counts compression negative: {' and '.join(sorted(turned))} turned in sign")
-    return "", (*asked_for, *sorted(turned))

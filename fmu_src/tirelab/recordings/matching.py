@@ -238,6 +238,13 @@ def _finds(headers: Sequence[Header], text: str) -> list[int]:
     return []
 
 
+def option_name(headers: Sequence[Header], index: int) -> str:
+    """Return how the options call a column: its text, or its number where the text is another's too, or a sign's."""
+    text = headers[index].text
+    plain = [header.text for header in headers].count(text) == 1 and text[:1] not in "+-#"
+    return text if plain else f"#{index + 1}"
+
+
 def columns_listed(headers: Sequence[Header]) -> str:
     """The columns of a table as a message names them."""
     return listed([quoted(header.text) for header in headers], most=20) or "none"

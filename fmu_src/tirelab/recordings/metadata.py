@@ -25,7 +25,7 @@ _CONSTANT = {channel.name: f"{channel.usual:.4g} {channel.unit}" for channel in 
 """Channels of which a file may state one value for the whole recording, with an example."""
 
 _TEXTS = ("radius", "sampling", "from", "to", *_CONSTANT)
-_TABLES = ("columns", "units")
+_TABLES = ("columns", "units", "zero")
 _KEYS = (*_TEXTS, *_TABLES, "skip_rows", "part", "files")
 _SAID = ("table", "provenance", "doubtful")
 """Keys that `inspect` writes for the reader of the file alone."""
@@ -46,6 +46,7 @@ class Sidecar:
     stop: str = ""
     constants: Mapping[str, str] = field(default_factory=dict)
     part: bool = False
+    zero: Mapping[str, str] = field(default_factory=dict)
 
     def overruled(
         self,
@@ -53,6 +54,7 @@ class Sidecar:
         units: Mapping[str, str] | None,
         radius: str | float | None,
         sampling: str | float | None = None,
+        zero: Mapping[str, str] | None = None,
     ) -> Settings:
         """Return the settings where the user's go over these."""
         return Settings(
@@ -64,6 +66,7 @@ class Sidecar:
             self.sampling if sampling is None else sampling,
             self.constants,
             self.part,
+            {**self.zero, **(zero or {})},
         )
 
     def below(self, over: Sidecar) -> Sidecar:
@@ -80,6 +83,7 @@ class Sidecar:
             stop=over.stop or self.stop,
             constants={**self.constants, **over.constants},
             part=self.part or over.part,
+            zero={**self.zero, **over.zero},
         )
 
 
@@ -90,6 +94,7 @@ class Settings:
     radius: as the user gave it; radius_in_file: as `radius_source` states it, over which the former goes
     sampling: rate or interval of the samples, where the table has no time; constants: the one value of a channel that
     no column holds, such as "2.5 bar" of the pressure; part: of a part that has no ground, and not of a tire
+    zero: what a gauge reads when nothing is loaded, such as "30 mm" of the deflection
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -100,6 +105,7 @@ class Settings:
     sampling: str | float | None = None
     constants: Mapping[str, str] = field(default_factory=dict)
     part: bool = False
+    zero: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None) -> Sidecar:
@@ -107,8 +113,8 @@ def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None
 
     For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
     `skip_rows = 3`, `part = true` of a damper or a bushing, `pressure = "2.5 bar"` and `temperature = "21 degC"` where
-    no column holds them, and the tables `[columns]` and `[units]`, which say per channel what `--columns` and `--units`
-    say.
+    no column holds them, and the tables `[columns]`, `[units]` and `[zero]`, which say per channel what `--columns`,
+    `--units` and `--zero` say.
     The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
     named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of
@@ -148,6 +154,7 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
         stop=content.get("to", ""),
         constants={name: content[name] for name in _CONSTANT if name in content},
         part=content.get("part", False),
+        zero=content.get("zero", {}),
     )
 
 

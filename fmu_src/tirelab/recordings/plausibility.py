@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
 from .sign_convention import CLEAR, work_share
+from .zero import Gauges, Zero
 
 FloatArray = NDArray[np.float64]
 
@@ -35,9 +36,6 @@ GROUND = 3.0
 
 LARGEST_RADIUS = 2.0
 """A curved rig has no larger radius [m]."""
-
-EARLY, EARLY_PART = 2e-3, 0.08
-"""The force begins at another deflection than zero where it is farther away than this [m], this part of the stroke."""
 
 PULLS = 0.2
 """What pulls with more than this part of its largest push is no tire, so that its force is not compared with one's."""
@@ -63,41 +61,46 @@ UNLOADED, AT_START = 0.03, 0.04
 """The force begins with the least deflection where it is below this part of the largest force there, and the law's own
 beginning is within this part of the stroke."""
 
+LOWEST = 0.003
+"""The force with the least deflection is the mean over this part of the stroke."""
+
 NO_FORCE = 0.01
 """Before the force begins it is below this part of the largest everywhere: a law that rises from zero is not."""
 
 
 @dataclass(frozen=True)
-class Zero:
-    """Where the force begins [m], and how far the deflection goes beyond that [m]."""
+class Doubts:
+    """What is doubtful of a recording, in sentences; far_zero: why no effect holds its zero, "" where one does."""
 
-    begins: float
-    stroke: float
+    sentences: tuple[str, ...] = ()
+    far_zero: str = ""
 
 
 def doubts_of(
-    origin: Origin,
+    gauges: Gauges,
     values: Mapping[str, FloatArray],
     units: Mapping[str, str],
     where: Callable[[str, int | None], str],
     part: bool = False,
-) -> tuple[str, ...]:
+) -> Doubts:
     """Return what is doubtful of the channels in SI, each in one sentence with its row and column.
 
-    units: of each channel as it was read; where: returns the place of a sample of a channel, of None its column alone
+    gauges: by which the advice names columns and zeros; units: of each channel as it was read
+    where: returns the place of a sample of a channel, of None its column alone
     part: of which nothing is known but that it gives out no energy
     """
     for name in ("deflection", "force"):
         largest = max(abs(float(values[name].min())), abs(float(values[name].max())))
         if not largest <= LARGEST_PLAUSIBLE[name]:
-            return ()  # the recording refuses it
-    backwards = _loop_doubt(origin, values["deflection"], values["force"])
+            return Doubts()  # the recording refuses it
+    origin = gauges.origin
+    backwards = _loop_doubt(gauges, values["deflection"], values["force"])
     loops: tuple[str, ...] = (_placed(where("force", None), backwards),) if backwards else ()
     loops += tuple(
         _placed(where(name, None), sentence) for name, sentence in _state_doubts(values, units, part)
     )
     if part:
-        return loops
+        return Doubts(loops)
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]
@@ -109,13 +112,11 @@ def doubts_of(
     size = _size_doubt(origin, x, f, units)
     if size:
         found.append(_placed(where("force", step * int(np.argmax(f))), size))
-    if zero is not None and abs(zero.begins) > max(EARLY, EARLY_PART * zero.stroke):
-        sentence = (
-            f"the force begins at {1e3 * zero.begins:.1f} mm of deflection: if that is the gauge's zero, subtract it "
-            "before the export, or let the diagnosis find the offset"
-        )
-        found.append(_placed(where("deflection", None), sentence))
-    return (*found, *loops)
+    far = ""
+    if zero is not None and zero.off:
+        found.append(_placed(where("deflection", None), gauges.doubt(zero)))
+        far = gauges.refusal(zero)
+    return Doubts((*found, *loops), far)
 
 
 def _state_doubts(
@@ -188,25 +189,35 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
     stroke = high - low
     # where the force begins shows where it is small: a bin counts by its force and a twentieth of the largest
     weight = 1.0 / (np.abs(level) + 0.05 * float(np.abs(level).max()))
-    best: tuple[float, float] | None = None
-    for begins in np.linspace(low - 0.5 * stroke, low + 0.7 * stroke, 241):
-        beyond = np.maximum(centre - begins, 0.0)
-        for exponent in (1.0, 1.15, 1.3, 1.45, 1.6, 1.8, 2.0):
-            shape = beyond**exponent
-            weighted, target = weight * shape, weight * level
-            scale = float(weighted @ target) / max(float(weighted @ weighted), 1e-300)
-            missed = float(np.sum((target - scale * weighted) ** 2))
-            if scale > 0.0 and (best is None or missed < best[0]):
-                best = missed, float(begins)
-    if best is None or best[0] > 2e-2 * float(np.sum((weight * level) ** 2)):
+    target = weight * level
+    tried = np.linspace(low - 0.5 * stroke, low + 0.7 * stroke, 241)
+    missed = [_missed(np.maximum(centre - begins, 0.0), weight, target) for begins in tried]
+    begins, fits = float(tried[np.argmin(missed)]), 2e-2 * float(np.sum(target**2))
+    if not min(missed) <= fits:
         return None
     largest = float(level.max())
-    if abs(float(level[0])) < UNLOADED * largest and abs(best[1] - low) < AT_START * stroke:
-        return Zero(low, stroke)
-    below = level[centre < best[1]]
+    least = float(np.mean(f[x <= low + LOWEST * stroke]))
+    if abs(float(level[0])) < UNLOADED * largest and abs(begins - low) < AT_START * stroke:
+        return Zero(low, stroke, low, least)
+    below = level[centre < begins]
     if below.size and float(np.abs(below).max()) > NO_FORCE * largest:
         return None
-    return Zero(best[1], high - best[1])
+    found = Zero(begins, high - begins, low, least)
+    # a tire that is loaded all the time shows no zero: one at 0 is as good as any
+    if not found.seen and low > 0.0 and _missed(centre, weight, target) <= fits:
+        return None
+    return found
+
+
+def _missed(beyond: FloatArray, weight: FloatArray, target: FloatArray) -> float:
+    """Return the least sum of squares that a law of the deflection beyond a zero leaves, infinite where none rises."""
+    least = np.inf
+    for exponent in (1.0, 1.15, 1.3, 1.45, 1.6, 1.8, 2.0):
+        weighted = weight * beyond**exponent
+        scale = float(weighted @ target) / max(float(weighted @ weighted), 1e-300)
+        if scale > 0.0:
+            least = min(least, float(np.sum((target - scale * weighted) ** 2)))
+    return least
 
 
 def _commonest(radius: FloatArray) -> NDArray[np.bool_]:
@@ -265,12 +276,12 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
     )
 
 
-def _loop_doubt(origin: Origin, x: FloatArray, f: FloatArray) -> str:
+def _loop_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
     """Return a sentence where the part gives out energy in every cycle, "" where it does not."""
     share = work_share(x, f)
     if not share < -CLEAR:
         return ""
-    naming = origin.columns(deflection="+NAME", force="-NAME")
+    naming = gauges.signed(flipped="force")
     return (
         f"the loops of force over deflection run backwards: {-share:.0%} of the work comes out of the part, and "
         f"nothing passive gives out energy; is one of the two counted the other way? Then {naming} turns the force"

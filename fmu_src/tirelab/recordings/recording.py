@@ -54,6 +54,7 @@ class Recording:
     timed            whether time was measured, or its sampling given; otherwise the times are made up
     doubts           what is doubtful of the sizes of the numbers, in sentences (among the notes too)
     provenance       what the file says above its table: of the machine, the tire, the test
+    far_zero         why its zero is so far off that no effect holds it, "" where one does
 
     All arrays have the shape (samples,), samples >= 2, and are read-only.
     Errors: RecordingError (SampleFault where one sample is at fault) for unequal lengths, fewer than two
@@ -74,6 +75,7 @@ class Recording:
     doubts: tuple[str, ...] = ()
     provenance: tuple[str, ...] = ()
     believed_force: FloatArray | None = None
+    far_zero: str = ""
 
     def __post_init__(self) -> None:
         samples = len(self.time)
@@ -258,13 +260,14 @@ class Understood:
 
 def understand(path: Path | str, how: Choices) -> Understood:
     """Return the recording in a file, or in a piece of it, and how it was understood. Errors: as `read_recording`."""
+    said = (str(path), *replace(how, zero={}).words())
     path, piece = split_piece(path)
     sidecar = read_sidecar(path, how.settings, piece.trial)
     skip_rows = sidecar.skip_rows if how.skip_rows is None else how.skip_rows
     table = open_table(path, skip_rows)
-    settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling)
+    settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling, how.zero)
     settings = replace(settings, part=settings.part or how.part)
-    plan = plan_reading(Origin(path.name), table, settings, piece.trial)
+    plan = plan_reading(Origin(path.name, said=said), table, settings, piece.trial)
     _refuse_too_large(path, table, len(plan.headers) + 1)
     piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)
     found = interpret(plan, _read(table, plan, piece), sidecar.sources, piece)
@@ -307,8 +310,9 @@ def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> 
             source=source,
             notes=found.notes,
             timed=plan.timed,
-            doubts=found.doubts,
+            doubts=found.doubts.sentences,
             believed_force=values.get("believed_force"),
+            far_zero=found.doubts.far_zero,
         )
     except SampleFault as fault:
         part = (

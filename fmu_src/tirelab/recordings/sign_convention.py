@@ -14,8 +14,9 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True)
 class Signs:
-    """The factors, 1 or -1, that make deflection and force positive in compression, or why they are in doubt.
+    """The factors, 1 or -1, that make deflection and force positive in compression, and why they are in doubt.
 
+    In doubt they are the likely ones: a tire pushes, and more the more it is pressed.
     falls: whether the force falls where the deflection rises
     """
 
@@ -48,7 +49,10 @@ def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64
         return Signs()
     falls = {1: "rises with", 0: "does not follow", -1: "falls with"}[together]
     side = {1: "positive", 0: "of both signs", -1: "negative"}
+    force_sign = pushing or 1
     return Signs(
+        together * force_sign if together else compressed or 1,
+        force_sign,
         doubt=f"force {falls} deflection; under load force is {side[pushing]}, deflection {side[compressed]}",
         falls=together < 0,
     )

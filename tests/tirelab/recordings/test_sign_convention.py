@@ -1,10 +1,13 @@
 """Rigs that count compression negative are recognised, and doubtful ones asked about."""
 
+import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from house_form import loading, refusal, write_rows
+from tirelab.cli import main
 from tirelab.recordings.recording import read_recording
 from tirelab.recordings.sign_convention import compressive_signs, work_share
 
@@ -42,14 +45,32 @@ class TestSigns:
         assert (signs.deflection, signs.force, signs.doubt) == (1, 1, "")
 
     def test_force_that_falls_with_deflection_is_asked_about(self, tmp_path: Path) -> None:
-        time, deflection, force = loading()
+        time, deflection, force = loading(201)
         # A gap between wheel and surface that closes: positive, and smallest under load.
         path = write_rows(
             tmp_path / "a.csv", "time [s],deflection [cm],force [N]", time, 5.0 - deflection, force
         )
         said = refusal(path, radius="flat")
         assert "force falls with deflection" in said
-        assert "--columns deflection=-NAME,force=+NAME" in said
+        # the gap is 5 cm where the force begins
+        assert "--columns 'deflection=-deflection [cm],force=+force [N]' --zero deflection=50mm" in said
+
+    def test_a_crosshead_that_counts_down_gets_a_command_that_works(self, tmp_path: Path) -> None:
+        """From 100 mm on downwards, and the force negative: both signs are turned, and the zero is at 100 mm."""
+        time, deflection, force = loading(201)
+        header = "Time (s),Crosshead (mm),Force (N)"
+        path = write_rows(tmp_path / "a.csv", header, time, 100.0 - 10.0 * deflection, -force)
+        asked = CliRunner().invoke(main, ["inspect", str(path), "--radius", "flat"])
+        assert asked.exit_code == 2
+        proposed = shlex.split(asked.stderr.splitlines()[-1].split("check: ", 1)[1])
+        assert "deflection=-Crosshead (mm),force=-Force (N)" in proposed
+        assert proposed[-2:] == ["--zero", "deflection=100mm"]
+        done = CliRunner().invoke(main, proposed[1:])
+        assert done.exit_code == 0, done.output
+        recording = read_recording(path)
+        np.testing.assert_allclose(recording.deflection, deflection / 100.0, atol=1e-7)
+        np.testing.assert_allclose(recording.force, force, rtol=1e-5)
+        assert recording.doubts == ()
 
     def test_a_sign_that_the_user_settles_is_taken(self, tmp_path: Path) -> None:
         time, deflection, force = loading()

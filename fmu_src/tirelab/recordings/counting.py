@@ -1,0 +1,101 @@
+"""How the gauges of a recording count: their zeros are subtracted, and signs that are the other way round turned."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .asking import IncompleteRecording
+from .channels import assignments_text
+from .formats import RecordingError
+from .matching import Match
+from .metadata import Settings
+from .origin import Origin
+from .plausibility import force_begins
+from .sign_convention import Signs, compressive_signs
+from .zero import ZEROED, Gauges, quantity_text, zero_in_si
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Counted:
+    """The gauges with what was turned, what there is to say of it, and the error where the signs are in doubt."""
+
+    gauges: Gauges
+    notes: tuple[str, ...]
+    fault: RecordingError | None = None
+
+    @property
+    def turned(self) -> tuple[str, ...]:
+        """The channels of which the sign was turned."""
+        return tuple(sorted(self.gauges.turned))
+
+
+def count_from_zero(
+    values: dict[str, FloatArray],
+    origin: Origin,
+    matches: Mapping[str, Match],
+    names: Mapping[str, str],
+    settings: Settings,
+) -> Counted:
+    """Subtract the zeros that are given from channels [SI], and turn those that count the other way round, in place.
+
+    A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are.
+    Errors: RecordingError for a zero that is no quantity of its channel.
+    """
+    zeros = {name: zero_in_si(name, text, f"{origin}, zero") for name, text in settings.zero.items()}
+    notes = []
+    for name, zero in zeros.items():
+        values[name] = values[name] - zero
+        notes.append(f"{name} less {settings.zero[name]}, its zero as given")
+    gauges = Gauges(origin, zeros, frozenset(), names)
+    asked_for = [name for name, match in matches.items() if match.sign < 0 and name in values]
+    for name in asked_for:
+        values[name] = 0.0 - values[name]
+        notes.append(f"{name} turned in sign, as asked")
+    gauges = replace(gauges, turned=frozenset(asked_for))
+    signs = compressive_signs(values["deflection"], values["force"])
+    given = {name for name in ZEROED if matches[name].sign}
+    turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
+    if len(given) == 2 or (settings.part and signs.doubt and not signs.falls):
+        return Counted(gauges, tuple(notes))
+    if signs.doubt or turned & given:
+        why = signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned"
+        return Counted(gauges, tuple(notes), _asked(values, gauges, signs, why, settings))
+    for name in sorted(turned):
+        values[name] = 0.0 - values[name]
+    if turned:
+        notes.append(f"the rig counts compression negative: {' and '.join(sorted(turned))} turned in sign")
+    return Counted(replace(gauges, turned=gauges.turned ^ turned), tuple(notes))
+
+
+def _asked(
+    values: Mapping[str, FloatArray], gauges: Gauges, signs: Signs, why: str, settings: Settings
+) -> RecordingError:
+    """Return the error that asks for the signs, with likely ones, and with the zeros that belong to them."""
+    origin = gauges.origin
+    factors = {"deflection": signs.deflection, "force": signs.force}
+    turned = gauges.turned ^ {name for name, factor in factors.items() if factor < 0}
+    likely = replace(gauges, turned=frozenset(turned))
+    more: Mapping[str, float] = {}
+    if not settings.part:
+        x, f = (factors[name] * values[name] for name in ZEROED)
+        zero = force_begins(x, f, values["radius"])
+        more = zero.readings() if zero is not None and zero.off else {}
+    zeros = likely.at_zero(more)
+    columns = {name: ("-" if name in turned else "+") + gauges.names[name] for name in ZEROED}
+    what = f"{origin}: which way the rig counts cannot be determined ({why})"
+    advice = "say it with a sign before each column, + to keep and - to turn it"
+    advice += ", and what the gauge reads where the force begins" if more else ""
+    whole = replace(settings, columns={**settings.columns, **columns}, zero=zeros)
+    if origin.kind != "file":
+        subtracted = f" and {origin.zero({n: quantity_text(n, v) for n, v in more.items()})}" if more else ""
+        return IncompleteRecording(what, f"{advice}: {origin.columns(**columns)}{subtracted}", whole)
+    words = ["--columns", assignments_text(columns)]
+    words += [word for name, text in zeros.items() for word in ("--zero", f"{name}={text}")]
+    return IncompleteRecording(what, f"{advice}: {shlex.join(words)}", whole)

@@ -1,0 +1,177 @@
+"""The zeros of the gauges: given and subtracted on reading, or seen to be off and proposed in a command."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from radialtire import CATALOGUE
+
+from .assignments import assignments
+from .channels import UNIT_OF, known_channel
+from .formats import RecordingError
+from .formats.table import quoted
+from .origin import Origin
+from .units import UnitError, parse_quantity
+
+ZEROED = ("deflection", "force")
+"""The channels of which a zero is subtracted."""
+
+EXAMPLE = "deflection=30mm"
+
+EARLY, EARLY_PART = 2e-3, 0.08
+"""The force begins at another deflection than zero where it is farther away than this [m], this part of the stroke."""
+
+FARTHEST = max(
+    max(abs(parameter.minimum), abs(parameter.maximum))
+    for effect in CATALOGUE.values()
+    if effect.place == "deflection"
+    for parameter in effect.parameters
+    if parameter.unit == UNIT_OF["deflection"]
+)
+"""The largest shift [m] of the deflection that an effect of the catalogue holds."""
+
+
+@dataclass(frozen=True)
+class Zero:
+    """Where the force begins [m], and how far the deflection goes beyond that [m].
+
+    low [m], force [N]: the least deflection and the force at it; where the force begins before, that is not seen but
+    an extrapolation
+    """
+
+    begins: float
+    stroke: float
+    low: float
+    force: float
+
+    @property
+    def seen(self) -> bool:
+        """Whether the readings reach to where the force begins."""
+        return self.begins >= self.low - 0.01 * self.stroke
+
+    @property
+    def off(self) -> bool:
+        """Whether it is so far from zero that something has to be said."""
+        return abs(self.begins) > self._near
+
+    @property
+    def far(self) -> bool:
+        """Whether no effect holds it: an extrapolation is no reason where the readings begin near zero."""
+        return abs(self.begins) > FARTHEST and (self.seen or abs(self.low) > FARTHEST)
+
+    @property
+    def _near(self) -> float:
+        return max(EARLY, EARLY_PART * self.stroke)
+
+    def readings(self) -> dict[str, float]:
+        """Return what each gauge reads [SI] when nothing is loaded; of an extrapolation where the readings begin."""
+        if self._of_deflection:
+            return {"deflection": round(self.begins, 4)}
+        moved = {} if abs(self.low) <= self._near else {"deflection": round(self.low, 4)}
+        return {**moved, "force": float(f"{self.force:.3g}")}
+
+    def sentence(self) -> str:
+        """Return where the force begins, or that it is not seen."""
+        if self.seen:
+            return f"the force begins at {_mm(self.begins)} of deflection"
+        before = f", and it would begin at {_mm(self.begins)}" if self._of_deflection else ""
+        return (
+            f"the readings begin at {_mm(self.low)} of deflection with a force of {self.force:.3g} N{before}"
+        )
+
+    @property
+    def _of_deflection(self) -> bool:
+        return self.seen or self._near < abs(self.low) <= FARTHEST
+
+
+@dataclass(frozen=True)
+class Gauges:
+    """The gauges of a recording: what they read at their zeros [SI], as they count; those that were turned.
+
+    names: how the options call the column of each channel
+    """
+
+    origin: Origin
+    zeros: Mapping[str, float] = field(default_factory=dict)
+    turned: frozenset[str] = frozenset()
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def signed(self, flipped: str = "") -> str:
+        """Return the option that names both columns with their signs, with one of them the other way round."""
+        columns = {
+            name: ("-" if (name in self.turned) != (name == flipped) else "+") + self.names[name]
+            for name in ZEROED
+        }
+        return self.origin.columns(**columns)
+
+    def at_zero(self, more: Mapping[str, float]) -> dict[str, str]:
+        """Return the zeros to give, where after those that are given so much more [SI] is left."""
+        found = dict(self.zeros)
+        for name, value in more.items():
+            found[name] = found.get(name, 0.0) + (-value if name in self.turned else value)
+        return {name: quantity_text(name, value) for name, value in found.items()}
+
+    def doubt(self, zero: Zero) -> str:
+        """Return the sentence of a zero that is off, with what to write; "" where it is not."""
+        if not zero.off:
+            return ""
+        readings = zero.readings()
+        whose = "the gauges' zeros" if len(readings) > 1 else "the gauge's zero"
+        other = "" if zero.far else ", or let the diagnosis find the offset"
+        return f"{zero.sentence()}: if that is {whose}, say so: {self.origin.zero(self.at_zero(readings))}{other}"
+
+    def refusal(self, zero: Zero) -> str:
+        """Return why no effect holds a zero, and the next step; "" where one does."""
+        if not zero.far:
+            return ""
+        return (
+            f"{zero.sentence()}, and no effect holds more than {_mm(FARTHEST)} of a zero; give the zero: "
+            f"{self.origin.zero(self.at_zero(zero.readings()))}"
+        )
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+def refuse_far_zeros(recordings: Iterable[_Named]) -> None:
+    """Raise RecordingError where the zero of a recording is so far off that no effect holds it.
+
+    Beside a simulation that stands in the recording the zero may be that of both.
+    """
+    for recording in recordings:
+        far = getattr(recording, "far_zero", "")
+        if far and getattr(recording, "believed_force", None) is None:
+            raise RecordingError(f"{recording.name}: {far}")
+
+
+def parse_zeros(texts: Iterable[str]) -> dict[str, str]:
+    """Return channel -> zero from texts such as `deflection=30mm`; as for `zero_in_si`, checked."""
+    found = assignments(",".join(texts), "--zero", EXAMPLE, known_channel)
+    for name, text in found.items():
+        zero_in_si(name, text, "--zero")
+    return found
+
+
+def zero_in_si(name: str, text: str, where: str) -> float:
+    """Return the zero of a channel [SI]. Errors: RecordingError for a channel without one, or what is no such unit."""
+    if name not in ZEROED:
+        raise RecordingError(
+            f"{where}: {quoted(name)} has no zero that is subtracted; those are {' and '.join(ZEROED)}"
+        )
+    try:
+        return parse_quantity(text, UNIT_OF[name])
+    except UnitError as error:
+        raise RecordingError(f"{where}, {name}: {error}; such as {EXAMPLE}") from None
+
+
+def quantity_text(name: str, value: float) -> str:
+    """Return a zero [SI] as people write it: 30mm, 200N."""
+    return f"{1e3 * value:.9g}mm" if name == "deflection" else f"{value:.9g}N"
+
+
+def _mm(length: float) -> str:
+    return f"{round(1e3 * length, 1) + 0.0:.1f} mm"
