@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -92,7 +92,8 @@ def asked(
     """Return the error that asks for all that is lacking, with guesses from the sizes of the numbers."""
     headers = table.headers
     values = _numbers(table, {**matches}, headers)
-    if lacking.columns and not values:
+    known_by_unit = lacking.columns == ("time",) and stating_time(headers, ())
+    if lacking.columns and not values and not known_by_unit:
         return RecordingError(
             f"{origin}: no column holds numbers (its columns are {columns_listed(headers)}); "
             "export the readings themselves, one row for each sample"
@@ -158,6 +159,8 @@ def _parts(
             what = f"{origin}: no column for {', '.join(lacking.columns)}; its columns are {columns_listed(headers)}"
             units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
             advice = origin.columns(**columns) + (f" and {origin.units(**units)}" if units else "")
+            if lacking.columns == ("time",):
+                advice += f", or {origin.columns(time='')} where it was not measured"
             parts.append((what, f"name it with {advice}"))
     for name in lacking.units:
         unit = whole.units[name]
@@ -218,6 +221,15 @@ def rises(values: FloatArray) -> bool:
     return bool(steps.min() > 0.0) and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
 
 
+def stating_time(headers: Sequence[Header], taken: Collection[int]) -> list[int]:
+    """Return the columns with a unit of time, without those that are taken."""
+    return [
+        i
+        for i, header in enumerate(headers)
+        if i not in taken and header.unit and measures(header.unit, UNIT_OF["time"])
+    ]
+
+
 def _guessed_columns(
     missing: Sequence[str],
     matches: Mapping[str, Match],
@@ -234,9 +246,11 @@ def _guessed_columns(
     guessed: dict[str, int] = {}
     if "time" in missing:
         clocks = [i for i in free if rises(values[i]) and not counts_rows(headers[i].name)]
+        stated = stating_time(headers, taken)
+        clocks = [i for i in clocks if i in stated] or stated or clocks
         if clocks:
             guessed["time"] = clocks[0]
-            free.remove(clocks[0])
+            free = [i for i in free if i != clocks[0]]
     for name in ("deflection", "force"):
         fits = [i for i in free if measures(unit_of_column(headers[i], name) or "", UNIT_OF[name])]
         if name in missing and len(fits) == 1:

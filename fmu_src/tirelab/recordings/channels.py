@@ -1,5 +1,6 @@
 """The channels of a recording, and the names that columns have for them."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -71,6 +72,10 @@ _GERMAN_SYMBOL = {"deflection": "s"}
 
 # "force_min" is a minimum and "stroke_in" an input as often as they are minutes and inches.
 _NO_SUFFIX_UNITS = frozenset({"in", "min", "max"})
+
+
+# A controller puts the number of its input before every name: Ch 1 Time.
+_OF_INPUT = re.compile(r"(?:ch|chan|channel|kanal)[ ._-]*\d+[ ._:-]+(?P<name>.+)", re.IGNORECASE)
 
 
 def parse_columns(text: str) -> dict[str, str]:
@@ -173,8 +178,11 @@ def without_source(header: Header) -> Header:
 
 
 def may_be_qualified(header: Header, channel: Channel) -> bool:
-    """Whether the name ends in a word of the channel, and its unit fits: `Lead actuator force [kN]`."""
+    """Whether the name ends in a word of the channel, and its unit fits: `Lead actuator force [kN]`, `Ch 1 Time`."""
     unit = unit_of_column(header, channel.name)
+    of_input = _OF_INPUT.fullmatch(header.name)
+    if channel.name == "time" and of_input and unit and measures(unit, channel.unit):
+        return _words(of_input["name"]) in channel.words
     if channel.name not in ("deflection", "force") or unit is None or not measures(unit, channel.unit):
         return False
     name = header.name if header.unit else header.name.removesuffix(unit)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .asking import Lacking, asked, rises
+from .asking import Lacking, asked, rises, stating_time
 from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column
 from .counting import Counted, count_from_zero
 from .formats import Columns, Header, RecordingError, Table, Wanted
@@ -280,9 +280,11 @@ def _given_interval(
 
 
 def _may_hold_time(table: Table, matches: Mapping[str, Match]) -> bool:
-    """Return whether a column that is no channel may be the time: its numbers rise evenly."""
+    """Return whether a column that is no channel may be the time: it has a unit of time, or its numbers rise evenly."""
     taken = {match.index for match in matches.values()}
     free = [i for i in range(len(table.headers)) if i not in taken]
+    if stating_time(table.headers, taken):
+        return True
     for index in [i for i in free if not counts_rows(table.headers[i].name)][:MOST_LOOKED_AT]:
         try:
             if rises(table.read((Wanted(index, "time"),)).values[0]):

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .table import BLANK_WORDS, Header, RecordingError, listed, quoted
-from .table_search import bare_unit, is_units, is_value
+from .table_search import bare_unit, is_value, states_units
 
 MOST_ASIDE = 60
 """So many rows may stand below the table, or between a block of it and its next header."""
@@ -67,7 +67,9 @@ class TextRows:
             self._aside.clear()
             self._after_header, self._another = True, 0
             return
-        if self._after_header and is_units(row):
+        if self._is_unit_row(row):
+            return
+        if self._after_header and states_units(row):
             self._check_units(line, row)
             return
         if not filled or is_value(filled[0], self.separator):
@@ -120,6 +122,17 @@ class TextRows:
         while names and names[-1].startswith("#"):
             names.pop()
         return len(texts) > 1 and texts == names
+
+    def _is_unit_row(self, row: Sequence[str]) -> bool:
+        """Whether a row holds the units of the columns, words that are no units among them: sec, segments, mm."""
+        cells = [*map(bare_unit, row), *[""] * (len(self.headers) - len(row))]
+        stated = [
+            (cell, header.unit or "")
+            for cell, header in zip(cells, self.headers, strict=False)
+            if not header.dated and (cell or header.unit)
+        ]
+        beyond = any(cells[len(self.headers) :])
+        return len(stated) > 1 and not beyond and all(cell == unit for cell, unit in stated)
 
     def _check_units(self, line: int, row: Sequence[str]) -> None:
         """Refuse units below a repeated header that are not those of the first."""
