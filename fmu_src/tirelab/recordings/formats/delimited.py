@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from .careful import LONGEST_LINE, RowReader, Rows
 from .clock import ClockError
+from .cut_short import cut_cell
 from .encoding import BY_BYTES, EAST_ASIAN
 from .layout import Layout, find_layout
 from .number_style import NumberStyle
 from .spaced import block_with_tabs
-from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed
+from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed, quoted
 
 BLOCK = 2 * 2**20
 """How much of a file [B] is parsed at once: enough to keep every core busy, little beside the recording."""
@@ -69,7 +70,15 @@ class DelimitedTable:
             lines = listed([str(line) for line in reader.comments])
             notes.append(f"comment lines (#) skipped: row {lines}")
         notes += reader.text_rows.notes()
-        return Columns(tuple(pieces.joined()), pieces.place, tuple(notes))
+        values = pieces.joined()
+        cut = None if self.rows else cut_cell(self.path, self.layout)
+        if cut is not None and cut[0] in {want.index for want in wanted} and len(values[0]):
+            notes.append(
+                f"{pieces.place(len(values[0]) - 1)} left out: the file ends in it, and {quoted(cut[1])} has fewer "
+                "digits than its column has elsewhere"
+            )
+            values = [column[:-1] for column in values]
+        return Columns(tuple(values), pieces.place, tuple(notes))
 
 
 class _Pieces:
