@@ -13,6 +13,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ..units import FLAT_WORDS
+from .cell_units import row_without_units, without_unit
 from .clock import Clock, ClockError, is_clock
 from .layout import Layout
 from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS
@@ -72,7 +73,7 @@ class RowReader:
                 try:
                     cells = self._cells_of(row, start, targets)
                 except RecordingError as fault:
-                    self.text_rows.take(start, row, fault)
+                    self.text_rows.take(start, row_without_units(row, self.layout.cell_units), fault)
                     continue
                 if (self.text_rows.open or not self.text_rows.begins) and any(map(str.strip, row)):
                     self.text_rows.numbers(start)
@@ -102,11 +103,15 @@ class RowReader:
             self._refuse_extra_fields(line, row)
         # a label in a column of numbers that nobody wants: a row of statistics
         label = row[0] if row and self.guarded else ""
+        if 0 in self.layout.cell_units:
+            label = without_unit(label, self.layout.cell_units[0])
         if label.strip().lower() not in BLANK_WORDS and not is_value(label, self.layout.separator):
             raise not_a_number(self.path.name, f"row {line}", self.layout.headers[0].text, label)
         cells: list[float | str] = []
         for index, header, flat in targets:
             cell = row[index] if index < len(row) else ""
+            if index in self.layout.cell_units:
+                cell = without_unit(cell, self.layout.cell_units[index])
             if index not in self.clocks:
                 cells.append(self.cells.number(cell, line, header, flat))
             elif is_clock(cell) or cell.strip().lower() in BLANK_WORDS:

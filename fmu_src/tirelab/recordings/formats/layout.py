@@ -7,16 +7,17 @@ import csv
 import io
 import re
 import shlex
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..units import split_header
+from .cell_units import lines_without_units, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
 from .number_style import NumberStyle, style_of
 from .spaced import TAB, spaced_columns, with_tabs
-from .table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
+from .table import BLANK_WORDS, Header, RecordingError, is_comment, listed, quoted
 from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value, states_units
 
 HEAD = 65_536
@@ -39,6 +40,7 @@ class Layout:
     table_line: of the header, from 1, or of the first numbers where there is no header; provenance: the lines above it
     plain: whether lines end as they usually do, so that a parser by columns may be tried; spaced: whether its columns
     stand between spaces, which are read as tabs; counted: whether the first column holds no text, as far as was looked
+    cell_units: of columns in which every number has its unit behind it
     """
 
     encoding: str
@@ -53,6 +55,7 @@ class Layout:
     provenance: tuple[str, ...] = ()
     spaced: bool = False
     counted: bool = False
+    cell_units: Mapping[int, str] = field(default_factory=dict)
 
 
 def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
@@ -75,6 +78,12 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         lines = [with_tabs(line, spaced) for line in lines]
         declared = TAB
         notes = (*notes, "columns read between spaces")
+    within = units_in_cells(lines[first:], declared)
+    cell_units: Mapping[int, str] = {}
+    if within is not None:
+        declared, cell_units = within
+        lines = lines_without_units(lines, declared, cell_units)
+        notes = (*notes, f"units taken from the cells: {listed([*cell_units.values()])}")
     if first >= len(lines):
         raise RecordingError(_no_table(path, len(lines), skip_rows))
     place = find_table(lines, first, declared) if skip_rows is None else None
@@ -105,6 +114,9 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
     clocks = _clock_columns(body)
     headers = tuple(
+        Header(h.name, cell_units[i], h.text) if i in cell_units else h for i, h in enumerate(headers)
+    )
+    headers = tuple(
         Header(h.name, "s", h.text, dated=True) if i in clocks else h for i, h in enumerate(headers)
     )
     return Layout(
@@ -114,12 +126,13 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         start + before,
         style_of((cell for row in (header, *body) for cell in row), separator),
         len(raw) / max(len(lines) - start, 1),
-        header_lines == 1 and all(line.endswith("\n") for line in lines[: start + 1]),
+        header_lines == 1 and not cell_units and all(line.endswith("\n") for line in lines[: start + 1]),
         (*notes, *said),
         start + 1,
         _provenance(lines[:start], separator, declared),
         spaced > 0,
         column_counted(body, separator),
+        cell_units,
     )
 
 
