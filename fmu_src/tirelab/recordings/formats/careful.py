@@ -16,7 +16,7 @@ from ..units import FLAT_WORDS
 from .cell_units import row_without_units, without_unit
 from .clock import Clock, ClockError, is_clock
 from .layout import Layout
-from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS
+from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS, with_plain_minus
 from .spaced import with_tabs
 from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
 from .table_search import is_value
@@ -153,7 +153,8 @@ class RowReader:
                     f"{self.path.name}, row {number}: the line does not end in {LONGEST_LINE} characters; "
                     "the file is damaged there: export it anew"
                 )
-            yield with_tabs(line, len(self.layout.headers)) if self.layout.spaced else line
+            plain = with_plain_minus(line)
+            yield with_tabs(plain, len(self.layout.headers)) if self.layout.spaced else plain
 
     def _other_width(self, line: int, row: Sequence[str]) -> RecordingError:
         cells = sum(len(cell.split()) for cell in row)

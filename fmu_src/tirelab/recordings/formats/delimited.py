@@ -22,6 +22,9 @@ from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed, 
 BLOCK = 2 * 2**20
 """How much of a file [B] is parsed at once: enough to keep every core busy, little beside the recording."""
 
+MINUS = "\N{MINUS SIGN}".encode()
+"""The minus of typography, which some programs write before numbers."""
+
 
 class DelimitedTable:
     """A CSV or TSV file whose layout is known."""
@@ -139,6 +142,8 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
         for block in _blocks(path, layout):
             if reader.text_rows.open:
                 return False
+            if codec == "utf-8":
+                block = block.replace(MINUS, b"-")
             quotes = block.count(b'"') if b'"' in block else 0
             if quotes % 2:
                 return False

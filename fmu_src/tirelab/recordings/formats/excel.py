@@ -21,7 +21,7 @@ from ..units import FLAT_WORDS, measures, split_header
 from ..vocabulary import foreign_channel
 from .layout import below_names, column_counted
 from .libraries import load_library, reading_with
-from .number_style import NumberStyle, style_of
+from .number_style import NumberStyle, style_of, with_plain_minus
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, not_a_number, quoted
 from .table_search import SEARCHED, find_table, is_value
 from .text_rows import TextRows
@@ -181,7 +181,7 @@ class ExcelTable:
         """Return a number that is stored as text, written as others of its sheet are; None for any other cell."""
         if style is None or not isinstance(cell, str):
             return None
-        text = style.ungrouped(cell.strip())
+        text = style.ungrouped(with_plain_minus(cell.strip()))
         if style.decimal_comma:
             text = "" if "." in text else text.replace(",", ".")
         if _NUMBER.fullmatch(text) is None:
@@ -274,7 +274,7 @@ def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
 
 
 def _is_text_number(cell: object) -> bool:
-    return isinstance(cell, str) and _NUMBER.fullmatch(cell.strip()) is not None
+    return isinstance(cell, str) and _NUMBER.fullmatch(with_plain_minus(cell.strip())) is not None
 
 
 def _at(row: Sequence[Any], place: int) -> Any:

@@ -15,7 +15,7 @@ from ..units import split_header
 from .cell_units import lines_without_units, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
-from .number_style import NumberStyle, style_of
+from .number_style import NumberStyle, style_of, with_plain_minus
 from .spaced import TAB, spaced_columns, with_tabs
 from .table import BLANK_WORDS, Header, RecordingError, is_comment, listed, quoted
 from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value, states_units
@@ -267,7 +267,7 @@ def _provenance(lines: Sequence[str], separator: str, declared: str | None) -> t
 
 def _whole_lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     text = codecs.getincrementaldecoder(encoding)(errors="replace").decode(raw)
-    lines = list(io.StringIO(text, newline=""))
+    lines = list(io.StringIO(with_plain_minus(text), newline=""))
     if len(raw) < HEAD:
         return lines
     if len(lines) < 2:

@@ -10,6 +10,7 @@ from functools import cached_property
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
 MAYBE_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
 
+_MINUS = re.compile("\N{MINUS SIGN}(?=[\\d.,])")
 _SPACES = " \u00a0\u202f\u2009'\u2019"
 _CERTAIN = (
     (".", ",", re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+,\d+")),
@@ -42,6 +43,11 @@ class NumberStyle:
         if self.thousands and self.thousands in text and self._compiled.match(text):
             return text.replace(self.thousands, "")
         return text
+
+
+def with_plain_minus(text: str) -> str:
+    """Return a text in which the minus of typography before a number is that of a keyboard."""
+    return _MINUS.sub("-", text) if "\N{MINUS SIGN}" in text else text
 
 
 def style_of(cells: Iterable[str], separator: str) -> NumberStyle:

@@ -21,7 +21,7 @@ def numbers_of_text(texts: pl.Series, channel: str) -> FloatArray | None:
 
     Numbers may have decimal commas and marks between thousands, as in a file. None where a cell is neither.
     """
-    plain = texts.str.strip_chars()
+    plain = texts.str.strip_chars().str.replace(r"^\x{2212}", "-")
     filled = plain.filter(plain.is_not_null() & ~plain.str.to_lowercase().is_in(sorted(BLANK_WORDS)))
     head = filled.head(LOOKED_AT).to_list()
     if channel == "time" and head and all(map(is_clock, head)):

@@ -35,6 +35,15 @@ class TestText:
         path.write_text(text_table(separator, comma), encoding="utf-8")
         assert_the_recording(read_recording(path, radius="flat"), *note)
 
+    @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+    @pytest.mark.parametrize("separator", [";", ","])
+    def test_the_minus_of_typography(self, tmp_path: Path, encoding: str, separator: str) -> None:
+        rows = [f"{i / 10}{separator}{i}{separator}{10 * i - 5}.0E+00" for i in range(60)]
+        text = "\n".join([separator.join(("t [s]", "stroke [mm]", "load [N]")), *rows]) + "\n"
+        (tmp_path / "a.csv").write_text(text.replace("-", "\N{MINUS SIGN}"), encoding=encoding)
+        force = read_recording(tmp_path / "a.csv", radius="flat").force
+        np.testing.assert_array_equal(force, 10.0 * np.arange(60) - 5.0)
+
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32"])
     def test_encodings_that_say_what_they_are(self, tmp_path: Path, encoding: str) -> None:
         path = tmp_path / "a.csv"
