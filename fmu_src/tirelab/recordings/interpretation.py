@@ -19,8 +19,7 @@ from .origin import Origin
 from .pieces import Piece, samples_within
 from .plausibility import YEAR_2001, YEAR_2096, Doubts, doubts_of, too_deep
 from .rows import Rows, complete_rows
-from .samples import gap_notes
-from .sign_convention import compressive_signs
+from .samples import descends, gap_notes, over_midnight
 from .units import (
     STANDARD_ATMOSPHERE,
     Conversion,
@@ -207,6 +206,8 @@ def interpret(
     Errors: RecordingError where too many rows lack a value, or the piece holds too few.
     """
     rows = complete_rows(plan.origin, plan.headers, read)
+    backwards = "time" in rows.values and descends(rows.values["time"])
+    rows = rows.reversed() if backwards else rows
     values = {name: _in_si(column, plan.conversions[name]) for name, column in rows.values.items()}
     samples = len(values["deflection"])
     since_1970 = float(values["time"][0]) if "time" in values else 0.0
@@ -223,6 +224,13 @@ def interpret(
     notes = [*read.notes, *rows.notes, *plan.notes]
     notes += [f"settings read from {source}" for source in sources]
     notes += _unit_notes(plan.conversions, plan.headers)
+    if backwards:
+        notes.append("time falls from row to row: the rows read from the last to the first")
+    if backwards and plan.headers["time"].dated:
+        values["time"] = values["time"] - values["time"][0]
+    values["time"], midnight = over_midnight(values["time"])
+    if midnight is not None:
+        notes.append(f"the clock passes midnight at {rows.place(midnight)}: a day added from there on")
     if since_1970:
         notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
     counted = count_from_zero(values, plan.origin, plan.matches, plan.names, plan.settings)

@@ -100,11 +100,14 @@ def samples_within(
 ) -> slice | None:
     """Return the samples of a piece, None for all of them.
 
-    time [s], rows: of each sample, the number that messages call it by, both rising
+    time [s], rising; rows: of each sample, the number that messages call it by, rising or all falling
     Errors: RecordingError for a unit that is no time, and for fewer than two samples.
     """
     if not (piece.start or piece.stop):
         return None
+    if piece.rows is not None and rows[0] > rows[-1]:
+        forward = samples_within(where, piece, time, rows[::-1])
+        return None if forward is None else slice(len(rows) - forward.stop, len(rows) - forward.start)
     begin = _index(where, piece.start, time, rows, first=True) if piece.start else 0
     end = _index(where, piece.stop, time, rows, first=False) if piece.stop else len(time)
     if end < begin:

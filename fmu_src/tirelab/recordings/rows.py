@@ -1,7 +1,9 @@
 """The rows of a file that can be used: those that lack a value are skipped with a note, never filled."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +38,12 @@ class Rows:
     def place(self, index: int) -> str:
         """Where in the file the row of that number stands."""
         return self.columns.place(index if self.kept is None else int(self.kept[index]))
+
+    def reversed(self) -> Rows:
+        """Return the rows from the last to the first."""
+        whole = np.arange(len(next(iter(self.values.values())))) if self.kept is None else self.kept
+        values = {name: column[::-1].copy() for name, column in self.values.items()}
+        return replace(self, values=values, kept=whole[::-1])
 
     def error(self, index: int, channel: str, what: str) -> RecordingError:
         """The error for one value, with its place in the file."""

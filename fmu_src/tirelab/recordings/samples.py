@@ -17,6 +17,9 @@ COARSE = 0.05
 MOST_TESTS = 50
 """A clock that goes back so often at most may have begun anew with each of several tests."""
 
+DAY, LONGEST_PAUSE = 86_400.0, 3600.0
+"""A clock without a date begins anew after so long [s]; what is recorded does not stop for longer than the latter."""
+
 LARGEST_PLAUSIBLE = {
     "time": 1e12,
     "deflection": 1e3,
@@ -67,6 +70,23 @@ def gap_notes(time: FloatArray) -> list[str]:
         else f"{len(gaps)} gaps in time, not filled, the longest"
     )
     return [f"{which} {steps[longest]:.6g} s after {time[longest]:.6g} s"]
+
+
+def over_midnight(time: FloatArray) -> tuple[FloatArray, int | None]:
+    """Return time [s] with a day added after its one jump back of about a day, and the sample that comes next."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(time)
+    back = np.flatnonzero(steps < 0.0)
+    if len(back) != 1 or not 0.0 < float(steps[back[0]]) + DAY < LONGEST_PAUSE:
+        return time, None
+    first = int(back[0]) + 1
+    return np.concatenate([time[:first], time[first:] + DAY]), first
+
+
+def descends(time: FloatArray) -> bool:
+    """Whether time falls from each sample to the next."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return len(time) > 1 and bool(np.diff(time).max() < 0.0)
 
 
 def check_time(time: FloatArray) -> None:

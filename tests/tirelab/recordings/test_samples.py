@@ -9,8 +9,10 @@ from tirelab.recordings.samples import (
     check_time,
     check_values,
     checked_radius,
+    descends,
     find_gaps,
     gap_notes,
+    over_midnight,
 )
 
 
@@ -94,3 +96,22 @@ class TestGaps:
     )
     def test_what_is_said_of_them(self, steps: list[float], note: list[str]) -> None:
         assert gap_notes(np.concatenate([[0.0], np.cumsum(steps)])) == note
+
+
+class TestClock:
+    def test_a_day_is_added_after_midnight(self) -> None:
+        time, first = over_midnight(np.array([86_398.0, 86_399.0, 0.0, 1.0]))
+        np.testing.assert_array_equal(time, [86_398.0, 86_399.0, 86_400.0, 86_401.0])
+        assert first == 2
+
+    @pytest.mark.parametrize(
+        "time", [[0.0, 1.0, 0.0, 1.0], [86_399.0, 0.0, 86_399.0, 0.0], [2e5, 3e4, 3e4 + 1.0]]
+    )
+    def test_another_jump_back_is_none_of_a_day(self, time: list[float]) -> None:
+        assert over_midnight(np.array(time))[1] is None
+
+    @pytest.mark.parametrize(
+        ("time", "falls"), [([3.0, 2.0, 1.0], True), ([3.0, 3.0, 1.0], False), ([1.0], False)]
+    )
+    def test_time_that_falls_throughout(self, time: list[float], falls: bool) -> None:
+        assert descends(np.array(time)) is falls
