@@ -14,6 +14,7 @@ from .channels import UNIT_OF
 from .choices import Choices
 from .description import surface_text
 from .formats.delimited import DelimitedTable
+from .formats.excel import ExcelTable
 from .matching import recognised
 from .plausibility import force_begins
 from .recording import Recording, Understood, understand
@@ -146,12 +147,10 @@ def _begins_text(zero: Zero) -> str:
 def _table_text(found: Understood) -> str:
     if not isinstance(found.table, DelimitedTable):
         kind = found.path.suffix.lstrip(".")
-        sheet = getattr(found.table, "sheet", "")
-        return (
-            f"{kind}, sheet {sheet!r}, names in row {getattr(found.table, 'header_row', 1)}"
-            if sheet
-            else kind
-        )
+        if not isinstance(found.table, ExcelTable):
+            return kind
+        sheet = found.table.sheet_of(found.plan.matches["force"].index)
+        return f"{kind}, sheet {sheet.title!r}, names in row {sheet.header_row}"
     layout = found.table.layout
     named = "names" if layout.lines_before_data >= layout.table_line else "numbers"
     text = f"{named} in row {layout.table_line}"

@@ -18,6 +18,7 @@ from .choices import Choices
 from .description import facts, html_table, one_line
 from .formats import Columns, RecordingError, Table, open_table
 from .formats.delimited import DelimitedTable
+from .formats.excel import ExcelTable
 from .formats.table import quoted
 from .frames import array_table, array_units, frame_table, is_single, single_radius
 from .interpretation import Interpreted, Plan, interpret, plan_reading
@@ -272,7 +273,8 @@ def understand(path: Path | str, how: Choices) -> Understood:
     piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)
     found = interpret(plan, _read(table, plan, piece), sidecar.sources, piece)
     recording = _checked(found, plan, path.stem + piece.suffix, path)
-    provenance = tuple(getattr(table, "provenance", ()))
+    said_above = table.sheet_of(plan.matches["force"].index) if isinstance(table, ExcelTable) else table
+    provenance = tuple(getattr(said_above, "provenance", ()))
     if provenance:
         recording = replace(recording, provenance=provenance)
     return Understood(recording, path, piece, table, plan, found)

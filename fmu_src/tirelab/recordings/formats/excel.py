@@ -47,11 +47,11 @@ _DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 
 
 @dataclass(frozen=True)
-class _Sheet:
+class Sheet:
     """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns.
 
     style: of numbers that are stored as text, where most rows hold one; rows: how many were seen below the names;
-    counted: whether its first column holds no text
+    counted: whether its first column holds no text; provenance: the rows above the names
     """
 
     title: str
@@ -62,6 +62,7 @@ class _Sheet:
     style: NumberStyle | None = None
     rows: int = 0
     counted: bool = False
+    provenance: tuple[str, ...] = ()
 
 
 class ExcelTable:
@@ -77,7 +78,7 @@ class ExcelTable:
             if other
             else load_library(path, "openpyxl", "openpyxl")
         )
-        found: list[_Sheet] = []
+        found: list[Sheet] = []
         with reading_with(path, "a workbook"), _opened(path, self.library) as book:
             for title in book.titles[:MOST_SHEETS]:
                 head = [list(row) for row in islice(book.rows(title), SEARCHED)]
@@ -94,13 +95,12 @@ class ExcelTable:
             )
         names = [header.text for header in chosen.headers]
         self.sheets = [sheet for sheet in found if [header.text for header in sheet.headers] == names]
-        self.sheet, self.header_row = chosen.title, chosen.header_row
         self.headers: Sequence[Header] = [header for sheet in self.sheets for header in sheet.headers]
-        said = "; the workbook has others" if len(found) > len(self.sheets) else ""
-        if said:
-            self.notes = (*chosen.notes, f"read from sheet {quoted(chosen.title)}{said}")
-        else:
-            self.notes = chosen.notes
+        self.others = len(found) > len(self.sheets)
+
+    def sheet_of(self, index: int) -> Sheet:
+        """The sheet on which a column stands."""
+        return self.sheets[index // len(self.sheets[0].headers)]
 
     def bytes_needed(self, columns: int) -> int:
         """The rows of a full sheet."""
@@ -154,9 +154,11 @@ class ExcelTable:
         for want, seconds in zip(wanted, values, strict=True):
             if self.headers[want.index].dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
-        read = () if len(self.sheets) == 1 else (f"read from sheet {quoted(sheet.title)}",)
-        said = (*self.notes, *read, *text_rows.notes())
-        return Columns(tuple(values), lambda i: f"row {lines[i]}", said)
+        notes = [*sheet.notes]
+        if self.others or len(self.sheets) > 1:
+            others = "; the workbook has others" if self.others else ""
+            notes.append(f"read from sheet {quoted(sheet.title)}{others}")
+        return Columns(tuple(values), lambda i: f"row {lines[i]}", (*notes, *text_rows.notes()))
 
     def _number(self, cell: object, line: int, want: Wanted) -> float:
         header = self.headers[want.index]
@@ -171,7 +173,7 @@ class ExcelTable:
             return float("nan")
         if want.channel == "radius" and word in FLAT_WORDS:
             return float("inf")
-        number = self._as_text(cell, self.sheets[want.index // len(self.sheets[0].headers)].style)
+        number = self._as_text(cell, self.sheet_of(want.index).style)
         if number is not None:
             return number
         raise not_a_number(self.path.name, f"row {line}", header.text, cell)
@@ -226,7 +228,7 @@ def _opened(path: Path, library: ModuleType) -> Iterator[_OfOpenpyxl | _OfCalami
             book.close()
 
 
-def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
+def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     """Return the table of a sheet that holds anything, from its first rows."""
     width = max(len(_trimmed(row)) for row in head)
     lines = ["\t".join(map(_text, [*row, *[None] * width][:width])) + "\n" for row in head]
@@ -235,7 +237,7 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
     start = first if place is None else place.line
     names = [*head[start], *[None] * width][:width]
     if not any(isinstance(cell, str) and cell.strip() for cell in names):
-        return _Sheet(title, 0, start + 1, (), ())
+        return Sheet(title, 0, start + 1, (), ())
     headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
     headers, below, notes = below_names(lines, start + 1, headers, "\t")
     values = next((row for row in head[start + 1 + below :] if _holds_any(row)), ())
@@ -244,7 +246,7 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
         Header(h.name, "s", h.text, dated=True) if n in dated else h for n, h in enumerate(headers)
     )
     if start > first:
-        notes = (*notes, f"table found at row {start + 1}: the rows above it are left out")
+        notes = (*notes, f"table found at row {start + 1}: the rows above it are kept as its provenance")
     body = head[start + 1 + below :]
     style = None
     if 2 * sum(any(map(_is_text_number, row)) for row in body) > len(body):
@@ -252,7 +254,8 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> _Sheet:
         marks = "commas" if style.decimal_comma else "points"
         notes = (*notes, f"numbers that are stored as text read with decimal {marks}")
     counted = column_counted([[_text(cell) for cell in row] for row in body], "\t")
-    return _Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted)
+    above = tuple("; ".join(filter(None, map(_text, row))) for row in head[:start] if _holds_any(row))
+    return Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted, above)
 
 
 def _channels(headers: Sequence[Header]) -> int:

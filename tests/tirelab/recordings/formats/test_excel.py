@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from one_recording import COLUMNS, HEADERS, SAMPLES, TIME, assert_the_recording, refusal
+from tirelab.recordings.choices import Choices
 from tirelab.recordings.files import recording_files
+from tirelab.recordings.inspection import inspect_recording
 from tirelab.recordings.recording import read_recording
 
 
@@ -118,6 +120,7 @@ class TestExcel:
         book.active.title = "notes"
         for number, samples in ((1, 30), (2, 50)):
             sheet = book.create_sheet(f"Specimen {number}")
+            sheet.append(["Operator", f"B{number}"])
             sheet.append(["time [s]", "stroke [mm]", "load [N]"])
             for i in range(samples):
                 sheet.append([0.1 * i, 0.2 * i, 10.0 * number * i])
@@ -128,6 +131,9 @@ class TestExcel:
         assert (len(first), len(second)) == (30, 50)
         assert second.force.max() == pytest.approx(980.0)
         assert "read from sheet 'Specimen 2'" in second.notes
+        assert (first.provenance, second.provenance) == (("Operator; B1",), ("Operator; B2",))
+        facts = dict(inspect_recording(files[1], Choices(radius="flat")).facts)
+        assert facts["table"] == "xlsx, sheet 'Specimen 2', names in row 2"
 
 
 OFFICE = """<?xml version="1.0" encoding="UTF-8"?>
