@@ -140,14 +140,23 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     if verdict["alternatives"] and (found := actions(reasons)):
         return NextStep(
             f"{_capital(found[0])}.",
-            "No motion of this rig on these surfaces decides between the alternatives.",
+            "No other motion of this rig on these surfaces decides between the alternatives.",
         )
     if not clean:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
             "The error left is more than the noise: if the same comes back, the rig causes it.",
         )
-    return NextStep(given.use if verdict["effects"] else given.leave)
+    return NextStep(given.use if verdict["effects"] else given.leave, _as_good(verdict))
+
+
+def _as_good(verdict: Mapping[str, Any]) -> str:
+    """Return why nothing is to be done though there are alternatives; empty where there are none."""
+    if not verdict["alternatives"]:
+        return ""
+    force = "the corrected force" if verdict["effects"] else "the baseline's force"
+    either = "either" if len(verdict["alternatives"]) == 1 else "any of them"
+    return f"No motion of this rig tells the alternatives apart; {force} is as good with {either}."
 
 
 def _left_in_order(verdict: Mapping[str, Any]) -> str:

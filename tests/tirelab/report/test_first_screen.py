@@ -174,6 +174,55 @@ def test_one_thing_to_do_next(given: dict[str, Any], reasons: list[str], action:
 
 
 @pytest.mark.parametrize(
+    ("sizes", "others", "headline", "action", "why"),
+    [
+        (
+            {"inertia": 9.0},
+            [["force_lag"]],
+            "Undecided: inertia or force lag",
+            "Nothing: use this tire.",
+            "the corrected force is as good with either.",
+        ),
+        (
+            {"inertia": 9.0},
+            [["force_lag"], ["viscous_damping"]],
+            "Undecided: inertia, force lag or viscous damping",
+            "Nothing: use this tire.",
+            "the corrected force is as good with any of them.",
+        ),
+        (
+            {},
+            [["force_offset"]],
+            "Undecided: nothing missing or force offset",
+            "Nothing: use the baseline tire.",
+            "the baseline's force is as good with either.",
+        ),
+    ],
+)
+def test_an_undecided_verdict_says_why_there_is_nothing_to_do(
+    sizes: dict[str, float | None], others: list[list[str]], headline: str, action: str, why: str
+) -> None:
+    given = diagnosis(sizes, 0.4, alternatives=others, before=60.0 if sizes else 6.0, after=6.0)
+    assert first_screen.headline(given) == headline
+    step = first_screen.next_step(given)
+    assert (step.action, step.why) == (
+        action,
+        f"No motion of this rig tells the alternatives apart; {why}",
+    )
+
+
+def test_an_action_is_not_said_to_be_no_motion() -> None:
+    step = first_screen.next_step(
+        diagnosis({"inertia": 9.0}, 0.4, alternatives=[["force_lag"]]),
+        ["they change slowly: repeat the first cycle after a rest"],
+    )
+    assert (step.action, step.why) == (
+        "Repeat the first cycle after a rest.",
+        "No other motion of this rig on these surfaces decides between the alternatives.",
+    )
+
+
+@pytest.mark.parametrize(
     ("between", "why"),
     [
         (
