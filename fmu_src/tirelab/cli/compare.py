@@ -27,6 +27,7 @@ from .output import Output, example, output_options
 def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output, reading: Reading) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
     from ..computing.staging import staged
+    from ..fmu.foreign import tire_inside
     from ..fmu.replay import description_of, replay
     from ..recordings.zero import refuse_far_zeros
     from ..report.comparison import compare, plot
@@ -36,8 +37,10 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
     believed = fmu or (TireModel() if tire is None else read_tire(tire))
     part = isinstance(believed, TireModel) and believed.is_part
     recorded = (reading.of_part() if part else reading)(recording)
-    if isinstance(believed, TireModel):
-        refuse_far_zeros([recorded])
+    if recorded.far_zero:
+        inside = believed if isinstance(believed, TireModel) else tire_inside(believed)
+        if inside is not None and not inside.is_part:
+            refuse_far_zeros([recorded])
     for note in recorded.notes:
         output.note(note)
     with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
