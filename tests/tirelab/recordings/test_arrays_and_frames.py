@@ -153,7 +153,10 @@ class TestArrays:
     def test_signs_in_doubt_are_refused_with_the_way_to_say_them(self) -> None:
         # The distance to the ground in place of the deflection: the force falls with it.
         message = refused(Recording.from_arrays, TIME, DEFLECTION.max() - DEFLECTION, FORCE, "flat")
-        assert 'Recording.from_dataframe(frame, columns={"deflection": "-deflection", "force": "+force"})' in message
+        assert (
+            'Recording.from_dataframe(frame, columns={"deflection": "-deflection", "force": "+force"})'
+            in message
+        )
 
 
 class TestFrames:
