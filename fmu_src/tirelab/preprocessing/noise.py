@@ -248,48 +248,73 @@ def noise_of(
 
     interval [s] from sample to sample; deflection [m], rate [m/s] and acceleration [m/s^2]: the motion beside them
     """
-    motion = rate * interval, acceleration * interval**2, float(np.ptp(deflection))
+    levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
+    courses = deflection, rate, acceleration
+    found = _that_stays(levels, deflection) or _that_reaches_all(levels, courses)
+    return found or Noise(white_level(residual), 1)
+
+
+@dataclass(frozen=True)
+class _Levels:
+    """Levels of a residual over doubled lags, `values`, where the motion is slow enough for all of these."""
+
+    residual: FloatArray
+    lags: tuple[int, ...]
+    slow: BoolArray
+    values: tuple[float, ...]
+
+    def oscillates(self, noise: Noise) -> bool:
+        """Whether differences over the memory of a noise are larger than over longer lags, or than all that varies.
+
+        Third differences of a sine have a level of up to 1.8 times its own, of other lags next to none.
+        """
+        level = _level_of(self.residual, noise.memory, self.slow)
+        return level > STAYS**2 * min(noise.level, _varied(self.residual, noise.memory, self.slow))
+
+
+def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span: float) -> _Levels:
+    """Return the levels of a residual beside the motion that `_slow` tells of."""
     lags, slow = [1], np.ones(residual.size, dtype=bool)
     while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
-        slower = _slow(*motion, 2 * lags[-1])
+        slower = _slow(change, bend, span, 2 * lags[-1])
         if slower.sum() < FEWEST_LAGS * 2 * lags[-1]:
             break
         lags.append(2 * lags[-1])
         slow = slower
-    levels = [_level_of(residual, lag, slow) for lag in lags]
-    if last := _staying(levels):
-        found = _at(levels, last)
-        if found.memory == 1:
-            return Noise(white_level(residual), 1)
-        if _oscillates(residual, found, slow):
-            return Noise(min(levels), 1)
-        between = (
-            [_level_between(residual, lag, *v) for lag in lags] for v in _seen(deflection, found.memory, slow)
-        )
-        return min((found, *(_at(own, _staying(own)) for own in between)), key=lambda noise: noise.level)
-    for last in reversed(range(1, len(lags))):
-        found, lag = _at(levels, last), lags[last]
-        most = _varied(residual, lag, slow)
-        if found.memory == 1 or any(_rises(levels)[last:]) or levels[last] * STAYS < most:
-            continue
-        if _oscillates(residual, found, slow):
-            continue
-        visits = _seen(deflection, found.memory, slow)
-        least = min([levels[last], *(_level_between(residual, lag, *v) for v in visits)])
-        if least * STAYS >= most and not any(
-            _follows(v, lag, slow, visits) for v in (deflection, rate, acceleration)
-        ):
-            return Noise(least, found.memory)
-    return Noise(white_level(residual), 1)
+    return _Levels(residual, tuple(lags), slow, tuple(_level_of(residual, lag, slow) for lag in lags))
 
 
-def _oscillates(residual: FloatArray, noise: Noise, seen: BoolArray) -> bool:
-    """Return whether differences over its memory are larger than over longer lags, or than all that varies.
+def _that_stays(levels: _Levels, deflection: FloatArray) -> Noise | None:
+    """Return the noise whose level is seen to stay over growing lags, without what comes again; None: it is not."""
+    last = _staying(levels.values)
+    if last == 0:
+        return None
+    found = _at(levels.values, last)
+    if found.memory == 1:
+        return Noise(white_level(levels.residual), 1)
+    if levels.oscillates(found):
+        return Noise(min(levels.values), 1)
+    visits = _seen(deflection, found.memory, levels.slow)
+    between = ([_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits)
+    return min((found, *(_at(own, _staying(own)) for own in between)), key=lambda noise: noise.level)
 
-    Third differences of a sine have a level of up to 1.8 times its own, of other lags next to none.
+
+def _that_reaches_all(levels: _Levels, courses: tuple[FloatArray, FloatArray, FloatArray]) -> Noise | None:
+    """Return the noise whose level has reached all that varies within a few lags, where no course of the motion would
+    have; None: there is none. courses: deflection, rate and acceleration
     """
-    level = _level_of(residual, noise.memory, seen)
-    return level > STAYS**2 * min(noise.level, _varied(residual, noise.memory, seen))
+    residual, slow = levels.residual, levels.slow
+    for last in reversed(range(1, len(levels.lags))):
+        found, lag = _at(levels.values, last), levels.lags[last]
+        most = _varied(residual, lag, slow)
+        rises = any(_rises(levels.values)[last:])
+        if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
+            continue
+        visits = _seen(courses[0], found.memory, slow)
+        least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
+        if least * STAYS >= most and not any(_follows(course, lag, slow, visits) for course in courses):
+            return Noise(least, found.memory)
+    return None
 
 
 def _seen(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[IntArray, IntArray]]:
@@ -333,20 +358,20 @@ def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolAr
     return np.asarray((rests | follows) & (np.pi * change_there * lag <= LONGEST_PHASE * span))
 
 
-def _staying(levels: list[float]) -> int:
+def _staying(levels: Sequence[float]) -> int:
     """Return the last of the levels over doubled lags from which on they are seen to stay, 0 where none is."""
     # One doubling without a rise may be chance between two rises: a level holds over a factor of four.
     pairs = enumerate(itertools.pairwise(_rises(levels)))
     return max((i + 1 for i, pair in pairs if not any(pair)), default=0)
 
 
-def _at(levels: list[float], last: int) -> Noise:
+def _at(levels: Sequence[float], last: int) -> Noise:
     """Return the noise whose levels over doubled lags rise up to the last one; that of the first if none does."""
     risen = [i for i, rise in enumerate(_rises(levels)[:last]) if rise]
     return Noise(levels[last], 2 ** (risen[-1] + 1)) if risen else Noise(levels[0], 1)
 
 
-def _rises(levels: list[float]) -> list[bool]:
+def _rises(levels: Sequence[float]) -> list[bool]:
     """Return whether each level but the first is a rise over those before it."""
     # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
     highest = itertools.accumulate(levels, max)
