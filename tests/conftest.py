@@ -11,6 +11,9 @@ from hypothesis import Phase, settings
 if sys.prefix != sys.base_prefix:  # as the program does: nothing outside the checkout is touched
     os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix) / "var" / "matplotlib"))
 
+# Every core has a worker of its own: second threads of the linear algebra would spin there while they wait.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # The ordinary run draws the same examples each time and shows the first that fails as it was drawn.
 settings.register_profile(
     "steady", derandomize=True, deadline=None, print_blob=True, phases=(Phase.explicit, Phase.generate)
@@ -22,20 +25,27 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 
 LONGEST = (
     "test_readme.py",
+    "test_style.py",
     "test_pages.py",
     "test_diagnose.py",
     "test_diagnose_command.py",
+    "test_interface.py",
+    "test_explanation.py",
+    "test_open.py",
+    "test_fuzz.py",
+    "test_first_diagnosis.py",
+    "test_output.py",
     "test_interactive.py",
+    "test_page.py",
     "test_correction.py",
     "test_channels.py",
     "test_make.py",
-    "test_output.py",
-    "test_page.py",
     "test_build_command.py",
-    "test_contradiction.py",
-    "test_open.py",
 )
-"""Files that take longest, begun first: with a file to each worker, one of them must not run alone at the end."""
+"""Files that take longest, begun first: with a file to each worker, one of them must not run alone at the end.
+
+In a new environment the first compiles the physics, which the others find compiled; the one begun beside it needs none.
+"""
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
