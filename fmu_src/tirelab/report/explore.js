@@ -106,7 +106,7 @@
     ctx.beginPath();
     ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
     ctx.clip();
-    // One dot for each pixel: most of 50 000 samples fall on one that has its dot.
+    // One dot for each pixel: most of 100 000 samples fall on one that has its dot.
     const wide = Math.ceil(u.bbox.width) + 9, taken = new Uint8Array(wide * (Math.ceil(u.bbox.height) + 9));
     let turn = 0;
     for (const s of seriesOf(view)) {

@@ -17,11 +17,17 @@ from .loops import Case
 
 FloatArray = NDArray[np.float64]
 
-MOST_SAMPLES = 50_000
-"""Samples of all recordings together that a page carries: 16 bytes each."""
+BYTES_EACH = 16
+"""Bytes of a page for one sample: a time of 4 bytes and four channels of 2, as text."""
 
 EXTREMES = 6
 """Samples that a bucket keeps: least and largest of the force and of both residuals."""
+
+SPARE = EXTREMES + 2
+"""Samples of a recording at most beyond its part: of one more bucket, the first and the last."""
+
+TRIES, FULL = 4, 0.95
+"""So often the samples are chosen until this part of the room is used."""
 
 LEVELS = 65_535
 """Steps between the least and the largest value of a channel: 0.03 N where the force goes to 2000 N."""
@@ -35,17 +41,33 @@ class Script:
     hash: str
 
 
-def explored(cases: Sequence[tuple[str, Case]], noise: float, alike: bool) -> dict[str, Any]:
+def explored(cases: Sequence[tuple[str, Case]], noise: float, alike: bool, most: int) -> dict[str, Any]:
     """Return what the script reads: plain values, to be written as JSON that cannot leave its element.
 
     cases: what each recording was used for, and the recording; noise [N]; alike: whether the correction changes nothing
+    most: about so many samples of all recordings together, but a few of each
     """
     total = sum(len(case.recording) for _, case in cases)
-    packed = [
-        _packed(used, case, MOST_SAMPLES * len(case.recording) // max(total, 1)) for used, case in cases
-    ]
+    chosen = _filled([case for _, case in cases], most)
+    packed = [_packed(used, case, kept) for (used, case), kept in zip(cases, chosen, strict=True)]
     kept = sum(p["kept"] for p in packed)
     return {"noise": noise, "alike": alike, "total": total, "kept": kept, "recordings": packed}
+
+
+def _filled(cases: Sequence[Case], most: int) -> list[NDArray[np.intp]]:
+    """Return samples of each case, `most` together as nearly as a few tries make it: extremes may coincide."""
+    total = sum(len(case.recording) for case in cases)
+    room, asked, chosen = most + SPARE * len(cases), most, [chosen_samples(case, 0) for case in cases]
+    for _ in range(TRIES):
+        tried = [chosen_samples(case, asked * len(case.recording) // max(total, 1)) for case in cases]
+        count = sum(kept.size for kept in tried)
+        if count > room:
+            break
+        chosen = tried
+        if count >= min(total, round(FULL * most)):
+            break
+        asked = round(asked * most / count)
+    return chosen
 
 
 def chosen_samples(case: Case, most: int) -> NDArray[np.intp]:
@@ -84,8 +106,7 @@ def style() -> Markup:
     return Markup((here / "uplot" / "uPlot.min.css").read_text(encoding="utf-8"))
 
 
-def _packed(used: str, case: Case, most: int) -> dict[str, Any]:
-    kept = chosen_samples(case, most)
+def _packed(used: str, case: Case, kept: NDArray[np.intp]) -> dict[str, Any]:
     r = case.recording
     return {
         "name": r.name.encode("utf-8", "backslashreplace").decode("utf-8"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import platform
 from collections.abc import Mapping, Sequence
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,9 @@ FloatArray = NDArray[np.float64]
 
 Simulated = tuple[Sequence[Recording], Sequence[FloatArray], Sequence[FloatArray]]
 """Recordings, and their simulated forces [N] before and after the correction."""
+
+MOST_BYTES = 1_990_000
+"""Of a page: what the rest of it leaves of them is for samples."""
 
 MOST_PLACES = 8
 """Rows of the table of places."""
@@ -108,13 +112,15 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     environment.filters |= {"number": words.number, "percent": words.percent, "unbroken": words.unbroken}
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
-    return page.render(
+    used = [("fitted", c) for c in fitted] + [("held-out", c) for c in held_out]
+    alike = all(c.alike for c in fitted)
+
+    def explored(most: int) -> dict[str, Any]:
+        return explore.explored(used, float(diagnosis["fit"]["noise"]), alike, most)
+
+    written = partial(
+        page.render,
         script=explore.script(),
-        explored=explore.explored(
-            [("fitted", c) for c in fitted] + [("held-out", c) for c in held_out],
-            float(diagnosis["fit"]["noise"]),
-            all(c.alike for c in fitted),
-        ),
         first=header(diagnosis, fitted, reasons),
         style=explore.style() + Markup((here / "report.css").read_text(encoding="utf-8")),
         diagnosis=diagnosis,
@@ -133,9 +139,11 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         evidence=models_compared(diagnosis["evidence"] or []),
         test=next_test(verdict["separating_test"], diagnosis["waveform"]),
         corrections=corrections(diagnosis["correction"]),
-        sources=[("fitted", c.recording) for c in fitted] + [("held-out", c.recording) for c in held_out],
+        sources=[(kind, c.recording) for kind, c in used],
         versions=_versions(),
     )
+    bare = len(written(explored=explored(0)).encode("utf-8", "backslashreplace"))
+    return written(explored=explored(max(MOST_BYTES - bare, 0) // explore.BYTES_EACH))
 
 
 def _cases(

@@ -20,7 +20,7 @@ from .course import loading, rate_of
 from .loops import VISIBLE, Case
 from .palette import PAGE, PLAIN, Palette
 from .svg import drawing, inline_svg
-from .thinning import envelope
+from .thinning import COLUMNS, envelope
 from .words import number
 
 FloatArray = NDArray[np.float64]
@@ -133,7 +133,10 @@ def _over_time(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
     for residual, colour, _ in _courses(m, palette):
         start = 0
         for end in m.ends:
-            axes.plot(*envelope(m.time[start:end], residual[start:end]), color=colour, lw=0.7)
+            # its part of the picture's width: many recordings would else be as many pictures
+            time = m.time[start:end]
+            columns = max(round(COLUMNS * float(np.ptp(time) / np.ptp(m.time))), 1)
+            axes.plot(*envelope(time, residual[start:end], columns), color=colour, lw=0.7)
             start = end
     _time_axis(axes, m, palette)
     axes.set(ylabel="recorded − simulated [N]", title="Over time, every sample")

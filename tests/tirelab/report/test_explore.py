@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from drives import long_ride
 from tirelab.recordings.recording import Recording
 from tirelab.report import explore
 from tirelab.report.loops import Case
+from tirelab.report.page import write_report
+
+CHANNELS = ("time", "deflection", "surface_radius", "force")
 
 
 def case(samples: int, seed: int = 1) -> Case:
@@ -32,7 +39,7 @@ def unpacked(channel: dict) -> np.ndarray:
 
 def test_all_samples_of_a_short_recording_are_carried_to_half_a_step() -> None:
     made = case(3000)
-    (packed,) = explore.explored([("fitted", made)], 5.0, False)["recordings"]
+    (packed,) = explore.explored([("fitted", made)], 5.0, False, 50_000)["recordings"]
     assert (packed["kept"], packed["thinned"]) == (3000, False)
     time = np.frombuffer(base64.b64decode(packed["time"]), "<f4")
     assert time == pytest.approx(made.recording.time - 3.0, abs=1e-6)
@@ -63,11 +70,30 @@ def test_of_a_long_recording_every_moment_keeps_its_extremes() -> None:
 
 
 def test_recordings_share_the_room_by_their_length() -> None:
-    found = explore.explored([("fitted", case(300_000)), ("held-out", case(100_000))], 5.0, False)
+    found = explore.explored([("fitted", case(300_000)), ("held-out", case(100_000))], 5.0, False, 50_000)
     assert found["total"] == 400_000
-    assert 0.5 * explore.MOST_SAMPLES < found["kept"] <= explore.MOST_SAMPLES + 8
+    assert 25_000 < found["kept"] <= 50_008
     long, short = (r["kept"] for r in found["recordings"])
     assert long / short == pytest.approx(3.0, rel=0.1)
+
+
+@pytest.mark.parametrize(("count", "samples"), [(20, 50_000), (1, 1_000_000), (1, 80_000)])
+def test_a_page_is_under_2_mb_and_uses_what_is_left(
+    kinds: dict[str, Any], tmp_path: Path, count: int, samples: int
+) -> None:
+    path = tmp_path / "long.html"
+    ((whole,), (before,), (after,)) = long_ride(count * samples)
+    pieces = [slice(i * samples, (i + 1) * samples) for i in range(count)]
+    rides = [
+        replace(whole, name=f"ride {i}", **{k: getattr(whole, k)[p] for k in CHANNELS})
+        for i, p in enumerate(pieces)
+    ]
+    write_report(path, kinds["one"].diagnosis, rides, [before[p] for p in pieces], [after[p] for p in pieces])
+    size = path.stat().st_size
+    assert size < 2e6
+    carried = json.loads(path.read_text().partition('id="explore-data">')[2].partition("</script>")[0])
+    assert carried["kept"] == samples or size > 1.8e6
+    assert (carried["kept"] == count * samples) == (samples == 80_000)
 
 
 def test_a_still_channel_is_carried() -> None:
@@ -76,7 +102,7 @@ def test_a_still_channel_is_carried() -> None:
         np.full(9, 100.0),
         np.full(9, 100.0),
     )
-    (packed,) = explore.explored([("fitted", still)], 0.0, True)["recordings"]
+    (packed,) = explore.explored([("fitted", still)], 0.0, True, 50_000)["recordings"]
     assert np.array_equal(unpacked(packed["force"]), np.full(9, 100.0))
 
 
