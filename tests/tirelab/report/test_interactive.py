@@ -248,6 +248,23 @@ def test_the_first_screen_holds_the_answer(
     shown.context.close()
 
 
+@pytest.mark.parametrize("view", VIEWS)
+def test_on_a_phone_a_tap_marks_a_sample_and_its_values_are_seen(
+    chromium: Any, reports: dict[str, Path], view: str
+) -> None:
+    shown = opened(chromium, reports["one"], viewport=PHONE, has_touch=True)
+    page = shown.page
+    page.evaluate(f"() => document.getElementById('explore-{view}').scrollIntoView({{ block: 'end' }})")
+    page.touchscreen.tap(*middle(page, view, 0.4))
+    page.locator("#explore-readout", has_text=" mm;").wait_for()
+    box = page.locator("#explore-readout").bounding_box()
+    plot = page.locator(f"#explore-{view} .u-over").bounding_box()
+    assert box["y"] >= 0
+    assert box["y"] + box["height"] <= min(plot["y"], PHONE["height"])
+    assert not page.locator(f"#explore-{view} .ring").first.is_hidden()
+    shown.context.close()
+
+
 def test_without_scripts_the_pictures_stand(chromium: Any, reports: dict[str, Path]) -> None:
     shown = opened(chromium, reports["one"], java_script_enabled=False)
     assert not shown.page.locator("#explore").is_visible()
