@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -66,6 +67,7 @@ class Job:
         self.problem: str | None = None
         self.done = False
         self._ended = ended
+        self._names = {Path(file).name: name for file, name in order.names}
         self._process = subprocess.Popen(
             [sys.executable, "-m", __name__],
             stdin=subprocess.PIPE,
@@ -101,13 +103,18 @@ class Job:
         """Wait until it has ended, so many seconds at most."""
         self._thread.join(seconds)
 
+    def _named(self, sentence: str) -> str:
+        """Return a sentence in which each file has the user's name for it."""
+        files = "|".join(map(re.escape, self._names))
+        return re.sub(rf"\b(?:{files})\b", lambda found: self._names[found[0]], sentence)
+
     def _listen(self, lines: IO[str]) -> None:
         for line in lines:
             said = json.loads(line)
             if "stage" in said:
-                self.stages.append(said["stage"])
+                self.stages.append(self._named(said["stage"]))
             elif "problem" in said:
-                self.problem = self.problem or said["problem"]
+                self.problem = self.problem or self._named(said["problem"])
             else:
                 self.done = True
         self._process.wait()

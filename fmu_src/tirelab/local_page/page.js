@@ -10,7 +10,9 @@
   };
   // Part of the whole time that is spent when each stage begins, as in the command line.
   const SHARES = [["reading", 0.01], ["comparing", 0.06], ["fitting", 0.19], ["validating", 0.6], ["searching", 0.67], ["building", 0.87], ["replaying", 0.9], ["writing", 0.93]];
-  let shown = "";
+  // What stands on the page by its number: as it was told, and its article.
+  const shown = { recordings: new Map(), diagnoses: new Map() };
+  let timer = 0, told = "";
 
   async function ask(path, options) {
     const answer = await fetch(path, options);
@@ -19,6 +21,7 @@
     return content;
   }
   function say(problem) { $("problem").textContent = problem; $("problem").hidden = !problem; }
+  function wait(text) { $("waiting").textContent = text; $("waiting").hidden = !text; }
   async function attempt(work) {
     try { say(""); await work(); } catch (error) { say(error.message); }
     await refresh();
@@ -27,12 +30,12 @@
   async function send(files) {
     const problems = [];
     for (const file of files) {
-      $("stage").textContent = `receiving ${file.name}`;
+      wait(`reading ${file.name} ...`);
       try { await ask(`recordings?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file }); }
       catch (error) { problems.push(error.message); }
+      wait("");
       await refresh();
     }
-    $("stage").textContent = "";
     $("files").value = "";
     say(problems.join(" · "));
   }
@@ -48,7 +51,7 @@
     for (const note of r.notes) box.append(make("p", note, { class: "caption" }));
 
     const row = make("div", undefined, { class: "row" });
-    const label = make("label", "Use: "), use = make("select");
+    const label = make("label", "Use: "), use = make("select", undefined, { class: "use" });
     for (const [value, text] of [["fitted", "fit"], ["held-out", "hold out, to check the correction"], ["left out", "leave out"]]) {
       const option = make("option", text, { value });
       option.selected = value === r.use;
@@ -110,16 +113,51 @@
         if (chosen) columns[channel] = sign.value + chosen;
         if (unit.value.trim()) units[channel] = unit.value.trim();
       }
-      attempt(() => ask(`recordings/${r.number}`, { method: "POST", body: JSON.stringify({ columns, units, radius: radius.value }) }));
+      const sent = entered(box);
+      attempt(async () => {
+        await ask(`recordings/${r.number}`, { method: "POST", body: JSON.stringify({ columns, units, radius: radius.value }) });
+        box.saved = sent;
+      });
     });
     details.append(form);
     box.append(details);
+    box.saved = entered(box);
     return box;
+  }
+
+  const fieldsOf = (box) => [...box.querySelectorAll("form input, form select")];
+  const entered = (box) => fieldsOf(box).map((field) => field.value);
+  // Where the focus is within an article: its place among what can have it.
+  const CAN_FOCUS = "select, input, button, summary, a";
+  const focused = (box) => [...box.querySelectorAll(CAN_FOCUS)].indexOf(document.activeElement);
+  // A recording that is read another way now: its new article with the panel, the focus and unsaved fields of the old.
+  function renewed(r, old) {
+    const box = recording(r), at = focused(old), panel = old.querySelector("details");
+    box.querySelector("details").open = panel.open || Boolean(r.problem);
+    const now = entered(old);
+    fieldsOf(box).forEach((field, i) => { if (now[i] !== old.saved[i]) field.value = now[i]; });
+    return [box, () => { const field = box.querySelectorAll(CAN_FOCUS)[at]; if (field) field.focus(); }];
+  }
+  // Only what changed is replaced, so that nothing entered, opened or focused is lost.
+  function place(list, kind, told, key, write) {
+    const known = shown[kind], numbers = new Set(told.map((one) => one.number));
+    for (const [number, { box }] of known) if (!numbers.has(number)) { box.remove(); known.delete(number); }
+    told.forEach((one, i) => {
+      const had = known.get(one.number), text = key(one);
+      if (!had || had.text !== text) {
+        const [box, after] = had && kind === "recordings" ? renewed(one, had.box) : [write(one), () => {}];
+        if (had) had.box.replaceWith(box);
+        known.set(one.number, { box, text });
+        after();
+      }
+      const { box } = known.get(one.number);
+      if (list.children[i] !== box) list.insertBefore(box, list.children[i] || null);
+    });
   }
 
   const TITLES = { "report.html": "Report", "tire.json": "Tire", "BicycleTire.fmu": "FMU", "Correction.fmu": "FMU of the correction", "diagnosis.json": "Numbers", "separating_test.csv": "Drive file", "plots.csv": "Plot data" };
   function diagnosis(d) {
-    const box = make("article", undefined, { class: "result" });
+    const box = make("article", undefined, { class: "result", id: `result-${d.number}` });
     box.append(make("h3", d.headline), make("p", d.sure, { class: "caption" }));
     const links = make("ul", undefined, { class: "links" });
     for (const name of d.files) {
@@ -135,12 +173,11 @@
   async function refresh() {
     let state;
     try { state = await ask("state"); } catch (error) { say(`tirelab open no longer answers (${error.message}); start it again.`); return; }
-    const listed = JSON.stringify([state.recordings, state.diagnoses]);
-    if (listed !== shown) {
-      shown = listed;
-      $("recordings").replaceChildren(...state.recordings.map(recording));
-      $("diagnoses").replaceChildren(...(state.diagnoses.length ? state.diagnoses.map(diagnosis).reverse() : [make("p", "None yet.", { class: "caption" })]));
-    }
+    $("reading").hidden = true;
+    $("none").hidden = state.diagnoses.length > 0;
+    place($("recordings"), "recordings", state.recordings, (r) => JSON.stringify({ ...r, use: "" }), recording);
+    for (const r of state.recordings) shown.recordings.get(r.number).box.querySelector(".use").value = r.use;
+    place($("diagnoses"), "diagnoses", [...state.diagnoses].reverse(), JSON.stringify, diagnosis);
     const job = state.job, running = Boolean(job && job.running);
     const fitted = state.recordings.filter((r) => r.use === "fitted"), unread = state.recordings.filter((r) => r.problem && r.use !== "left out");
     $("diagnose").disabled = running || !fitted.length || unread.length > 0;
@@ -150,11 +187,20 @@
     if (job) {
       const stage = job.stages[job.stages.length - 1] || "starting";
       const found = SHARES.find(([begin]) => stage.startsWith(begin));
-      if (running) { $("stage").textContent = stage; $("progress").value = found ? found[1] : 0; }
-      else $("stage").textContent = job.problem ? job.problem : "done";
+      if (running) $("progress").value = found ? found[1] : 0;
+      tell(running ? stage : job.problem || "done", !running && !job.problem ? state.diagnoses.find((d) => d.number === job.number) : null);
       $("stage").className = !running && job.problem ? "alarm" : "";
     }
-    if (running) setTimeout(refresh, 500);
+    clearTimeout(timer);
+    if (running) timer = setTimeout(refresh, 500);
+  }
+  // What the diagnosis does, and in the end the way to its result.
+  function tell(text, result) {
+    const now = JSON.stringify([text, result ? result.number : 0]);
+    if (now === told) return;
+    told = now;
+    $("stage").textContent = text;
+    if (result) $("stage").append(": ", make("a", result.headline, { href: `#result-${result.number}` }));
   }
 
   $("files").addEventListener("change", () => send($("files").files));
@@ -163,5 +209,6 @@
   for (const kind of ["dragover", "dragenter"]) document.addEventListener(kind, (e) => { e.preventDefault(); $("drop").classList.add("over"); });
   document.addEventListener("dragleave", () => $("drop").classList.remove("over"));
   document.addEventListener("drop", (e) => { e.preventDefault(); $("drop").classList.remove("over"); send(e.dataTransfer.files); });
+  $("reading").hidden = false;
   refresh();
 })();

@@ -1,6 +1,6 @@
 """Uploaded recordings and finished diagnoses in one folder, under names of our own.
 
-    DIR/uploads/0001.csv       the file as it came; its suffix is one of those that can be read
+    DIR/uploads/0001.csv       the file as it came, with its suffix where that is a plain word
     DIR/uploads/0001.toml      how it is to be read, as `recordings.metadata` has it
     DIR/uploads/0001.json      what the user calls it, and what it is used for
     DIR/diagnoses/0001/        what `tirelab diagnose` writes
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,31 +21,11 @@ from typing import Any, BinaryIO, Protocol
 
 from ..errors import TirelabError
 
-SUFFIXES = (
-    ".csv",
-    ".tsv",
-    ".txt",
-    ".dat",
-    ".asc",
-    ".tra",
-    ".lvm",
-    ".log",
-    ".prn",
-    ".parquet",
-    ".pq",
-    ".mat",
-    ".h5",
-    ".hdf5",
-    ".mf4",
-    ".mdf",
-    ".tdms",
-    ".xlsx",
-    ".xlsm",
-    ".xls",
-    ".xlsb",
-    ".ods",
-)
-"""Suffixes that can be read, as `recordings.formats.LOADERS`, whose libraries take long to import."""
+SUFFIX = re.compile(r"\.[a-z][a-z0-9]{0,7}")
+"""A suffix that an upload keeps: by it and by the content `recordings.formats` finds how to read the file."""
+
+OWN = (".json", ".toml", ".part")
+"""Suffixes of what stands beside an upload."""
 
 RESULTS = (
     "report.html",
@@ -143,14 +124,12 @@ class Store:
     def arrive(self, name: str, stream: Stream, size: int) -> Arrived:
         """Write `size` bytes of a stream aside.
 
-        Raises TirelabError, and leaves nothing, where the suffix is none that can be read or the stream ends early.
+        Raises TirelabError, and leaves nothing, where the stream ends early.
         """
         shown = clean_name(name)
         suffix = PurePosixPath(shown).suffix.lower()
-        if suffix not in SUFFIXES:
-            raise TirelabError(
-                f"{shown} is no recording: its name must end in one of {', '.join(SUFFIXES)}; export it as CSV"
-            )
+        if suffix in OWN or not SUFFIX.fullmatch(suffix):
+            suffix = ""
         descriptor, aside = tempfile.mkstemp(prefix=".part-", dir=self._uploads)
         try:
             with os.fdopen(descriptor, "wb") as file:
@@ -258,4 +237,4 @@ def _copy(stream: Stream, file: BinaryIO, size: int, name: str) -> None:
         left -= len(block)
 
 
-__all__ = ["RESULTS", "SUFFIXES", "USES", "Store", "Upload", "clean_name", "clean_text", "clean_texts"]
+__all__ = ["RESULTS", "USES", "Store", "Upload", "clean_name", "clean_text", "clean_texts"]

@@ -69,24 +69,30 @@ def understood(file: Path, name: str) -> Understood:
         table = open_table(file)
     except TirelabError as error:
         raise TirelabError(_by_name(str(error), file, name)) from None
-    if (reason := why_no_recording(file)) is not None:
-        raise TirelabError(f"{name} is no recording: {reason}")
     headers = tuple(header.text for header in table.headers)
     (first, *others), _ = recording_files([file])
     try:
         found = inspect_recording(first, Choices())
     except IncompleteRecording as error:
+        _refuse(error, file, name)
         asked = error.settings
         guess = {"columns": dict(asked.columns), "units": dict(asked.units), "radius": asked.radius or ""}
         problem = f"{_by_name(error.what, file, name)}; what may be meant is filled in below, check it"
         planned = _planned(first, table, asked.radius)
         return Understood(headers, planned, problem=problem, guess=guess)
     except TirelabError as error:
+        _refuse(error, file, name)
         return Understood(headers, _planned(first, table), problem=_by_name(str(error), file, name))
     more = (("tests", f"{1 + len(others)} side by side, each a recording; of the first:"),) if others else ()
     notes = (*found.remarks, *(f"it says: {text}" for text in found.recording.provenance))
     doubts = tuple(_by_name(doubt, file, name) for doubt in found.recording.doubts)
     return Understood(headers, _channels(found, headers), (*more, *found.facts), notes, doubts)
+
+
+def _refuse(error: TirelabError, file: Path, name: str) -> None:
+    """Raise what `tirelab inspect` says, where no settings could make a recording of the file."""
+    if why_no_recording(file) is not None:
+        raise TirelabError(_by_name(str(error), file, name)) from None
 
 
 def _channels(found: Inspection, headers: tuple[str, ...]) -> tuple[Channel, ...]:

@@ -70,7 +70,7 @@ def test_from_drop_to_download(chromium: Any, opened: tuple[str, Path], tmp_path
 
     page.evaluate(DROP, ["Dear colleague,\nall went well.\n", "notes.txt"])
     page.wait_for_selector("#problem:not([hidden])")
-    assert "notes.txt is no recording" in page.inner_text("#problem")
+    assert "notes.txt: " in page.inner_text("#problem")
     assert page.locator(".recording").count() == 0
 
     # a column without name and unit: the user says what it is
@@ -97,9 +97,20 @@ def test_from_drop_to_download(chromium: Any, opened: tuple[str, Path], tmp_path
 
     page.click("#diagnose")
     page.wait_for_selector("#stop:visible")
+    panel = page.locator(".recording").nth(1).locator("details")
+    panel.locator("summary").click()
+    unit = panel.locator("input[aria-label='unit of force']")
+    unit.fill("kN")
     page.wait_for_selector("#progress:visible")
     page.wait_for_selector(".result", timeout=180_000)
     page.locator("#stage", has_text="done").wait_for()
+    # the end of the diagnosis takes away nothing that was being entered, and leads to the result
+    assert panel.get_attribute("open") is not None
+    assert unit.input_value() == "kN"
+    assert unit.evaluate("field => field === document.activeElement")
+    assert page.locator("#stage a").get_attribute("href") == "#" + str(
+        page.locator(".result").get_attribute("id")
+    )
     assert "Viscous damping" in page.inner_text(".result h3")
 
     with page.expect_download() as download:
@@ -130,6 +141,42 @@ def test_from_drop_to_download(chromium: Any, opened: tuple[str, Path], tmp_path
     ]
     told = json.loads((folder / "diagnoses" / "0001" / "diagnosis.json").read_text())
     assert told["fit"]["held_out_after"] < 0.5 * told["fit"]["held_out_before"]
+    shown.context.close()
+
+
+def test_what_is_entered_stays_where_something_else_changes(
+    chromium: Any, opened: tuple[str, Path], tmp_path: Path
+) -> None:
+    shown = Watched(chromium, viewport={"width": 1280, "height": 800})
+    page = shown.page
+    page.goto(opened[0])
+    names = [saved(damped(i, samples=500), tmp_path / f"ride_{i}.csv") for i in (1, 2)]
+    page.locator("#files").set_input_files(names)
+    first, second = page.locator(".recording").nth(0), page.locator(".recording").nth(1)
+    second.wait_for()
+    first.locator("summary").click()
+    unit = first.locator("input[aria-label='unit of force']")
+    unit.fill("kN")
+    with page.expect_response("**/state"):
+        second.locator("select.use").select_option(value="held-out")
+    second.locator("select.use").focus()
+    with page.expect_response("**/state"):
+        first.locator("select.use").select_option(value="left out")
+    assert unit.input_value() == "kN"
+    assert first.locator("details").get_attribute("open") is not None
+    assert first.locator("select.use").input_value() == "left out"
+    # what was entered is read then, the panel stays, and the focus with it
+    first.locator("button[type=submit]").focus()
+    with page.expect_response("**/state"):
+        page.keyboard.press("Enter")
+    first.locator("input[placeholder=kN]").wait_for()
+    assert first.locator("details").get_attribute("open") is not None
+    assert page.evaluate("document.activeElement.textContent") == "Apply"
+    with page.expect_response("**/state"):
+        second.locator("button", has_text="Remove").click()
+    second.wait_for(state="detached")
+    assert unit.input_value() == "kN"
+    assert shown.said == []
     shown.context.close()
 
 

@@ -14,7 +14,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from drives import damped, saved
+from tirelab.cli import main
 from tirelab.local_page import server as module
 from tirelab.local_page.server import HOST, Server, Workbench
 from tirelab.local_page.store import Store
@@ -126,19 +128,30 @@ def test_a_recording_is_kept_and_understood(served: Server, ride: bytes) -> None
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("notes.txt", b"Dear colleague,\nthe tests went well.\n", "notes.txt is no recording"),
-        ("page.html", b"<html></html>", "page.html is no recording: its name must end in one of"),
+        ("notes.txt", b"Dear colleague,\nthe tests went well.\n", "notes.txt: "),
+        ("page.html", b"<html></html>", "page.html: "),
         ("sheet.xlsx", b"no workbook at all", "sheet.xlsx"),
-        ("empty.csv", b"", "empty.csv: is empty"),
+        ("empty.csv", b"", "is empty (0 bytes)"),
         ("zip.csv", b"PK\x03\x04 and so on", "zip.csv: is no text table"),
     ],
 )
 def test_what_is_no_recording_gets_a_sentence_and_nothing_is_kept(
-    served: Server, name: str, content: bytes, sentence: str
+    served: Server,
+    name: str,
+    content: bytes,
+    sentence: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    """The sentence is that of `tirelab inspect`, word for word."""
     status, told, _ = ask(served, "POST", f"recordings?name={name}", content)
     assert status == 422
     assert sentence in told["problem"]
+    (tmp_path / name).write_bytes(content)
+    monkeypatch.chdir(tmp_path)
+    inspected = CliRunner().invoke(main, ["inspect", name])
+    assert inspected.exit_code == 2
+    assert inspected.stderr.partition("Error: ")[2].splitlines()[0] == told["problem"]
     assert "0001" not in told["problem"]
     assert str(served.workbench.store.folder) not in told["problem"]
     assert kept(served) == []
@@ -272,6 +285,7 @@ def test_a_diagnosis_that_is_stopped_leaves_nothing(served: Server, ride: bytes)
     assert job is not None
     while job.running and not job.stages:
         time.sleep(0.05)
+    assert job.stages[0] == "reading ride"  # not 0001.csv
     assert ask(served, "POST", "diagnose", b"")[0] == 422  # one at a time
     assert ask(served, "DELETE", "diagnose")[0] == 200
     job.wait(60.0)
