@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from radialtire import CATALOGUE
+from tirelab.report.titles import full_title
 
 
 def commands(repository: Path) -> tuple[str, str]:
@@ -64,7 +65,7 @@ def test_tirelab_is_a_command_before_the_reader_types_it(
 def test_every_effect_is_in_the_table_of_effects(repository: Path) -> None:
     text = (repository / "README.md").read_text().lower()
     names = [name for name, effect in CATALOGUE.items() if "law" not in effect.traits]
-    assert [n for n in names if f"| {n.replace('_', ' ')} |" not in text] == []
+    assert [n for n in names if f"| {full_title(n).lower()} |" not in text] == []
 
 
 def test_pages_lead_to_files(repository: Path) -> None:
@@ -102,6 +103,6 @@ def test_the_main_command_from_a_clean_clone(repository: Path, tmp_path: Path) -
         ["bash", "-c", main], cwd=clone, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert "Left out: rate-independent hysteresis" in done.stdout
+    assert "Left out: friction loop (rate-independent hysteresis)" in done.stdout
     assert (clone / "dist" / "BicycleTire.fmu").is_file()
     assert list(home.iterdir()) == []

@@ -44,7 +44,9 @@ def test_the_notebook_is_stored_without_outputs(repository: Path) -> None:
 def test_the_verdict_is_shown_as_a_table(cells: list[Any]) -> None:
     (table,) = shown(cells[1], "text/html")
     assert "Friction loop, " in table
-    assert shown(cells[1], "text/plain")[0].startswith("Verdict('Left out: rate-independent hysteresis', ")
+    assert shown(cells[1], "text/plain")[0].startswith(
+        "Verdict('Left out: friction loop (rate-independent hysteresis)', "
+    )
 
 
 def test_loops_and_residuals_are_drawn(cells: list[Any]) -> None:

@@ -18,11 +18,11 @@ def effect_shown(effect: Mapping[str, Any], sketches: Mapping[str, Any]) -> dict
     known = CATALOGUE.get(name)
     sketch = sketches.get(name)
     return {
-        "title": titles.effect_title(name),
+        "title": titles.full_title(name),
         "size": words.number(effect.get("size")) if effect.get("size") is not None else "",
         "statement": words.LAW_STATEMENT if name == REFITTED_LAW else "",
         "tell_tale": known.tell_tale if known else "",
-        "imitators": titles.listed([titles.effect_title(n) for n in known.imitators]) if known else "",
+        "imitators": titles.listed([titles.short_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",
         "share": effect["share"],
         "law": [words.law_row(row) for row in effect.get("law", [])],

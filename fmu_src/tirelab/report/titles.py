@@ -34,12 +34,18 @@ _SHORT = {
     "series_compliance": "series spring",
     "viscoelastic_relaxation": "relaxation",
 }
-"""Names for headlines and lists of effects whose own name is long."""
+"""Names for headlines, sentences and lists of effects whose own name is long: `full_title` says both."""
 
 
 def short_title(name: str) -> str:
     """Return the name of an effect where there is little room."""
     return _SHORT.get(name) or effect_title(name)
+
+
+def full_title(name: str) -> str:
+    """Return the short name of an effect, and its own in brackets, for where it is first told of."""
+    short, own = short_title(name), effect_title(name)
+    return short if short == own else f"{short} ({own})"
 
 
 def short_set(names: Sequence[str]) -> str:
@@ -89,7 +95,7 @@ def question(first: Sequence[str], second: Sequence[str], more: str = "") -> str
 def set_title(names: Sequence[str]) -> str:
     """Return the name of a set of effects; a name that is no effect's is a coordinate of something unknown."""
     known = {*CATALOGUE, REFITTED_LAW, UNKNOWN}
-    titles = [effect_title(n) if n in known else f"something unknown over {dependence(n)}" for n in names]
+    titles = [short_title(n) if n in known else f"something unknown over {dependence(n)}" for n in names]
     return listed(titles) or "nothing missing"
 
 
@@ -130,7 +136,7 @@ def headline(names: Sequence[str], unexplained: bool, alternatives: bool, left: 
     elif not names:
         text = "Something is missing that no known effect explains"
     else:
-        parts = [effect_title(name) for name in physics]
+        parts = [full_title(name) for name in physics]
         if unexplained:
             parts.append("something that no known effect explains")
         text = f"Left out: {listed(parts)}"

@@ -38,7 +38,7 @@ def verdict_table(diagnosis: Mapping[str, Any]) -> str:
         rows.append(("held-out RMS error", f"{held_out}{words.held_out_part(diagnosis['held_out_by'])}"))
     rows += [
         (
-            titles.effect_title(effect["name"]),
+            titles.full_title(effect["name"]),
             ", ".join(
                 f"{titles.effect_title(name)} {words.estimate(e['value'], e['std'], e['unit'])}"
                 for name, e in effect["parameters"].items()

@@ -26,7 +26,9 @@ def test_nothing_missing_does_not_fall():
 
 def test_an_effect_is_stated_with_the_improvement_on_held_out_data():
     told = summarise((FRICTION,), (), (), 0.85, FELL)
-    assert told.startswith("Left out: rate-independent hysteresis. Friction: loading and unloading differ")
+    assert told.startswith(
+        "Left out: friction loop (rate-independent hysteresis). Friction: loading and unloading differ"
+    )
     assert "The correction reduces the RMS error from 26.4 N to 6.10 N; the noise is 6.00 N." in told
     assert "On held-out data it falls from 26.5 N to 6.20 N." in told
 

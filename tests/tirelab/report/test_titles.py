@@ -25,6 +25,15 @@ def test_effects_and_parameters_have_titles(name: str, title: str) -> None:
     assert titles.effect_title(name) == title
 
 
+def test_a_short_name_is_told_with_the_effect_s_own_once() -> None:
+    assert titles.full_title("rate_independent_hysteresis") == "friction loop (rate-independent hysteresis)"
+    assert titles.full_title("inertia") == "inertia"
+    assert titles.set_title(["series_compliance", "inertia"]) == "series spring and inertia"
+    assert titles.headline(["viscoelastic_relaxation"], False, False) == (
+        "Left out: relaxation (viscoelastic relaxation)."
+    )
+
+
 def test_no_title_of_the_catalogue_is_code() -> None:
     for name in (*CATALOGUE, REFITTED_LAW, UNKNOWN, *REMAINS):
         assert "_" not in titles.set_title([name])

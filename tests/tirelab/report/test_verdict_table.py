@@ -30,7 +30,7 @@ def test_every_kind_has_verdict_confidence_and_errors(kinds: dict[str, Any], kin
 def test_effects_have_their_parameters(kinds: dict[str, Any]) -> None:
     text = shown(kinds["two"].diagnosis)
     assert (
-        "|rate-independent hysteresis|slip force 30.10 ± 0.60 N, load share 0.01990 ± 0.00080, "
+        "|friction loop (rate-independent hysteresis)|slip force 30.10 ± 0.60 N, load share 0.01990 ± 0.00080, "
         "reach 1.020 ± 0.040 mm|" in text
     )
     assert "|refitted law|" in text
@@ -38,7 +38,7 @@ def test_effects_have_their_parameters(kinds: dict[str, Any]) -> None:
 
 def test_alternatives_and_the_next_test_are_shown_where_there_are_any(kinds: dict[str, Any]) -> None:
     text = shown(kinds["alternatives"].diagnosis)
-    assert "|alternative models|viscous damping or viscoelastic relaxation and refitted law|" in text
+    assert "|alternative models|viscous damping or relaxation and refitted law|" in text
     assert "|recommended next test|Drive triangles at three rates to 22 mm on flat ground.|" in text
     assert "alternative models" not in shown(kinds["one"].diagnosis)
 
