@@ -27,6 +27,7 @@ from .loops import Case
 from .models_compared import models_compared
 from .next_test import next_test
 from .pictures import loops, residuals
+from .shape_sketch import shape_sketch
 from .sketches import draw_law_changes
 
 FloatArray = NDArray[np.float64]
@@ -112,6 +113,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
     environment.filters |= {"number": words.number, "percent": words.percent, "unbroken": words.unbroken}
     page = environment.from_string((here / "report.html.jinja").read_text(encoding="utf-8"))
     reasons = list(diagnosis["reasons"] or [])
+    sketches = {**(diagnosis["sketches"] or {}), **shape_sketch(diagnosis)}
     used = [("fitted", c) for c in fitted] + [("held-out", c) for c in held_out]
     alike = all(c.alike for c in fitted)
 
@@ -126,7 +128,7 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         diagnosis=diagnosis,
         delivered=delivered_of(diagnosis),
         verdict=verdict,
-        effects=[effect_shown(effect, diagnosis["sketches"] or {}) for effect in verdict["effects"]],
+        effects=[effect_shown(effect, sketches) for effect in verdict["effects"]],
         alternatives=alternatives(verdict),
         unseen=any(d["probability"] is None for d in verdict.get("alternative_details") or ()),
         law_curves=draw_law_changes(diagnosis["law_changes"], "law") if diagnosis["law_changes"] else None,

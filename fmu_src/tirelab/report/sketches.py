@@ -19,6 +19,10 @@ DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (5, 2, 1.5, 2)))
 SKETCH = (150, 60)
 """Width and height of a parameter's sketch [px]."""
 
+TOO_SMALL = "too small to draw"
+SEEN = 0.03
+"""Two curves of a sketch differ to the eye from this part of its height on: two pixels."""
+
 
 def draw_waveform(time: Sequence[float], deflection: Sequence[float], mark: str) -> Markup:
     """Return the deflection [m] to drive over time [s]."""
@@ -64,13 +68,18 @@ def draw_law_changes(changes: Sequence[Mapping[str, Any]], mark: str) -> Markup:
 
 
 def draw_sketch(sketch: Mapping[str, Any], parameter: str) -> Markup:
-    """Return the force that an effect adds over the deflection, and the same with one parameter larger, dashed."""
+    """Return the force that an effect adds over the deflection, and the same with one parameter larger, dashed.
+
+    TOO_SMALL is returned where the eye would not see both.
+    """
     varied = sketch["varied"].get(parameter)
     if varied is None:
         return Markup("")
     x, curves = np.asarray(sketch["deflection"], float), (sketch["force"], varied)
     values = np.concatenate([np.asarray(c, float) for c in curves])
     low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
+    if float(np.max(np.abs(np.subtract(*curves)))) < SEEN * (high - low) or not high > low:
+        return Markup(TOO_SMALL)
     wide, tall = SKETCH
 
     def path(force: Sequence[float]) -> str:

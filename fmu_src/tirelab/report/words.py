@@ -16,6 +16,9 @@ LAW_STATEMENT = (
     "the elastic law has other coefficients than in the baseline; a refitted law is not missing physics"
 )
 
+SHAPE = "elastic_shape"
+"""The effect that holds the shape of a refitted law."""
+
 NORMAL_95 = 1.96
 """Standard deviations of a 95 % interval of a normal distribution."""
 
@@ -47,7 +50,7 @@ def meaning(effect: str, parameter: str) -> str:
     """Return the meaning of a parameter from the catalogue; empty where the catalogue has none."""
     if effect == REFITTED_LAW and (kind := parameter.partition(",")[0]) in _OF_THE_LAW:
         return _OF_THE_LAW[kind]
-    owner = CATALOGUE.get("elastic_shape" if effect == REFITTED_LAW else effect)
+    owner = CATALOGUE.get(SHAPE if effect == REFITTED_LAW else effect)
     name = parameter.replace(" ", "_")
     found = [p.meaning for p in owner.parameters if p.name == name] if owner else []
     return found[0] if found else ""
@@ -104,7 +107,7 @@ def fixed(value: float, decimals: int) -> str:
 
 def bounds(effect: str, parameter: str) -> tuple[float, float]:
     """Return the values that the catalogue allows a parameter; all of them where it does not know it."""
-    owner = CATALOGUE.get(effect)
+    owner = CATALOGUE.get(SHAPE if effect == REFITTED_LAW else effect)
     found = [(p.minimum, p.maximum) for p in owner.parameters if p.name == parameter] if owner else []
     return found[0] if found else (-math.inf, math.inf)
 
