@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS
 
@@ -32,6 +34,17 @@ FEWEST = 5
 
 CORE = 0.995
 """Part of the differences between the limits of the picture, which a spike would else stretch."""
+
+LEGEND: dict[str, Any] = {
+    "loc": "lower right",
+    "bbox_to_anchor": (0.99, -0.015),
+    "ncols": 2,
+    "frameon": False,
+    "fontsize": 8.5,
+    "handlelength": 1.4,
+    "columnspacing": 1.2,
+}
+"""Beside the label of the axis below, where no sample can be."""
 
 
 @dataclass(frozen=True)
@@ -122,13 +135,14 @@ def draw_where(at: Located, places: Sequence[Mapping[str, Any]], noise: float, m
         samples = inside(place, at)
         chosen |= False if samples is None else samples
     core = np.quantile(at.residual, [1.0 - CORE, CORE]) if mm.size > 100 else at.residual
-    frame = Frame(limits_of(mm), limits_of(core, np.array([-noise, noise]), margin=0.12))
+    ends = [1e3 * float(p[end]) for p in places if p["by"] == "deflection" for end in ("from", "to")]
+    frame = Frame(limits_of(np.append(mm, ends)), limits_of(core, np.array([-noise, noise]), margin=0.12))
     with drawing(3.0) as (figure, axes):
         axes.axhspan(-noise, noise, color=PAGE.band, lw=0, zorder=0.5)
         for place in places:
             if place["by"] == "deflection":
-                ends = (1e3 * float(place["from"]), 1e3 * float(place["to"]))
-                axes.axvspan(*ends, color=PAGE.before, alpha=0.13, lw=0, zorder=0.4)
+                start, stop = (1e3 * float(place[end]) for end in ("from", "to"))
+                axes.axvspan(start, stop, color=PAGE.before, alpha=0.13, lw=0, zorder=0.4)
         draw_dots(axes, mm[~chosen], at.residual[~chosen], frame, GREY)
         draw_dots(axes, mm[chosen], at.residual[chosen], frame, ORANGE)
         axes.axhline(0.0, color=PAGE.ink, lw=0.6)
@@ -136,7 +150,10 @@ def draw_where(at: Located, places: Sequence[Mapping[str, Any]], noise: float, m
         for branch, marker in ((loads, "^"), (~loads, "v")):
             axes.plot(*_means(mm[branch], at.residual[branch]), color=PAGE.ink, marker=marker, ms=2.6, lw=1.3)
         title = "Recorded − simulated (▲ loading, ▼ unloading)"
-        axes.set(xlim=frame.across, ylim=frame.up, xlabel="deflection [mm]", ylabel="force [N]", title=title)
+        axes.set(xlim=frame.across, ylim=frame.up, ylabel="force [N]", title=title)
+        axes.set_xlabel("deflection [mm]", loc="left")
+        legend = [Patch(color=PAGE.band, label="noise"), Line2D([], [], color=PAGE.ink, lw=1.3, label="mean")]
+        figure.legend(handles=legend, **LEGEND)
         alt = (
             "The difference between recorded and simulated force over the deflection, with its means for loading and "
             "unloading, and the places shaded in which it lies."

@@ -63,6 +63,15 @@ def test_the_first_coordinate_that_says_something_is_shaded() -> None:
     assert shaded([unloads, loads], AT) == [unloads]  # both would shade the whole picture
 
 
+def test_the_picture_reaches_as_far_as_its_places_and_says_what_it_draws() -> None:
+    """Another recording went deeper: the place ends beyond the one that is drawn."""
+    plain = draw_where(AT, [], 1.0, "a")
+    deep = draw_where(AT, [place("deflection", 0.004, 0.03)], 1.0, "a")
+    assert (">30<" in plain, ">30<" in deep) == (False, True)
+    assert ">noise<" in plain
+    assert ">mean<" in plain
+
+
 def test_a_band_of_deflection_is_shaded_and_other_places_by_their_samples() -> None:
     plain = draw_where(AT, [], 1.0, "a")
     band = draw_where(AT, [place("deflection", 0.004, 0.006)], 1.0, "a")
