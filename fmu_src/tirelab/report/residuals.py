@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from ..errors import TirelabError
 from .course import loading, rate_of
 from .loops import VISIBLE, Case
+from .numbers import cells_link, curves_link
 from .palette import PAGE, PLAIN, Palette
 from .svg import drawing, inline_svg
 from .thinning import COLUMNS, envelope
@@ -117,7 +119,7 @@ def draw_over_deflection(m: Misfit, noise: float, mark: str) -> Markup:
     with drawing() as (figure, axes):
         _over_deflection(axes, m, noise, PAGE)
         alt = "Mean residual over deflection, for loading and unloading, before and after the correction."
-        return inline_svg(figure, alt, mark)
+        return inline_svg(figure, alt, mark) + curves_link("residual_over_deflection", axes)
 
 
 def draw_over_rate(m: Misfit, noise: float, mark: str) -> Markup:
@@ -125,7 +127,7 @@ def draw_over_rate(m: Misfit, noise: float, mark: str) -> Markup:
     with drawing() as (figure, axes):
         _over_rate(axes, m, noise, PAGE)
         alt = "Mean residual over the rate of deflection, before and after the correction."
-        return inline_svg(figure, alt, mark)
+        return inline_svg(figure, alt, mark) + curves_link("residual_over_rate", axes)
 
 
 def _over_time(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
@@ -145,10 +147,12 @@ def _over_time(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
 def _over_deflection(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
     edges = np.linspace(m.deflection.min(), m.deflection.max(), FINE + 1)
     _noise_band(axes, noise, palette)
-    for residual, colour, _ in _courses(m, palette):
-        for branch, style, marker in ((m.loading, "-", "^"), (~m.loading, (0, (3, 2)), "v")):
+    branches = (("loading", m.loading, "-", "^"), ("unloading", ~m.loading, (0, (3, 2)), "v"))
+    for residual, colour, label in _courses(m, palette):
+        for name, branch, style, marker in branches:
             at, mean = _means(m.deflection[branch], residual[branch], edges)
-            axes.plot(1e3 * at, mean, color=colour, ls=style, marker=marker, ms=3.2, lw=1.2)
+            look: dict[str, Any] = {"color": colour, "ls": style, "marker": marker, "ms": 3.2, "lw": 1.2}
+            axes.plot(1e3 * at, mean, label=f"{label}, {name}", **look)
     axes.set(
         xlabel="deflection [mm]",
         ylabel="mean residual [N]",
@@ -159,9 +163,9 @@ def _over_deflection(axes: Axes, m: Misfit, noise: float, palette: Palette) -> N
 def _over_rate(axes: Axes, m: Misfit, noise: float, palette: Palette) -> None:
     edges = _rate_edges(m.rate, BINS)
     _noise_band(axes, noise, palette)
-    for residual, colour, _ in _courses(m, palette):
+    for residual, colour, label in _courses(m, palette):
         at, mean = _means(m.rate, residual, edges)
-        axes.plot(1e3 * at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
+        axes.plot(1e3 * at, mean, color=colour, marker="o", ms=3.2, lw=1.2, label=label)
     axes.set(xlabel="rate [mm/s], unloading < 0 < loading", ylabel="mean residual [N]", title="Over the rate")
     slow, fast = 1e3 * float(np.quantile(np.abs(m.rate), 0.25)), 1e3 * float(np.max(np.abs(m.rate)))
     if fast > 20.0 * slow > 0.0:
@@ -187,20 +191,19 @@ def draw_slow_changes(m: Misfit, noise: float, mark: str) -> Markup:
     blocks = max(BINS // len(m.ends), 4)
     with drawing() as (figure, axes):
         _noise_band(axes, noise, PAGE)
-        for residual, colour, _ in _courses(m, PAGE):
+        for residual, colour, label in _courses(m, PAGE):
             start = 0
             for end in m.ends:
                 time = m.time[start:end]
                 edges = _cycles(time, m.loading[start:end], blocks)
                 whole = (time >= edges[0]) & (time < edges[-1])
                 at, mean = _means(time[whole], residual[start:end][whole], edges)
-                axes.plot(at, mean, color=colour, marker="o", ms=3.2, lw=1.2)
+                axes.plot(at, mean, color=colour, marker="o", ms=3.2, lw=1.2, label=label)
                 start = end
         _time_axis(axes, m, PAGE)
         axes.set(ylabel="mean residual [N]", title="Slow changes: means over whole cycles")
-        return inline_svg(
-            figure, "Mean residual of whole cycles over time, before and after the correction.", mark
-        )
+        alt = "Mean residual of whole cycles over time, before and after the correction."
+        return inline_svg(figure, alt, mark) + curves_link("residual_of_cycles", axes)
 
 
 def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
@@ -245,7 +248,9 @@ def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
             bar = figure.colorbar(drawn, ax=axes, label="mean residual [N]", aspect=30)
             bar.outline.set_visible(False)
             alt = f"Map of the mean residual over deflection and {name}, {which} the correction."
-            maps.append(inline_svg(figure, alt, mark + which))
+            unit, factor = ("[s]", 1.0) if name == "time" else ("[mm/s]", 1e3)
+            numbers = cells_link(f"map_{which}", 1e3 * x_edges, (f"{name} {unit}", factor * edges), mean)
+            maps.append(inline_svg(figure, alt, mark + which) + numbers)
     return maps, name
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from .numbers import curves_link
 from .palette import PAGE
 from .svg import drawing, inline_svg
 from .thinning import envelope
@@ -46,10 +47,11 @@ def draw_correction(
         if std is not None:
             wide = 2.0 * np.asarray(std, float)
             axes.fill_between(at, regressed - wide, regressed + wide, color=PAGE.after, alpha=0.25, lw=0)
-        axes.plot(at, regressed, color=PAGE.after, lw=1.4)
+        axes.plot(at, regressed, color=PAGE.after, lw=1.4, label="regression")
         label = f"{by} [{name}]" if name else by
         axes.set(xlabel=label, ylabel="remaining force [N]")
-        return inline_svg(figure, f"Remaining force over {by}.", mark)
+        picture = inline_svg(figure, f"Remaining force over {by}.", mark)
+        return picture + curves_link(f"remainder_over_{by.replace(' ', '_')}", axes)
 
 
 def draw_law_changes(changes: Sequence[Mapping[str, Any]], mark: str) -> Markup:
@@ -62,9 +64,8 @@ def draw_law_changes(changes: Sequence[Mapping[str, Any]], mark: str) -> Markup:
             axes.plot(x, y, color=colour, ls=DASHES[i % len(DASHES)], lw=1.4, label=surface(change["radius"]))
         axes.legend(frameon=False, fontsize=8.0)
         axes.set(xlabel="deflection [mm]", ylabel="force [N]", title="Refitted law − baseline law")
-        return inline_svg(
-            figure, "Force of the refitted law less that of the baseline over the deflection.", mark
-        )
+        alt = "Force of the refitted law less that of the baseline over the deflection."
+        return inline_svg(figure, alt, mark) + curves_link("refitted_law", axes)
 
 
 def draw_sketch(sketch: Mapping[str, Any], parameter: str) -> Markup:

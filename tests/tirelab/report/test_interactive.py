@@ -190,6 +190,14 @@ def test_keys_walk_zoom_pan_and_reset(report: Watched) -> None:
     assert order
 
 
+def test_buttons_of_time_say_so(report: Watched) -> None:
+    titles = {
+        b.get_attribute("data-do"): b.get_attribute("title")
+        for b in report.page.query_selector_all("[data-do]")
+    }
+    assert all("time" in titles[do] for do in ("left", "right", "in", "out"))
+
+
 def test_recordings_and_series_are_switched_off(report: Watched) -> None:
     page = report.page
     full = window(page, "force-time")
@@ -245,7 +253,32 @@ def test_the_first_screen_holds_the_answer(
         assert box["y"] >= 0
         assert box["y"] + box["height"] <= size["height"], (part, box)
     assert page.evaluate("() => document.documentElement.scrollWidth") <= size["width"]
+    links = page.locator(".links a")
+    for i in range(links.count()):
+        box = links.nth(i).bounding_box()
+        assert box["y"] + box["height"] <= size["height"], (links.nth(i).inner_text(), box)
+    drive = ["separating_test.csv"] if kind == "alternatives" else []
+    assert [links.nth(i).get_attribute("href") for i in range(links.count())] == [
+        "tire.json",
+        "BicycleTire.fmu",
+        *drive,
+        "plots.csv",
+        "diagnosis.json",
+    ]
     shown.context.close()
+
+
+def test_every_picture_has_its_numbers_below(chromium: Any, reports: dict[str, Path]) -> None:
+    for kind in ("two", "unknown"):
+        shown = opened(chromium, reports[kind])
+        figures = shown.page.locator("main section figure")
+        names = [figures.nth(i).locator("a[download]").count() for i in range(figures.count())]
+        assert names == [1] * figures.count()
+        with shown.page.expect_download() as download:
+            shown.page.locator("a[download='residual_over_rate.csv']").click()
+        assert Path(download.value.path()).read_text().startswith("curve,")
+        assert shown.said == []
+        shown.context.close()
 
 
 @pytest.mark.parametrize("view", VIEWS)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import base64
+import csv
+import io
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +14,15 @@ from matplotlib.figure import Figure
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import Recording
 from tirelab.report.loops import Case
-from tirelab.report.residuals import OVER, draw_maps, misfit_of, plot_residuals
+from tirelab.report.residuals import (
+    OVER,
+    draw_maps,
+    draw_over_deflection,
+    draw_over_rate,
+    draw_slow_changes,
+    misfit_of,
+    plot_residuals,
+)
 
 SAMPLES = 4000
 TIME = np.arange(SAMPLES) * 0.01
@@ -68,6 +80,32 @@ def test_a_correction_too_small_to_see_is_not_drawn() -> None:
 def test_a_map_takes_the_coordinate_that_orders_the_residual() -> None:
     assert draw_maps(misfit_of([case(500.0 * RATE)]), 1.0, "m")[1] == "rate"
     assert draw_maps(misfit_of([case(20.0 * np.sin(0.1 * TIME))]), 1.0, "m")[1] == "time"
+
+
+def table(picture: str) -> list[dict[str, str]]:
+    (data,) = re.findall(r'href="data:text/csv;base64,([^"]+)"', picture)
+    return list(csv.DictReader(io.StringIO(base64.b64decode(data).decode())))
+
+
+def test_the_numbers_behind_a_picture_can_be_saved() -> None:
+    m = misfit_of([case(500.0 * RATE)])
+    rows = table(draw_over_rate(m, 1.0, "r"))
+    assert {row["curve"] for row in rows} == {"before", "after"}
+    for row in rows:
+        told = 0.5 * float(row["rate [mm/s], unloading < 0 < loading"]) if row["curve"] == "before" else 0.0
+        assert float(row["mean residual [N]"]) == pytest.approx(told, abs=0.05)
+    assert {row["curve"] for row in table(draw_over_deflection(m, 1.0, "d"))} == {
+        f"{which}, {branch}" for which in ("before", "after") for branch in ("loading", "unloading")
+    }
+    assert table(draw_slow_changes(m, 1.0, "s"))
+    (before, after), name = draw_maps(m, 1.0, "m")
+    assert name == "rate"
+    cells = table(before)
+    assert len(cells) == len(table(after)) > 100
+    for cell in cells:
+        low, high = (0.5 * float(cell[f"rate [mm/s] {end}"]) for end in ("from", "to"))
+        assert low - 0.1 <= float(cell["mean residual [N]"]) <= high + 0.1
+        assert float(cell["deflection from [mm]"]) < float(cell["to [mm]"])
 
 
 def test_every_coordinate_draws_on_the_axes_that_are_given() -> None:
