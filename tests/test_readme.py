@@ -26,7 +26,7 @@ def test_sections_stand_in_their_order(repository: Path) -> None:
         "Your own tire in five minutes",
         "The effects it can name",
         "Which FMU",
-        "The Python API",
+        "Python in ten lines",
         "How far it can be trusted",
         "Where the rest stands",
         "Contributing",
@@ -76,6 +76,21 @@ def test_pages_lead_to_files(repository: Path) -> None:
     ] == []
 
 
+def test_a_file_is_shown_as_it_is(repository: Path) -> None:
+    (sample,) = re.findall(
+        r"^```\n(time .*?)```", (repository / "README.md").read_text(), re.MULTILINE | re.DOTALL
+    )
+    press = (repository / "examples" / "recordings" / "press" / "fast.csv").read_text()
+    assert len(sample.splitlines()) == 3
+    assert press.startswith(sample)
+
+
+def test_the_time_of_a_diagnosis_is_told_alike(repository: Path) -> None:
+    (told,) = re.findall(r"the missing physics, in (.*) s \|", (repository / "README.md").read_text())
+    page = (repository / "examples" / "docs" / "five_minutes.md").read_text()
+    assert f"| `diagnose` | {told};" in page
+
+
 def test_links_lead_to_files(repository: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", (repository / "README.md").read_text()):
         assert target.startswith("https://") or (repository / target).exists(), target
@@ -83,6 +98,7 @@ def test_links_lead_to_files(repository: Path) -> None:
 
 def test_the_api_example_runs(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (code,) = re.findall(r"```python\n(.*?)```", (repository / "README.md").read_text(), flags=re.DOTALL)
+    assert len([line for line in code.splitlines() if line.strip()]) == 10
     shutil.copytree(repository / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     exec(compile(code, "README.md", "exec"), {})
