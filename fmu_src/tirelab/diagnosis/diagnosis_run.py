@@ -309,8 +309,8 @@ def _check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None
     if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
         raise TirelabError(
             f"{', '.join(r.name for r in fitted)}: no deflection is above 0, and only what happens above it can be "
-            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or subtract "
-            "the gauge's zero before the export"
+            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give the "
+            "gauge's zero, --zero 'deflection=-80 mm' say"
         )
     for recording in (*fitted, *kept):
         deepest = int(np.argmax(recording.deflection))
