@@ -37,7 +37,7 @@ CATALOGUE = {
 
 @pytest.fixture(scope="module")
 def trials() -> list[Trial]:
-    return [draw(seed) for seed in range(100, 140)]
+    return [draw(seed) for seed in range(101, 132)]
 
 
 def test_the_names_are_the_catalogues() -> None:

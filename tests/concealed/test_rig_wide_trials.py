@@ -17,7 +17,7 @@ from concealed.wide.outside import OUTSIDE
 from concealed.wide.press import fitted_power_law
 from scipy.optimize import curve_fit
 
-COUNT = 4
+COUNT = 3
 Drawn = Callable[[str], list[Trial]]
 
 
