@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Hull1996, TireModel
 from tirelab.recordings.recording import Recording
-from tirelab.report.page import Simulated
+from tirelab.report.page import Simulated, write_report
 from tirelab.simulation.simulate import simulate
 
 NOISE = 6.0
@@ -301,3 +301,19 @@ KINDS: dict[str, Callable[[], Diagnosed]] = {
 def kinds() -> dict[str, Diagnosed]:
     """A diagnosis of every kind."""
     return {name: make() for name, make in KINDS.items()}
+
+
+@pytest.fixture(scope="session")
+def reports(kinds: dict[str, Diagnosed], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The report of every kind of diagnosis."""
+    folder = tmp_path_factory.mktemp("reports")
+    for name, made in kinds.items():
+        write_report(
+            folder / f"{name}.html",
+            made.diagnosis,
+            made.recordings,
+            made.before,
+            made.after,
+            held_out=made.held_out,
+        )
+    return {name: folder / f"{name}.html" for name in kinds}

@@ -23,22 +23,6 @@ def chromium() -> Iterator[Any]:
         yield opened
 
 
-@pytest.fixture(scope="module")
-def reports(kinds: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The report of every kind of diagnosis."""
-    folder = tmp_path_factory.mktemp("reports")
-    for name, made in kinds.items():
-        write_report(
-            folder / f"{name}.html",
-            made.diagnosis,
-            made.recordings,
-            made.before,
-            made.after,
-            held_out=made.held_out,
-        )
-    return {name: folder / f"{name}.html" for name in kinds}
-
-
 def opened(chromium: Any, path: Path, **context: Any) -> Watched:
     shown = Watched(chromium, **{"viewport": DESKTOP, **context})
     shown.page.goto(path.as_uri())

@@ -62,10 +62,9 @@ class Elements(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def pages(kinds: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The report of every kind of diagnosis."""
-    folder = tmp_path_factory.mktemp("pages")
-    return {name: written(folder / f"{name}.html", made) for name, made in kinds.items()}
+def pages(reports: dict[str, Path]) -> dict[str, str]:
+    """The report of every kind of diagnosis, as text."""
+    return {name: path.read_text(encoding="utf-8") for name, path in reports.items()}
 
 
 def written(path: Path, made: Any) -> str:
