@@ -16,6 +16,7 @@ import rich.console
 from click.testing import CliRunner, Result
 from drives import Drive, flat_force, read, ride, saved
 from radialtire import CATALOGUE, TireModel, read_tire
+from rivals import looking_for
 from tirelab.cli import diagnose as diagnose_command
 from tirelab.diagnosis import diagnosis_run
 from tirelab.diagnosis.verdict import Verdict
@@ -340,7 +341,8 @@ def test_bad_input_ends_with_one_sentence(rides: Path, tmp_path: Path) -> None:
         ([rides / "ride.csv", "--tire", tmp_path / "none.json"], "name a tire file that can be read"),
         ([], "Missing argument"),
     ):
-        result = run(*arguments, "--out", tmp_path / "out")
+        with looking_for("viscous_damping", "inertia"):
+            result = run(*arguments, "--out", tmp_path / "out")
         assert result.exit_code == 2, (words, result.output)
         assert words in " ".join(result.stderr.split())
         assert result.stdout == ""
@@ -366,7 +368,8 @@ def test_a_folder_that_cannot_be_written_is_reported_at_once(
 
 def test_each_gives_a_verdict_for_every_recording(rides: Path, tmp_path: Path) -> None:
     (tmp_path / "broken.csv").write_text("no table\n")
-    result = run("--each", rides, tmp_path / "broken.csv", "--jobs", "1", "--out", tmp_path / "out")
+    with looking_for("viscous_damping", "inertia"):
+        result = run("--each", rides, tmp_path / "broken.csv", "--jobs", "1", "--out", tmp_path / "out")
     assert result.exit_code == 0, result.output
     summary = (tmp_path / "out" / "summary.csv").read_text(encoding="utf-8-sig")
     rows = list(csv.DictReader(io.StringIO(summary, newline="")))

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from drives import Drive, damped, flat_force, read, ride
 from radialtire import CATALOGUE, PowerLaw, TireModel
+from rivals import rivals
 from tirelab.diagnosis.acceptance import CONSIDERED, accept, split, validation_on, without_unlikely
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.explanation import explain_misfit
@@ -60,7 +61,7 @@ def test_a_correction_that_is_worse_on_held_out_data_is_not_delivered(unequal_ve
 
 
 def test_the_end_of_a_single_recording_is_held_out():
-    verdict = diagnose([damped(3)])
+    verdict = diagnose([damped(3)], catalogue=["viscous_damping"])
     # 29.995 s of an even ride: the first 70 % of its misfit are in about as much of its time.
     first = float(re.match(r"time block ([0-9.]+)-30 s", verdict.fit.held_out_by)[1])
     assert first == pytest.approx(21.0, abs=1.0)
@@ -87,7 +88,7 @@ def test_a_burst_is_on_both_sides_of_the_held_out_end():
     burst = replace(drive, force=np.where(quick, drive.force, flat_force(drive.deflection)))
     before = [burst.force - flat_force(burst.deflection)]
     missed = np.cumsum(before[0] ** 2) / np.sum(before[0] ** 2)
-    verdict = diagnose([burst])
+    verdict = diagnose([burst], catalogue=["viscous_damping"])
     first = float(re.match(r"time block ([0-9.]+)-", verdict.fit.held_out_by)[1])
     assert first < 0.2 * drive.time[-1]
     # A part of 0.7 of the misfit is fitted, unless that is less than a tenth of the samples.
@@ -166,7 +167,7 @@ def test_what_shows_in_one_recording_alone_is_not_held_out_as_a_whole():
         replace(above, force=flat_force(above.deflection) + noise[0]),
         replace(onto, force=flat_force(onto.deflection) + hit + noise[1]),
     ]
-    verdict = diagnose(drives)
+    verdict = diagnose(drives, catalogue=rivals("bottoming"))
     assert verdict.names == ("bottoming",)
     assert not verdict.fit.held_out_by.startswith("recording onto")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from radialtire import PowerLaw, TireModel
+from rivals import rivals
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.planning.menu import drive_of
 from tirelab.planning.rig import Rig
@@ -20,7 +21,8 @@ def test_no_bottoming_is_made_of_a_clipped_reading() -> None:
     x = 0.011 * (1.0 - np.cos(2.0 * np.pi * time / 20.0))
     force = 550.0 * (100.0 * x) ** 1.42 + rng.normal(0.0, 4.0, time.size)
     reading = np.minimum(x, 0.019) + rng.normal(0.0, 5e-6, time.size)
-    verdict = diagnose(Recording("clipped", time, reading, np.full(time.size, np.inf), force), TIRE)
+    recording = Recording("clipped", time, reading, np.full(time.size, np.inf), force)
+    verdict = diagnose(recording, TIRE, catalogue=rivals("bottoming"))
     assert verdict.names == ()
     assert "In clipped the deflection's reading stands still at 19 mm" in verdict.summary
     assert "record with more travel" in verdict.summary
@@ -45,7 +47,7 @@ def test_noise_of_the_reading_is_nothing_unknown() -> None:
         force = 550.0 * (100.0 * x) ** 1.42 + 15.0 * acceleration + rng.normal(0.0, 6.0, time.size)
         reading = x + rng.normal(0.0, 6e-6, time.size)
         recordings.append(Recording(waveform, time, reading, drive.surface_radius, force))
-    verdict = diagnose(recordings, TIRE)
+    verdict = diagnose(recordings, TIRE, catalogue=rivals("inertia"))
     assert verdict.names == ("inertia",)
     assert verdict.fit.after > 1.5 * verdict.fit.noise > verdict.fit.left
 
@@ -58,7 +60,8 @@ def test_a_short_disturbance_is_not_called_nothing() -> None:
     pulled = np.where((time > 81.0) & (time < 81.6), 20.0, 0.0)
     force = 550.0 * (100.0 * x) ** 1.42 + pulled + rng.normal(0.0, 4.0, time.size)
     reading = x + rng.normal(0.0, 1e-6, time.size)
-    verdict = diagnose(Recording("pulled", time, reading, np.full(time.size, np.inf), force), TIRE)
+    recording = Recording("pulled", time, reading, np.full(time.size, np.inf), force)
+    verdict = diagnose(recording, TIRE, catalogue=rivals("force_drift"))
     assert verdict.names == ("unknown",)
     where = next(place for place in verdict.where if place.by == "time")
     assert 80.8 < where.start < 81.2

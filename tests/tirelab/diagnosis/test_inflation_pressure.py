@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radialtire import PowerLaw, TireModel
+from rivals import rivals
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.recordings.recording import Recording
 from tirelab.simulation.simulate import simulate
@@ -36,7 +37,7 @@ RECORDINGS = [pressed(p, i) for i, p in enumerate((2.0e5, 2.6e5, 3.2e5))]
 
 
 def test_the_pressure_is_named_and_a_pressure_that_was_not_recorded_is_foretold() -> None:
-    found = diagnose(RECORDINGS, LAW)
+    found = diagnose(RECORDINGS, LAW, catalogue=rivals("inflation_pressure"))
     assert [e.name for e in found.effects] == ["inflation_pressure"]
     values = found.effects[0].parameters
     assert values["gain"].value == pytest.approx(SHARE, rel=0.05)
@@ -46,7 +47,8 @@ def test_the_pressure_is_named_and_a_pressure_that_was_not_recorded_is_foretold(
 
 
 def test_without_the_channel_nothing_is_said_of_the_pressure() -> None:
-    found = diagnose([replace(r, pressure=None) for r in RECORDINGS], LAW)
+    without = [replace(r, pressure=None) for r in RECORDINGS]
+    found = diagnose(without, LAW, catalogue=["inflation_pressure", "recalibration"])
     sets = [found.names, *(alternative.names for alternative in found.alternatives)]
     assert all("inflation_pressure" not in names for names in sets)
     assert "inflation" not in found.summary

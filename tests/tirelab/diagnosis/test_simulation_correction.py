@@ -22,6 +22,7 @@ from drives import Drive, ride, saved
 from fmpy.ssp.simulation import simulate_ssp
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel, read_tire
+from rivals import looking_for, rivals
 from scipy.signal import lsim
 from tirelab.cli import main
 from tirelab.diagnosis.outcome import Replayed
@@ -106,9 +107,10 @@ def test_the_damper_is_found_and_the_corrected_simulation_written(tmp_path: Path
         pl.DataFrame(frame).write_csv(tmp_path / f"ride{seed}.csv")
     out = tmp_path / "out"
     words = ["diagnose", tmp_path / "ride1.csv", "--held-out", tmp_path / "ride2.csv", "--radius", "flat"]
-    done = CliRunner().invoke(
-        main, [*map(str, words), "--believed-force", "sim", "--out", str(out), "--quiet"]
-    )
+    with looking_for(*rivals("viscous_damping")):
+        done = CliRunner().invoke(
+            main, [*map(str, words), "--believed-force", "sim", "--out", str(out), "--quiet"]
+        )
     assert done.exit_code == 0, done.output
     content = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [e["name"] for e in content["verdict"]["effects"]] == ["viscous_damping"]
@@ -192,7 +194,8 @@ def recorded(folder: Path, name: str, seed: int, offset: float, drift: float) ->
 
 
 def diagnosed(*words: str | Path) -> str:
-    done = CliRunner().invoke(main, ["diagnose", *map(str, words)])
+    with looking_for("recalibration", "deflection_offset", "force_offset", "force_drift", "viscous_damping"):
+        done = CliRunner().invoke(main, ["diagnose", *map(str, words)])
     assert done.exit_code == 0, done.output
     return done.output
 

@@ -17,6 +17,7 @@ from click.testing import CliRunner
 from drives import FloatArray
 from fmpy import simulate_fmu
 from foreign_models import maxwell
+from rivals import looking_for, rivals
 from test_foreign_damper import NOISE, REACH, SLIP, friction, stroke
 from tirelab.cli import main
 
@@ -50,7 +51,8 @@ def diagnosed_beside(fmu: Path, variables: str, force: Force, folder: Path) -> d
         pl.DataFrame(frame).write_csv(folder / f"{name}.csv")
     words = ["diagnose", str(folder / "a.csv"), "--held-out", str(folder / "b.csv"), "--radius", "flat"]
     words += ["--columns", "time=time,deflection=x,force=F", "--fmu", str(fmu), "--variables", variables]
-    done = CliRunner().invoke(main, [*words, "--out", str(folder / "out"), "--quiet"])
+    with looking_for(*rivals("rate_independent_hysteresis")):
+        done = CliRunner().invoke(main, [*words, "--out", str(folder / "out"), "--quiet"])
     assert done.exit_code == 0, done.output
     content: dict[str, Any] = json.loads((folder / "out" / "diagnosis.json").read_text(encoding="utf-8"))
     return content

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from radialtire import CATALOGUE, CHANNELS, Parameter, PowerLaw, Recalibrated, TireModel
 from radialtire.prior import Prior
+from rivals import rivals
 from scipy.stats import norm, truncnorm
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.problem import law_start, problem_of
@@ -167,7 +168,8 @@ def test_a_recording_in_nanonewtons_is_diagnosed_as_it_is() -> None:
     silent = Recording("gel", time, x, np.full(time.size, np.inf), np.zeros(time.size))
     noise = 5e-12 * numbers.normal(size=time.size)
     read = x + 1e-9 * numbers.normal(size=time.size)
-    found = diagnose([replace(silent, deflection=read, force=simulate(true, silent) + noise)], gel)
+    recording = replace(silent, deflection=read, force=simulate(true, silent) + noise)
+    found = diagnose(recording, gel, catalogue=[*rivals("viscoelastic_relaxation"), "saturation"])
     assert found.names == ("viscoelastic_relaxation",)
     assert found.fit.noise == pytest.approx(5e-12, rel=0.3)
     assert found.fit.after < 1.2 * found.fit.noise
