@@ -18,10 +18,12 @@ sys.path.insert(0, str(Path(__file__).parent))
 import numpy as np
 from drives import Drive, damped, flat_force, read, ride, saved, triangle
 from house_form import HOUSE_FORM, loading, write_rows
-from rivals import rivals
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.diagnosis_run import DiagnosisRun, run_diagnosis
 from tirelab.diagnosis.verdict import Verdict
+
+TWO_LOOPS = ("viscous_damping", "rate_independent_hysteresis")
+"""What is looked for in two rides: `damped_run` is a diagnosis with all of the catalogue."""
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -92,14 +94,13 @@ def damped_run(tmp_path_factory: pytest.TempPathFactory) -> DampedRun:
 @pytest.fixture(scope="session")
 def unequal_verdict() -> Verdict:
     """Two rides that are no Recording: 500 N s/m of damping in the first, 200 N s/m in the second; nothing held out."""
-    catalogue = ["viscous_damping", "rate_independent_hysteresis"]  # every set is refused, which takes time
-    return diagnose([damped(1), damped(2, damping=200.0)], catalogue=catalogue)
+    return diagnose([damped(1), damped(2, damping=200.0)], catalogue=TWO_LOOPS)
 
 
 @pytest.fixture(scope="session")
 def alike_verdict() -> Verdict:
     """Two rides with the same 500 N s/m of damping; nothing held out."""
-    return diagnose([damped(1), damped(2)], catalogue=rivals("viscous_damping"))
+    return diagnose([damped(1), damped(2)], catalogue=TWO_LOOPS)
 
 
 @pytest.fixture(scope="session")
