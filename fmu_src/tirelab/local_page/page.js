@@ -12,7 +12,8 @@
   const SHARES = [["reading", 0.01], ["comparing", 0.06], ["fitting", 0.19], ["validating", 0.6], ["searching", 0.67], ["building", 0.87], ["replaying", 0.9], ["writing", 0.93]];
   // What stands on the page by its number: as it was told, and its article.
   const shown = { recordings: new Map(), diagnoses: new Map() };
-  let timer = 0, told = "";
+  // What was asked for last: an older answer would take back what was chosen since.
+  let timer = 0, told = "", asked = 0;
 
   async function ask(path, options) {
     const answer = await fetch(path, options);
@@ -23,6 +24,7 @@
   function say(problem) { $("problem").textContent = problem; $("problem").hidden = !problem; }
   function wait(text) { $("waiting").textContent = text; $("waiting").hidden = !text; }
   async function attempt(work) {
+    asked += 1;
     try { say(""); await work(); } catch (error) { say(error.message); }
     await refresh();
   }
@@ -171,8 +173,10 @@
   }
 
   async function refresh() {
+    const own = asked += 1;
     let state;
     try { state = await ask("state"); } catch (error) { say(`tirelab open no longer answers (${error.message}); start it again.`); return; }
+    if (own !== asked) return;
     $("reading").hidden = true;
     $("none").hidden = state.diagnoses.length > 0;
     place($("recordings"), "recordings", state.recordings, (r) => JSON.stringify({ ...r, use: "" }), recording);
