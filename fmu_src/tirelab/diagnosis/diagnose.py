@@ -15,6 +15,7 @@ from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal, not_compared
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, Dataset, Recorded, dataset_of, is_timed
+from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
 from .acceptance import HeldOut, accept, noise_free_residual, rmse, validation_on, without_unlikely
 from .confidence import (
@@ -59,12 +60,14 @@ def diagnose(
     outside it does is something unknown); limits: of the rig that would drive the next test; progress: called with a
     sentence for each stage
 
-    Raises PoorRecording where the recordings are too short or too poor, ValueError for an unknown name in `catalogue`.
+    Raises PoorRecording where the recordings are too short or too poor, RecordingError where the zero of a gauge is so far
+    off that no effect holds it, ValueError for an unknown name in `catalogue`.
     """
     fitted, kept = _several(recordings), _several(held_out)
     report = progress or (lambda sentence: None)
     allowed = catalogue_names() if catalogue is None else tuple(catalogue)
     _check_names(allowed)
+    refuse_far_zeros(fitted)
     check_recordings(fitted, two_sided=baseline.two_sided)
     dataset = dataset_of(fitted, baseline)
     timed = is_timed(fitted)

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
-from ..recordings.zero import refuse_far_zeros
 from .noise import FEWEST_EVENTS, STANDS_OUT, deflection_noise, white_level
 from .samples import Dataset, Recorded
 
@@ -41,7 +40,6 @@ def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False)
     """
     if not recordings:
         raise PoorRecording("no recording was given; name at least one to diagnose")
-    refuse_far_zeros(recordings)
     for r in recordings:
         where = f"recording {r.name}"
         if r.time.size < FEWEST_SAMPLES:
