@@ -213,9 +213,8 @@ class Dataset:
 
 def _of_samples(averaged: Noise, experiment: Experiment) -> float:
     """Return the noise [N] of a sample, from that of the averages and what averaging took out of it."""
-    reading = experiment.reading
-    taken_out = 1.0 - min(reading.memory / experiment.size, 1.0)
-    return float(np.hypot(averaged.level, reading.level * np.sqrt(taken_out)))
+    taken_out = max(experiment.reading.level**2 - experiment.noise**2, 0.0)
+    return float(np.sqrt(averaged.level**2 + taken_out))
 
 
 def dataset_of(

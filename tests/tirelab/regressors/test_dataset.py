@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
+from scipy.signal import butter, lfilter
 from tirelab.preprocessing.noise import Noise
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import arranged, dataset_of, samples_of
@@ -50,6 +51,21 @@ def test_a_noise_that_blocks_remember_is_no_smaller_than_that_of_the_samples() -
     # White noise of 5 N and slow noise: the mean of n samples holds a variance of 25 / n of the former.
     slow_part = slow**2 - FORCE_NOISE**2 / before.size
     assert after.reading.level == pytest.approx(np.sqrt(slow_part + FORCE_NOISE**2), rel=0.02)
+
+
+def test_what_blocks_took_out_of_a_filtered_noise_belongs_to_the_samples() -> None:
+    """A block as long as the noise's memory still halves its variance or so: the samples have what they had."""
+    white = triangle(16_000, 2)
+    filtered = lfilter(*butter(2, 0.13), np.random.default_rng(5).normal(size=16_100))[100:]
+    noise = FORCE_NOISE * filtered / np.std(filtered)
+    silent = replace(white, force=simulate(TireModel(), replace(white, force=np.zeros(16_000))) + noise)
+    dataset = dataset_of([silent], TireModel())
+    (before,) = dataset.experiments
+    assert before.size == before.reading.memory == 8
+    assert before.noise < 0.85 * FORCE_NOISE
+    (after,) = dataset.with_noise([Noise(before.noise, 2)]).experiments
+    # A level from third differences over few lags is known to a twentieth.
+    assert after.reading.level == pytest.approx(FORCE_NOISE, rel=0.1)
 
 
 def test_samples_beside_a_turn_are_compared_where_nothing_is_averaged() -> None:
