@@ -60,8 +60,8 @@ def diagnose(
     outside it does is something unknown); limits: of the rig that would drive the next test; progress: called with a
     sentence for each stage
 
-    Raises PoorRecording where the recordings are too short or too poor, RecordingError where the zero of a gauge is so far
-    off that no effect holds it, ValueError for an unknown name in `catalogue`.
+    Raises PoorRecording where the recordings are too short or too poor, RecordingError where the zero of a gauge is so
+    far off that no effect holds it, ValueError for an unknown name in `catalogue`.
     """
     fitted, kept = _several(recordings), _several(held_out)
     report = progress or (lambda sentence: None)
