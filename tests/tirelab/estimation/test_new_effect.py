@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, Effect, Instant, Parameter, PowerLaw, Prior, State, TireModel
-from rivals import rivals
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.recordings.recording import Recording
 
@@ -55,8 +54,7 @@ def test_effect_outside_the_catalogue_is_found_once_it_is_declared(monkeypatch: 
     force = elastic + 0.3 * np.maximum(elastic - 700.0, 0.0)
     force += np.random.default_rng(4).normal(0.0, 4.0, time.size)
     recording = Recording("tread", time, x, np.full(time.size, np.inf), force)
-    tire = TireModel(PowerLaw(550.0, 1.42), tested_range=None)
-    found = diagnose(recording, tire, catalogue=[TREAD.name, *rivals("bottoming", "saturation")])
+    found = diagnose([recording], TireModel(PowerLaw(550.0, 1.42), tested_range=None))
     assert [e.name for e in found.effects] == [TREAD.name]
     values = found.effects[0].parameters
     assert values["share"].value == pytest.approx(0.3, rel=0.05)
