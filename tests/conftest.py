@@ -56,8 +56,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
 
 
-def pytest_collection_finish() -> None:
-    """Leave the tests and all that they imported out of garbage collections: each damaged file asks for a whole one."""
+@pytest.fixture(scope="module", autouse=True)
+def little_to_collect() -> None:
+    """Leave all that is there before a file out of garbage collections: each damaged recording asks for a whole one."""
     gc.collect()
     gc.freeze()
 
