@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import UNIT_OF, assignments_text, unit_of_column
+from .channels import UNIT_OF, unit_of_column
+from .choices import Choices
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import quoted
 from .matching import Match, columns_listed
@@ -56,18 +57,11 @@ class IncompleteRecording(RecordingError):
 
     def words(self) -> list[str]:
         """Return the words of a command line that say all of it."""
-
-        words = []
-        for option, values in (("--columns", self.settings.columns), ("--units", self.settings.units)):
-            words += [option, assignments_text(values)] if values else []
-        radius = self.settings.radius
-        if radius is not None:
-            words += ["--radius", radius if isinstance(radius, str) else f"{radius!r}m"]
-        if self.settings.sampling is not None:
-            words += ["--sampling", str(self.settings.sampling)]
-        for name, text in self.settings.zero.items():
-            words += ["--zero", f"{name}={text}"]
-        return words
+        own = self.settings
+        given = Choices(
+            columns=own.columns, units=own.units, radius=own.radius, sampling=own.sampling, zero=own.zero
+        )
+        return given.words()
 
 
 @dataclass(frozen=True)

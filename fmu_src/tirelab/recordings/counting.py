@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .asking import IncompleteRecording
-from .channels import assignments_text
+from .choices import Choices
 from .formats import RecordingError
 from .matching import Match
 from .metadata import Settings
@@ -88,7 +88,7 @@ def _asked(
         zero = force_begins(x, f, values["radius"])
         more = zero.readings() if zero is not None and zero.off else {}
     zeros = likely.at_zero(more)
-    columns = {name: ("-" if name in turned else "+") + gauges.names[name] for name in ZEROED}
+    columns = likely.columns()
     what = f"{origin}: which way the rig counts cannot be determined ({why})"
     advice = "say it with a sign before each column, + to keep and - to turn it"
     advice += ", and what the gauge reads where the force begins" if more else ""
@@ -96,6 +96,5 @@ def _asked(
     if origin.kind != "file":
         subtracted = f" and {origin.zero({n: quantity_text(n, v) for n, v in more.items()})}" if more else ""
         return IncompleteRecording(what, f"{advice}: {origin.columns(**columns)}{subtracted}", whole)
-    words = ["--columns", assignments_text(columns)]
-    words += [word for name, text in zeros.items() for word in ("--zero", f"{name}={text}")]
+    words = Choices(columns=columns, zero=zeros).words()
     return IncompleteRecording(what, f"{advice}: {shlex.join(words)}", whole)

@@ -98,13 +98,16 @@ class Gauges:
     turned: frozenset[str] = frozenset()
     names: Mapping[str, str] = field(default_factory=dict)
 
-    def signed(self, flipped: str = "") -> str:
-        """Return the option that names both columns with their signs, with one of them the other way round."""
-        columns = {
+    def columns(self, flipped: str = "") -> dict[str, str]:
+        """Return both columns with their signs as the options name them, one of them the other way round."""
+        return {
             name: ("-" if (name in self.turned) != (name == flipped) else "+") + self.names[name]
             for name in ZEROED
         }
-        return self.origin.columns(**columns)
+
+    def signed(self, flipped: str = "") -> str:
+        """Return the option that names both columns with their signs, with one of them the other way round."""
+        return self.origin.columns(**self.columns(flipped))
 
     def at_zero(self, more: Mapping[str, float]) -> dict[str, str]:
         """Return the zeros to give, where after those that are given so much more [SI] is left."""
