@@ -29,7 +29,10 @@ TWO_LOOPS = ("viscous_damping", "rate_independent_hysteresis")
 @pytest.fixture(scope="session", autouse=True)
 def names_are_read_once() -> Iterator[None]:
     """What fmpy found a legal name of a variable is not parsed again in the next FMU: it takes longer than all else."""
-    genuine = fmpy.validation._validate_variable_names
+    genuine = getattr(fmpy.validation, "_validate_variable_names", None)
+    if genuine is None:  # it is fmpy's own: another version may have none of that name
+        yield
+        return
     legal: set[tuple[str, str]] = set()
 
     def problems_of(description: ModelDescription) -> list[str]:
