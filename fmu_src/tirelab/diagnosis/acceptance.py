@@ -9,9 +9,9 @@ is an effect that is less likely than not, where the others leave as little with
 Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
 part, simulated from its true history: a recording, the last one first, or of each recording the end that holds the last
 part of the misfit. Such a part has to be driven as what stays fitted, or its error is one of extrapolation and refutes
-nothing: on the surfaces, at depths and speeds within a factor of two, and where the baseline misses at least half as
-much. Where no part is, the end of each way of driving is held out, surface by surface. The effects were chosen on all
-of the data; the parameters were fitted without the held-out part.
+nothing: on the surfaces, at depths and speeds within a factor of two, and where the set explains at least half as much.
+The set has to act in it, too, or it proves nothing. Where no part is so, the end of each way of driving is held out,
+surface by surface. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from ..simulation.simulate import simulate, smoothed_motion
 
 FITTED = 0.7
 """Part of the baseline's squared misfit that is fitted where the end of a recording is held out: by time, one side
-could lack what is to be explained. It is also the part of the held-out misfit that has to be driven as what is
-fitted."""
+could lack what is to be explained. It is also the part of what is explained of the held-out data that has to be driven
+as what is fitted."""
 
 HALVINGS = int(np.ceil(-np.log2(STILL)))
 """Depths, speeds and misfits are told apart by the halvings of the largest. Depths and speeds below a sixty-fourth of
@@ -137,7 +137,7 @@ def split(
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
     motions = [e.motion for e in dataset.experiments]
-    kept, by = _parts(recordings, before, _ways(recordings, motions))
+    kept, by = _parts(recordings, before, explanation.residuals, _ways(recordings, motions))
     refitted = explanation.refitted(kept)
     noise_free = [
         noise_free_residual(refitted.tire, r, e.motion)
@@ -175,15 +175,21 @@ def _halvings(values: FloatArray, largest: float) -> IndexArray:
 
 
 def _parts(
-    recordings: Sequence[Recorded], before: Sequence[FloatArray], ways: Sequence[IndexArray]
+    recordings: Sequence[Recorded],
+    before: Sequence[FloatArray],
+    after: Sequence[FloatArray],
+    ways: Sequence[IndexArray],
 ) -> tuple[list[BoolArray], str]:
-    """Return which samples stay fitted, and the name of the held-out part."""
+    """Return which samples stay fitted, and the name of the held-out part.
+
+    before, after [N]: what the baseline and the set leave of each recording
+    """
     for number in reversed(range(len(recordings))) if len(recordings) > 1 else ():
         kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
-        if _is_driven_alike(kept, before, ways):
+        if _shows_as_much(kept, before, after, ways):
             return kept, f"recording {recordings[number].name}"
     kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
-    if not _is_driven_alike(kept, before, ways):
+    if not _shows_as_much(kept, before, after, ways):
         kept = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
         return kept, "the end of each motion"
     r, count = recordings[0], int(np.sum(~kept[0]))
@@ -194,21 +200,30 @@ def _parts(
     return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"
 
 
-def _is_driven_alike(
-    kept: Sequence[BoolArray], before: Sequence[FloatArray], ways: Sequence[IndexArray]
+def _shows_as_much(
+    kept: Sequence[BoolArray],
+    before: Sequence[FloatArray],
+    after: Sequence[FloatArray],
+    ways: Sequence[IndexArray],
 ) -> bool:
-    """Return whether most of the misfit that is held out belongs to ways of driving that stay fitted, and is missed
-    there too, at least half as much: what shows in the held-out part alone cannot be fitted without it.
+    """Return whether the held-out part can refute a set: the set changes the force in it, and most of what the set
+    explains there belongs to ways of driving that stay fitted, of which it explains at least half as much: what shows
+    in the held-out part alone cannot be fitted without it.
     """
     fits, way = np.concatenate(kept), np.concatenate(ways)
-    misfit = np.concatenate(before) ** 2
+    missed, left = np.concatenate(before), np.concatenate(after)
+    changed, explained = (missed - left) ** 2, missed**2 - left**2
     count = int(way.max()) + 1
+    samples = [np.bincount(way[own], minlength=count) for own in (fits, ~fits)]
     fitted, held_out = (
-        np.bincount(way[own], misfit[own], count) / np.maximum(np.bincount(way[own], minlength=count), 1)
-        for own in (fits, ~fits)
+        np.maximum(np.bincount(way[own], explained[own], count), 0.0) / np.maximum(n, 1)
+        for own, n in zip((fits, ~fits), samples, strict=True)
     )
-    alike = (4.0 * fitted >= held_out)[way] & ~fits
-    return float(misfit[alike].sum()) >= FITTED * float(misfit[~fits].sum())
+    whole = held_out * samples[1]
+    alike = 4.0 * fitted >= held_out
+    return bool(
+        changed[~fits].sum() >= NEGLIGIBLE * changed.sum() and whole[alike].sum() >= FITTED * whole.sum()
+    )
 
 
 def _beginning(before: FloatArray, way: IndexArray) -> BoolArray:

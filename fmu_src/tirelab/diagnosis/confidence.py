@@ -171,15 +171,17 @@ def shared(probability: float, alike: int) -> float:
     return probability / (probability + (1.0 - probability) * (1.0 + alike))
 
 
-def of_all(probability: float, effects: Sequence[float]) -> float:
-    """Return a verdict's probability beside those of the effects that it names: it is no surer than any of them."""
-    return min((probability, *effects))
+def of_all(probability: float, named: Sequence[float], doubted: Sequence[float] = ()) -> float:
+    """Return a verdict's probability beside those of the effects that it names and of those that it leaves out as
+    doubted: it is no surer than that any of the former is there, or that any of the latter is not.
+    """
+    return min((probability, *named, *(1.0 - p for p in doubted)))
 
 
-def confidence_of(grounds: Grounds, effects: Sequence[float]) -> float:
-    """Return the confidence of a verdict with these grounds that names effects of these probabilities."""
+def confidence_of(grounds: Grounds, named: Sequence[float], doubted: Sequence[float]) -> float:
+    """Return the confidence of a verdict with these grounds; named, doubted: probabilities of effects (`of_all`)."""
     alike = round(math.expm1(grounds["alike"]))
-    return of_all(shared(probability("verdict", grounds), alike), effects)
+    return of_all(shared(probability("verdict", grounds), alike), named, doubted)
 
 
 def unshared(probability: float, alike: int) -> float:

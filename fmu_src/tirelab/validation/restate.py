@@ -3,7 +3,8 @@
 Run: python -m tirelab.validation.restate DIR
 
 DIR is that of a finished `tirelab prove`. The verdicts stay as they were; each has its grounds in diagnosis.json, from
-which `diagnosis.confidence` makes its probability anew, no surer than the effects that it names were stated then.
+which `diagnosis.confidence` makes its probability anew, no surer than the effects that it names, or leaves out as
+doubted, were stated then.
 Printed are the Brier skill and how often verdicts of each class held (`wide_kinds.holds`).
 """
 
@@ -24,7 +25,8 @@ from .score import Score
 
 def restated(verdict: Mapping[str, Any]) -> float:
     """Return the confidence of a `verdict` of diagnosis.json by the present weights."""
-    return confidence_of(verdict["grounds"], [effect["probability"] for effect in verdict["effects"]])
+    named, doubted = ([e["probability"] for e in verdict[own]] for own in ("effects", "doubted"))
+    return confidence_of(verdict["grounds"], named, doubted)
 
 
 def restated_scores(folders: Folders) -> list[Score]:

@@ -164,6 +164,11 @@ def test_a_verdict_is_no_surer_than_an_effect_that_it_names() -> None:
     assert of_all(0.9, [0.95]) == of_all(0.9, []) == 0.9
 
 
+def test_a_verdict_is_no_surer_than_that_what_it_leaves_out_is_not_there() -> None:
+    assert of_all(0.9, [0.95], [0.1, 0.25]) == 0.75
+    assert of_all(0.9, [], [0.1]) == of_all(0.9, [], []) == 0.9
+
+
 def test_what_speaks_for_sets_without_an_effect_contests_it() -> None:
     one = explained("inertia viscous_damping", ("inertia", -1.0), ("force_lag", -3.0))
     inertia, damping = (grounds_of_effect(e, one, HELD_OUT)["contested"] for e in one.effects)

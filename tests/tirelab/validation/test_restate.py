@@ -17,15 +17,19 @@ from tirelab.validation.score import Score
 GROUNDS = dict.fromkeys(OF_VERDICT, 0.0) | {"significance": 1.0, "loudness": 4.0, "nothing": 0.0}
 
 
-def verdict(*effects: float, alike: int = 0) -> dict[str, object]:
-    grounds = {**GROUNDS, "alike": math.log1p(alike)}
-    return {"grounds": grounds, "effects": [{"name": "lag", "probability": p} for p in effects]}
+def verdict(*effects: float, doubted: float = 0.0, alike: int = 0) -> dict[str, object]:
+    return {
+        "grounds": {**GROUNDS, "alike": math.log1p(alike)},
+        "effects": [{"name": "lag", "probability": p} for p in effects],
+        "doubted": [{"name": "drift", "probability": doubted}],
+    }
 
 
 def test_it_is_the_present_probability_shared_and_no_surer_than_an_effect() -> None:
     present = probability("verdict", GROUNDS)
     assert restated(verdict(1.0)) == pytest.approx(present)
     assert restated(verdict(0.01)) == 0.01
+    assert restated(verdict(1.0, doubted=0.45)) == pytest.approx(min(present, 0.55))
     # Two others share the odds: a third of them each.
     alone = probability("verdict", {**GROUNDS, "alike": math.log1p(2)})
     assert restated(verdict(1.0, alike=2)) == pytest.approx(alone / (alone + 3.0 * (1.0 - alone)))
