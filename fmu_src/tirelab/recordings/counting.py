@@ -93,7 +93,10 @@ def _asked(
     advice = "say it with a sign before each column, + to keep and - to turn it"
     advice += ", and what the gauge reads where the force begins" if more else ""
     whole = replace(settings, columns={**settings.columns, **columns}, zero=zeros)
-    if origin.kind != "file":
+    if origin.kind == "frame":
+        given = [origin.columns(**columns), *([origin.zero(zeros)] if zeros else [])]
+        return IncompleteRecording(what, f"{advice}: {', '.join(given)}", whole)
+    if origin.kind == "arrays":
         subtracted = f" and {origin.zero({n: quantity_text(n, v) for n, v in more.items()})}" if more else ""
         return IncompleteRecording(what, f"{advice}: {origin.columns(**columns)}{subtracted}", whole)
     words = Choices(columns=columns, zero=zeros).words()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from numbers import Real
 from typing import Any
 
@@ -13,10 +12,9 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 from .channels import known_channel
-from .formats.clock import is_clock
 from .formats.parquet import frame_headers, series_values
 from .formats.table import Columns, Header, RecordingError, Wanted, numbers, of_one_length, sample_place
-from .formats.table_search import bare_unit, is_units
+from .formats.text_column import headers_of_text
 from .origin import Origin
 from .units import QUANTITIES, measures, split_header
 
@@ -28,12 +26,18 @@ class ColumnTable:
     """Columns at hand: NumPy arrays, lists, and series of polars or pandas."""
 
     def __init__(
-        self, origin: Origin, headers: Sequence[Header], columns: Sequence[Any], time_axis: int | None = None
+        self,
+        origin: Origin,
+        headers: Sequence[Header],
+        columns: Sequence[Any],
+        time_axis: int | None = None,
+        notes: tuple[str, ...] = (),
     ) -> None:
         self.origin = origin
         self.headers = headers
         self.columns = columns
         self.time_axis = time_axis
+        self.notes = notes
 
     def bytes_needed(self, columns: int) -> int:
         """The copies that are made of the columns."""
@@ -59,7 +63,7 @@ class ColumnTable:
             # A copy: reading works in place, and the caller's numbers stay what they are.
             values.append(np.array(read, dtype=np.float64))
         of_one_length(self.origin, headers, values)
-        return Columns(tuple(values), sample_place)
+        return Columns(tuple(values), sample_place, self.notes)
 
 
 def array_table(origin: Origin, arrays: Mapping[str, ArrayLike]) -> ColumnTable:
@@ -122,20 +126,11 @@ def frame_table(origin: Origin, frame: Any) -> ColumnTable:
 
 
 def _with_units(origin: Origin, table: ColumnTable) -> ColumnTable:
-    """Return a table without a first row of units, which stand in the headers then, and with its clock times known."""
-    first = [column[0] if isinstance(column, pl.Series) and len(column) else None for column in table.columns]
-    texts = [text if isinstance(text, str) else "" for text in first]
-    headers, columns = list(table.headers), list(table.columns)
-    # a cell that is no text speaks against a row of units, an empty one does not
-    if is_units(texts) and not any(cell is not None and not isinstance(cell, str) for cell in first):
-        units = [bare_unit(text) or None for text in texts]
-        headers = [replace(h, unit=h.unit or unit) for h, unit in zip(headers, units, strict=True)]
-        columns = [column[1:] for column in columns]
-        texts = [str(c[0]) if isinstance(c, pl.Series) and len(c) else "" for c in columns]
-    headers = [
-        replace(h, unit="s", dated=True) if is_clock(t) else h for h, t in zip(headers, texts, strict=True)
-    ]
-    return ColumnTable(origin, headers, columns, table.time_axis)
+    """Return a table with what its texts say of units and clock times, without a first row of units."""
+    series = [column if isinstance(column, pl.Series) else None for column in table.columns]
+    headers, above, notes = headers_of_text(table.headers, series)
+    columns = [column[above:] for column in table.columns] if above else table.columns
+    return ColumnTable(origin, headers, columns, table.time_axis, notes)
 
 
 def _pandas_text(column: Any) -> Any:

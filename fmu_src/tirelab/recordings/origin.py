@@ -44,7 +44,9 @@ class Origin:
 
     def zero(self, zeros: Mapping[str, str]) -> str:
         """Return what to write so that these values are subtracted; of a file a whole command."""
-        if self.kind != "file":
+        if self.kind == "frame":
+            return self._assignments("zero", dict(zeros))
+        if self.kind == "arrays":
             return " and ".join(f"subtract {text} from the {name}" for name, text in zeros.items())
         given = [word for name, text in zeros.items() for word in ("--zero", f"{name}={text}")]
         return f"`{shlex.join(['tirelab', 'inspect', *(self.said or (self.name,)), *given])}`"

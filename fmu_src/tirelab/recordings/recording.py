@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import polars as pl
@@ -29,12 +29,28 @@ from .pieces import Piece, split_piece
 from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
 from .units import conversion
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 __all__ = ["Recording", "RecordingError", "Understood", "read_recording", "understand", "write_recording"]
 
 FloatArray = NDArray[np.float64]
 
 _HOUSE_UNITS = {**EXAMPLE_UNITS, "deflection": "cm", "temperature": "K"}
 _SIGNIFICANT_DIGITS = 12
+
+
+class Gauged(TypedDict, total=False):
+    """What can be said of the gauges of a table, each as for `read_recording`."""
+
+    sampling: str | float | None
+    zero: Mapping[str, str] | None
+
+
+class Exported(Gauged, total=False):
+    """What can be said of a file too."""
+
+    skip_rows: int | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -147,18 +163,21 @@ class Recording:
         columns: Mapping[str, str] | None = None,
         radius: str | float | None = None,
         units: Mapping[str, str] | None = None,
-        sampling: str | float | None = None,
+        **more: Unpack[Gauged],
     ) -> Recording:
         """Return a recording of a pandas, polars or Arrow table, read like a file of the same columns.
 
         Parameters
         frame    units stand in the column names, such as `Load [kN]`; a named or dated index is a column too
-        columns, radius, units, sampling   as for `read_recording`
+        columns, radius, units, sampling, zero   as for `read_recording`
 
         Errors: RecordingError, one sentence with column, sample, value and the next step.
         """
         origin = Origin(name, "frame")
-        settings = Settings(columns or {}, units or {}, radius, sampling=sampling)
+        _refuse_unknown(more, Gauged.__annotations__)
+        settings = Settings(
+            columns or {}, units or {}, radius, sampling=more.get("sampling"), zero=more.get("zero") or {}
+        )
         return _recording_of(origin, frame_table(origin, frame), settings)
 
     def __repr__(self) -> str:
@@ -222,8 +241,7 @@ def read_recording(
     columns: Mapping[str, str] | None = None,
     radius: str | float | None = None,
     units: Mapping[str, str] | None = None,
-    sampling: str | float | None = None,
-    skip_rows: int | None = None,
+    **more: Unpack[Exported],
 ) -> Recording:
     """A recording from a file: CSV, TSV, Parquet, .mat, MDF4, TDMS or Excel, by its suffix.
 
@@ -235,6 +253,7 @@ def read_recording(
     radius    of the surface, over a column of it: "flat", "25.4cm", "-50.8 cm", or a number [m]
     units     channel -> unit, over what the file says
     sampling  rate or interval of the samples, over a column of time: "10 Hz", "0.1 s", or a number [Hz]
+    zero      channel -> what its gauge reads when nothing is loaded, which is subtracted: {"deflection": "30 mm"}
     skip_rows rows of text above the table, which is found without it too
 
     What is not said here may stand in a sidecar (`metadata`). Rows that lack a value are skipped, signs that
@@ -243,7 +262,9 @@ def read_recording(
     Errors: RecordingError, one sentence with file, row, column, value and the next step; IncompleteRecording, one of
     them, where columns, units or the radius have to be given.
     """
-    how = Choices(columns or {}, units or {}, radius, sampling, skip_rows)
+    _refuse_unknown(more, Exported.__annotations__)
+    sampling, skip_rows, zero = more.get("sampling"), more.get("skip_rows"), more.get("zero")
+    how = Choices(columns or {}, units or {}, radius, sampling, skip_rows, zero=zero or {})
     return understand(path, how).recording
 
 
@@ -289,6 +310,15 @@ def _read(table: Table, plan: Plan, piece: Piece) -> Columns:
         if rows is None or not isinstance(table, DelimitedTable):
             raise
         return table.read_rows(plan.wanted, *rows)
+
+
+def _refuse_unknown(given: Mapping[str, object], known: Mapping[str, object]) -> None:
+    names = sorted(known)
+    for name in given:
+        if name not in names:
+            raise TypeError(
+                f"unexpected keyword argument {name!r}; beside those of the signature: {', '.join(names)}"
+            )
 
 
 def _recording_of(origin: Origin, table: Table, settings: Settings) -> Recording:

@@ -166,7 +166,7 @@ def zero_in_si(name: str, text: str, where: str) -> float:
             f"{where}: {quoted(name)} has no zero that is subtracted; those are {' and '.join(ZEROED)}"
         )
     try:
-        return parse_quantity(text, UNIT_OF[name])
+        return parse_quantity(str(text), UNIT_OF[name])
     except UnitError as error:
         raise RecordingError(f"{where}, {name}: {error}; such as {EXAMPLE}") from None
 

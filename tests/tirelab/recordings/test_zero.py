@@ -1,9 +1,12 @@
 """A gauge that does not read zero when nothing is loaded: its zero is given, or proposed in a command that works."""
 
+import json
 import shlex
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 from click.testing import CliRunner
 from house_form import loading, refusal, write_rows
@@ -128,3 +131,51 @@ def test_arrays_are_told_what_to_subtract() -> None:
     time, deflection, force = loading(201)
     recording = Recording.from_arrays(time, 0.03 + deflection / 100.0, force, "flat")
     assert "subtract 30mm from the deflection" in recording.far_zero
+
+
+@pytest.mark.parametrize("as_frame", [False, True], ids=["file", "frame"])
+def test_python_says_zeros_as_the_command_line_does(tmp_path: Path, as_frame: bool) -> None:
+    file = press(tmp_path, 30.0, 200.0)
+    source = (
+        partial(Recording.from_dataframe, pl.read_csv(file)) if as_frame else partial(read_recording, file)
+    )
+    recording = source(radius="flat", zero={"deflection": "30 mm", "force": "0.2 kN"})
+    # 25 mm, and 550.9 N/cm^B 2.5^1.422 of the article's tire
+    assert recording.deflection.max() == pytest.approx(0.025)
+    assert recording.force.max() == pytest.approx(550.9 * 2.5**1.422)
+    assert (recording.deflection.min(), recording.force.min()) == pytest.approx((0.0, 0.0), abs=1e-9)
+    for zero, said in (
+        ({"deflection": 0.03}, "'0.03' is no length"),
+        ({"force": "3 mm"}, "not a unit of force"),
+        ({"time": "3 s"}, "'time' has no zero"),
+    ):
+        with pytest.raises(TirelabError, match=said):
+            source(radius="flat", zero=zero)
+
+
+def test_the_zero_that_a_doubt_proposes_of_a_frame_works(tmp_path: Path) -> None:
+    frame = pl.read_csv(press(tmp_path, 30.0))
+    proposed = Recording.from_dataframe(frame, radius="flat").far_zero.rpartition("zero=")[2]
+    recording = Recording.from_dataframe(frame, radius="flat", zero=json.loads(proposed))
+    assert recording.deflection.max() == pytest.approx(0.025, abs=1e-4)
+    assert recording.doubts == ()
+
+
+def test_a_frame_with_signs_in_doubt_is_told_signs_and_zeros_at_once(tmp_path: Path) -> None:
+    frame = pl.read_csv(press(tmp_path, 30.0, turned=-1.0))
+    with pytest.raises(TirelabError) as caught:
+        Recording.from_dataframe(frame, radius="flat")
+    columns, zero = str(caught.value).rpartition("columns=")[2].split(", zero=")
+    recording = Recording.from_dataframe(
+        frame, radius="flat", columns=json.loads(columns), zero=json.loads(zero)
+    )
+    assert recording.deflection.max() == pytest.approx(0.025, abs=1e-4)
+    assert recording.doubts == ()
+
+
+def test_python_refuses_what_it_does_not_know(tmp_path: Path) -> None:
+    file = press(tmp_path, 0.0)
+    with pytest.raises(TypeError, match=r"'zeros'; beside those of the signature: sampling, skip_rows, zero"):
+        read_recording(file, radius="flat", zeros={})  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match=r"'skip_rows'; beside those of the signature: sampling, zero"):
+        Recording.from_dataframe(pl.read_csv(file), radius="flat", skip_rows=0)  # type: ignore[call-arg]

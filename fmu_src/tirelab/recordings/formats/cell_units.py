@@ -6,10 +6,10 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from ..units import is_unit
-from .table import BLANK_WORDS, is_comment
+from .table import BLANK_WORDS, is_comment, listed
 from .table_search import CONFIRMED, SEARCHED, SEPARATORS, is_value
 
 NEARLY = 0.9
@@ -39,6 +39,20 @@ def units_in_cells(lines: Sequence[str], separator: str | None) -> tuple[str, Ma
                 best = len(run), mark, units
             run = []
     return None if best is None else best[1:]
+
+
+def column_unit(cells: Sequence[str], separator: str) -> str:
+    """Return the unit that nearly every number of a column has behind it, "" where there is none."""
+    filled = [cell for cell in cells if cell.strip().lower() not in BLANK_WORDS]
+    matches = [_WITH_UNIT.fullmatch(cell) for cell in filled if not is_value(cell, separator)]
+    units = Counter(match["unit"] for match in matches if match)
+    unit, count = units.most_common(1)[0] if units else ("", 0)
+    return unit if count > NEARLY * len(filled) and is_unit(unit) else ""
+
+
+def taken_from_cells(units: Iterable[str]) -> str:
+    """Return the note of units that stand in the cells."""
+    return f"units taken from the cells: {listed(list(units))}"
 
 
 def without_unit(cell: str, unit: str) -> str:
@@ -86,12 +100,7 @@ def _is_row(row: Sequence[str], separator: str) -> bool:
 
 def _common(rows: Sequence[Sequence[str]], separator: str) -> dict[int, str]:
     """Return the unit of each column that nearly every number has; one without it is refused with its row then."""
-    found = {}
-    for index in range(len(rows[0]) if rows else 0):
-        cells = [row[index] for row in rows if row[index].strip().lower() not in BLANK_WORDS]
-        matches = [_WITH_UNIT.fullmatch(cell) for cell in cells if not is_value(cell, separator)]
-        units = Counter(match["unit"] for match in matches if match)
-        unit, count = units.most_common(1)[0] if units else ("", 0)
-        if count > NEARLY * len(cells) and is_unit(unit):
-            found[index] = unit
-    return found
+    columns = [
+        column_unit([row[index] for row in rows], separator) for index in range(len(rows[0]) if rows else 0)
+    ]
+    return {index: unit for index, unit in enumerate(columns) if unit}

@@ -7,9 +7,9 @@ same columns, as testing machines write one for each specimen, are tests side by
 import datetime
 import re
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from types import ModuleType
@@ -19,6 +19,7 @@ import numpy as np
 
 from ..units import FLAT_WORDS, measures, split_header
 from ..vocabulary import foreign_channel
+from .cell_units import lines_without_units, row_without_units, taken_from_cells, units_in_cells, without_unit
 from .layout import below_names, column_counted
 from .libraries import load_library, reading_with
 from .number_style import NumberStyle, style_of, with_plain_minus
@@ -63,6 +64,11 @@ class Sheet:
     rows: int = 0
     counted: bool = False
     provenance: tuple[str, ...] = ()
+
+    @property
+    def cell_units(self) -> Mapping[int, str]:
+        """The units of the columns in which every number has its unit behind it."""
+        return {index: header.cell_unit for index, header in enumerate(self.headers) if header.cell_unit}
 
 
 class ExcelTable:
@@ -134,7 +140,10 @@ class ExcelTable:
                 if not _holds_any(row):
                     empty.append(line)
                     continue
-                texts = [_text(cell) for cell in (*row, *[None] * width)[: max(width, len(row))]]
+                texts = row_without_units(
+                    [_text(cell) for cell in (*row, *[None] * width)[: max(width, len(row))]],
+                    sheet.cell_units,
+                )
                 try:
                     numbers = [self._number(_at(row, want.index % width), line, want) for want in wanted]
                     if guarded and texts[0] and not is_value(texts[0], "\t"):
@@ -164,6 +173,8 @@ class ExcelTable:
         header = self.headers[want.index]
         if cell is None:
             return float("nan")
+        if header.cell_unit:
+            cell = without_unit(_text(cell), header.cell_unit)
         if isinstance(cell, _DATES) and want.channel == "time" and header.dated:
             return _seconds(cell)
         if isinstance(cell, (int, float)) and not isinstance(cell, bool) and not header.dated:
@@ -233,6 +244,10 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     width = max(len(_trimmed(row)) for row in head)
     lines = ["\t".join(map(_text, [*row, *[None] * width][:width])) + "\n" for row in head]
     first = next(i for i, row in enumerate(head) if _holds_any(row))
+    _, cell_units = units_in_cells(lines, "\t") or ("", {})
+    if cell_units:
+        lines = lines_without_units(lines, "\t", cell_units)
+        head = [_without_units(row, cell_units) for row in head]
     place = find_table(lines, first, "\t")
     start = first if place is None else place.line
     names = [*head[start], *[None] * width][:width]
@@ -245,6 +260,12 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     headers = tuple(
         Header(h.name, "s", h.text, dated=True) if n in dated else h for n, h in enumerate(headers)
     )
+    if cell_units:
+        headers = tuple(
+            replace(h, unit=cell_units[n], cell_unit=cell_units[n]) if n in cell_units else h
+            for n, h in enumerate(headers)
+        )
+        notes = (*notes, taken_from_cells(cell_units.values()))
     if start > first:
         notes = (*notes, f"table found at row {start + 1}: the rows above it are kept as its provenance")
     body = head[start + 1 + below :]
@@ -271,6 +292,12 @@ def _channels(headers: Sequence[Header]) -> int:
     return found
 
 
+def _without_units(row: Sequence[Any], units: Mapping[int, str]) -> list[Any]:
+    """Return a row with its texts without the units behind their numbers."""
+    bare = row_without_units([_text(cell) for cell in row], units)
+    return [text if isinstance(cell, str) else cell for cell, text in zip(row, bare, strict=True)]
+
+
 def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
     filled = [n for n, cell in enumerate(row, 1) if _holds_any((cell,))]
     return row[: filled[-1]] if filled else ()
@@ -292,7 +319,7 @@ def _text(cell: object) -> str:
         return cell.isoformat()
     if isinstance(cell, datetime.timedelta):
         return repr(cell.total_seconds())
-    return " ".join(str(cell).split()).replace('"', "'")
+    return with_plain_minus(" ".join(str(cell).split()).replace('"', "'"))
 
 
 def _holds_any(row: Sequence[Any]) -> bool:

@@ -8,16 +8,17 @@ import io
 import re
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from ..units import split_header
-from .cell_units import lines_without_units, units_in_cells
+from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
 from .number_style import NumberStyle, style_of, with_plain_minus
 from .spaced import TAB, spaced_columns, with_tabs
-from .table import BLANK_WORDS, Header, RecordingError, is_comment, listed, quoted
+from .table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
 from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value, states_units
 
 HEAD = 65_536
@@ -40,7 +41,6 @@ class Layout:
     table_line: of the header, from 1, or of the first numbers where there is no header; provenance: the lines above it
     plain: whether lines end as they usually do, so that a parser by columns may be tried; spaced: whether its columns
     stand between spaces, which are read as tabs; counted: whether the first column holds no text, as far as was looked
-    cell_units: of columns in which every number has its unit behind it
     """
 
     encoding: str
@@ -55,7 +55,11 @@ class Layout:
     provenance: tuple[str, ...] = ()
     spaced: bool = False
     counted: bool = False
-    cell_units: Mapping[int, str] = field(default_factory=dict)
+
+    @cached_property
+    def cell_units(self) -> Mapping[int, str]:
+        """The units of the columns in which every number has its unit behind it."""
+        return {index: header.cell_unit for index, header in enumerate(self.headers) if header.cell_unit}
 
 
 def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
@@ -83,7 +87,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     if within is not None:
         declared, cell_units = within
         lines = lines_without_units(lines, declared, cell_units)
-        notes = (*notes, f"units taken from the cells: {listed([*cell_units.values()])}")
+        notes = (*notes, taken_from_cells(cell_units.values()))
     if first >= len(lines):
         raise RecordingError(_no_table(path, len(lines), skip_rows))
     place = find_table(lines, first, declared) if skip_rows is None else None
@@ -114,7 +118,8 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
     clocks = _clock_columns(body)
     headers = tuple(
-        Header(h.name, cell_units[i], h.text) if i in cell_units else h for i, h in enumerate(headers)
+        replace(h, unit=cell_units[i], cell_unit=cell_units[i]) if i in cell_units else h
+        for i, h in enumerate(headers)
     )
     headers = tuple(
         Header(h.name, "s", h.text, dated=True) if i in clocks else h for i, h in enumerate(headers)
@@ -132,7 +137,6 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         _provenance(lines[:start], separator, declared),
         spaced > 0,
         column_counted(body, separator),
-        cell_units,
     )
 
 

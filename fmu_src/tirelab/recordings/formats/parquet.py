@@ -8,8 +8,8 @@ import polars as pl
 from ..origin import Origin
 from ..units import split_header
 from .libraries import reading_with
-from .table import Columns, FloatArray, Header, RecordingError, Wanted, numbers, sample_place
-from .text_column import numbers_of_text
+from .table import Columns, FloatArray, Header, RecordingError, Wanted, numbers, quoted, sample_place
+from .text_column import LOOKED_AT, TextFault, headers_of_text, numbers_of_text
 
 
 class ParquetTable:
@@ -22,11 +22,11 @@ class ParquetTable:
         with reading_with(path, "Parquet"):
             self.schema = pl.read_parquet_schema(path)
             self.rows = int(pl.scan_parquet(path).select(pl.len()).collect().item())
-
-    @property
-    def headers(self) -> Sequence[Header]:
-        """The columns in the order of the file."""
-        return frame_headers(self.schema)
+            texts = pl.String in self.schema.values()
+            head = pl.read_parquet(path, n_rows=LOOKED_AT) if texts else pl.DataFrame(schema=self.schema)
+        named = frame_headers(self.schema)
+        self.headers: Sequence[Header]
+        self.headers, self.above, self.notes = headers_of_text(named, head.get_columns())
 
     def bytes_needed(self, columns: int) -> int:
         """The columns as stored and as float64."""
@@ -39,9 +39,9 @@ class ParquetTable:
         for want in wanted:
             header = headers[want.index]
             with reading_with(self.path, "Parquet"):
-                series = pl.read_parquet(self.path, columns=[header.text]).to_series()
+                series = pl.read_parquet(self.path, columns=[header.text]).to_series()[self.above :]
                 values.append(series_values(Origin(self.path.name), header, series, want.channel))
-        return Columns(tuple(values), sample_place)
+        return Columns(tuple(values), sample_place, self.notes)
 
 
 def frame_headers(schema: Mapping[str, pl.DataType]) -> tuple[Header, ...]:
@@ -62,7 +62,15 @@ def series_values(origin: Origin, header: Header, series: pl.Series, channel: st
             f"name another column with {origin.columns(**{channel: 'NAME'})}"
         )
     if series.dtype == pl.String:
-        read = numbers_of_text(series, channel)
+        try:
+            read = numbers_of_text(series, channel, header.cell_unit)
+        except TextFault as fault:
+            place = f"{sample_place(fault.index)}, column {quoted(header.text)}"
+            kind = f"{fault.kind} in {header.cell_unit}" if header.cell_unit else fault.kind
+            raise RecordingError(
+                f"{origin}, {place}: {quoted(series[fault.index])} is not a {kind} like the others; correct it, or "
+                "delete the row"
+            ) from None
         if read is not None:
             return read
     if series.dtype.is_numeric():

@@ -29,12 +29,14 @@ class Header:
     """One column as its file names it: its name, its unit if the file gives one, and the whole text.
 
     dated: whether it holds dates, clock times or durations, which become seconds
+    cell_unit: what stands behind every number of it, "" for nothing
     """
 
     name: str
     unit: str | None
     text: str
     dated: bool = False
+    cell_unit: str = ""
 
 
 @dataclass(frozen=True)

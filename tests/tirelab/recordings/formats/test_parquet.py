@@ -29,6 +29,17 @@ class TestParquet:
         np.testing.assert_allclose(recording.time, np.delete(TIME, 8), atol=1e-12)
         assert "skipped for want of force: sample 9" in recording.notes
 
+    def test_text_says_units_in_a_first_row_and_clock_times_as_in_a_frame(self, tmp_path: Path) -> None:
+        times = [f"14:05:{0.01 * i:05.2f}" for i in range(SAMPLES)]
+        columns = {
+            "Zeit": ["", *times],
+            "Weg": ["[mm]", *map(str, DEFLECTION.tolist())],
+            "Kraft": ["[kN]", *map(str, FORCE.tolist())],
+        }
+        pl.DataFrame(columns).write_parquet(tmp_path / "a.parquet")
+        recording = read_recording(tmp_path / "a.parquet", radius="flat")
+        assert_the_recording(recording, "units taken from sample 1, below the names")
+
     @pytest.mark.parametrize(
         ("values", "said"),
         [
