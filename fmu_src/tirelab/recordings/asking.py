@@ -141,10 +141,12 @@ def _parts(
     if lacking.columns:
         columns = {name: whole.columns[name] for name in lacking.columns}
         if unnamed:
+            skipping = origin.kept.get("skip_rows", "")
+            below = f" below the rows that skip_rows in {skipping} leaves out" if skipping else ""
             units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
             parts.append(
                 (
-                    f"{origin}: has no header row",
+                    f"{origin}: has no header row{below}",
                     "put one above the numbers, such as time [s],deflection [mm],force [N], or name columns by number: "
                     f"{origin.columns(**columns)} {origin.units(**units)}",
                 )

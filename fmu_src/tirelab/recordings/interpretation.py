@@ -354,7 +354,9 @@ def _conversions(
                 wrong[name] = (f"{place}: {error}", error.likely)
                 continue
             giving = origin.units(**{name: "UNIT"})
-            raise RecordingError(f"{place}: {error} (or give it: {giving})") from None
+            kept = origin.kept_in("units", name)
+            said = f", unit in {kept}" if kept else ""
+            raise RecordingError(f"{place}{said}: {error} (or give it: {giving})") from None
     return found, tuple(without), wrong
 
 

@@ -95,9 +95,12 @@ def _named_columns(origin: Origin, headers: Sequence[Header], columns: Mapping[s
     for name in columns:
         known_channel(name, f"{origin}, columns")
     matches: dict[str, Match] = {}
-    for name, text in columns.items():
-        if text.strip():
-            matches[name] = _named(origin, headers, name, text.strip())
+    named = {name: text.strip() for name, text in columns.items() if text.strip()}
+    absent = {name: text for name, text in named.items() if not _match(headers, text)[0]}
+    if absent:
+        raise _no_columns(origin, headers, absent)
+    for name, text in named.items():
+        matches[name] = _named(origin, headers, name, text)
     if len({match.index for match in matches.values()}) < len(matches):
         raise RecordingError(f"{origin}: one column is given for two channels; name another for one of them")
     return matches
@@ -204,17 +207,35 @@ def recognised(headers: Sequence[Header], columns: Mapping[str, str]) -> frozens
     return frozenset(found)
 
 
-def _named(origin: Origin, headers: Sequence[Header], channel: str, text: str) -> Match:
+def _no_columns(origin: Origin, headers: Sequence[Header], absent: Mapping[str, str]) -> RecordingError:
+    """Return the error for columns that are named and not there: who names them, and what to write."""
+    likely = {}
+    for channel in CHANNELS:
+        if channel.name in absent:
+            found = _found(headers, channel, set())
+            likely[channel.name] = option_name(headers, found[0]) if len(found) == 1 else "NAME"
+    giving = origin.columns(**likely)
+    kept = origin.kept_in("columns", *absent)
+    plural = "columns" if len(absent) > 1 else "column"
+    said = f", as {kept} says" if kept else ""
+    own = f'[files."{origin}".columns]'
+    advice = f"give {giving}, or say it of this file alone in {kept}: {own}" if kept else f"correct {giving}"
+    return RecordingError(
+        f"{origin}: has no {plural} {listed([*map(quoted, absent.values())])}{said}; its columns are "
+        f"{columns_listed(headers)}; {advice}"
+    )
+
+
+def _match(headers: Sequence[Header], text: str) -> tuple[list[int], int]:
+    """Return the columns that a name means, and the sign before it, 0 for none."""
     exact = _finds(headers, text)
-    if exact:
-        sign = 0
-    elif text[0] in "+-":
-        exact, sign = _finds(headers, text[1:].strip()), 1 if text[0] == "+" else -1
-    if not exact:
-        raise RecordingError(
-            f"{origin}: has no column {quoted(text)}; its columns are {columns_listed(headers)}; "
-            f"correct {origin.columns(**{channel: 'NAME'})}"
-        )
+    if exact or text[0] not in "+-":
+        return exact, 0
+    return _finds(headers, text[1:].strip()), 1 if text[0] == "+" else -1
+
+
+def _named(origin: Origin, headers: Sequence[Header], channel: str, text: str) -> Match:
+    exact, sign = _match(headers, text)
     if len(exact) > 1:
         numbers = " and ".join(f"#{i + 1}" for i in exact)
         raise RecordingError(

@@ -33,7 +33,10 @@ _SAID = ("table", "provenance", "doubtful")
 
 @dataclass(frozen=True)
 class Sidecar:
-    """The radius, the columns and the units that sidecars state, and where each came from."""
+    """The radius, the columns and the units that sidecars state, and where each came from.
+
+    said_in: "columns.force", "units.force" or "skip_rows" -> the file that says it
+    """
 
     radius: str | None = None
     radius_source: str = ""
@@ -47,6 +50,7 @@ class Sidecar:
     constants: Mapping[str, str] = field(default_factory=dict)
     part: bool = False
     zero: Mapping[str, str] = field(default_factory=dict)
+    said_in: Mapping[str, str] = field(default_factory=dict)
 
     def overruled(
         self,
@@ -84,6 +88,7 @@ class Sidecar:
             constants={**self.constants, **over.constants},
             part=self.part or over.part,
             zero={**self.zero, **over.zero},
+            said_in={**self.said_in, **over.said_in},
         )
 
 
@@ -155,6 +160,13 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
         constants={name: content[name] for name in _CONSTANT if name in content},
         part=content.get("part", False),
         zero=content.get("zero", {}),
+        said_in=dict.fromkeys(
+            [
+                *(key for key in ("skip_rows",) if key in content),
+                *(f"{table}.{name}" for table in ("columns", "units") for name in content.get(table, {})),
+            ],
+            source,
+        ),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 
@@ -14,14 +14,21 @@ class Origin:
     """A file that a command reads, or a data frame or arrays handed over in Python; `name` as messages show it.
 
     said: the words of a command line that name the file and say how it is read, but for its zeros
+    kept: "columns.force", "units.force" or "skip_rows" -> the file of settings that says it, where the user does not
     """
 
     name: str
     kind: Literal["file", "frame", "arrays"] = "file"
     said: tuple[str, ...] = ()
+    kept: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
         return self.name
+
+    def kept_in(self, what: str, *names: str) -> str:
+        """Return the file of settings that says it of one of these channels, the last one; "" where none does."""
+        files = [self.kept[f"{what}.{name}"] for name in names if f"{what}.{name}" in self.kept]
+        return files[-1] if files else ""
 
     def columns(self, **columns: str) -> str:
         """Return what to write so that channels are read from these columns."""

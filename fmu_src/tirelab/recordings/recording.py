@@ -289,7 +289,10 @@ def understand(path: Path | str, how: Choices) -> Understood:
     table = open_table(path, skip_rows)
     settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling, how.zero)
     settings = replace(settings, part=settings.part or how.part)
-    plan = plan_reading(Origin(path.name, said=said), table, settings, piece.trial)
+    own = {f"columns.{name}" for name in how.columns} | {f"units.{name}" for name in how.units}
+    own |= {"skip_rows"} if how.skip_rows is not None else set()
+    kept = {what: file for what, file in sidecar.said_in.items() if what not in own}
+    plan = plan_reading(Origin(path.name, said=said, kept=kept), table, settings, piece.trial)
     _refuse_too_large(path, table, len(plan.headers) + 1)
     piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)
     found = interpret(plan, _read(table, plan, piece), sidecar.sources, piece)

@@ -1,9 +1,11 @@
 """What a file beside a recording may say of it."""
 
+import shlex
 from pathlib import Path
 
 import pytest
-from house_form import loading, write_rows
+from house_form import loading, refusal, write_rows
+from tirelab.recordings.channels import parse_columns
 from tirelab.recordings.metadata import Settings, Sidecar, read_sidecar
 from tirelab.recordings.recording import RecordingError, read_recording
 
@@ -125,3 +127,47 @@ class TestSidecar:
         (tmp_path / "recording.toml").write_text(f'radius = "flat"\npressure = "{text}"\n')
         with pytest.raises(RecordingError, match=r"pressure in the settings: .*(write|mean)"):
             read_recording(path)
+
+
+class TestAnotherTableBesideTheSettings:
+    """Settings of a folder that fit one table and not the other: the file that says them is named, and the way out."""
+
+    @pytest.fixture
+    def other(self, tmp_path: Path) -> Path:
+        rows = "".join(f"{0.1 * i:.1f};{i};{20 * i}\n" for i in range(30))
+        (tmp_path / "a.csv").write_text("Zeit [s];Traversenweg [mm];Kraft [N]\n" + rows)
+        (tmp_path / "b.csv").write_text("Press 2\nTemps [s];Course [mm];Effort [N]\n" + rows)
+        return tmp_path / "b.csv"
+
+    def settle(self, other: Path, text: str) -> None:
+        (other.parent / "recording.toml").write_text(f'radius = "flat"\n{text}', encoding="utf-8")
+        assert len(read_recording(other.with_name("a.csv"))) == 30
+
+    def test_other_names_are_listed_with_the_columns_to_take(self, other: Path) -> None:
+        self.settle(other, '[columns]\ntime = "Zeit"\ndeflection = "Traversenweg"\nforce = "+Kraft"\n')
+        said = refusal(other)
+        assert "has no columns 'Zeit', 'Traversenweg', '+Kraft', as recording.toml says" in said
+        words, _, rest = said.partition("give --columns ")[2].partition(", or say it of this file alone in ")
+        assert rest == 'recording.toml: [files."b.csv".columns]'
+        assert len(read_recording(other, columns=parse_columns(shlex.split(words)[0]))) == 30
+
+    def test_the_own_table_of_the_file_goes_over_them(self, other: Path) -> None:
+        own = '[files."b.csv".columns]\ntime = ""\ndeflection = "Course"\nforce = "Effort"\n'
+        self.settle(other, f'[columns]\ndeflection = "Traversenweg"\nforce = "Kraft"\n{own}')
+        assert not read_recording(other).timed
+
+    def test_what_the_user_names_is_his(self, other: Path) -> None:
+        self.settle(other, '[columns]\nforce = "Kraft"\n')
+        assert "recording.toml" not in refusal(other, columns={"force": "Load"})
+
+    def test_other_units(self, other: Path) -> None:
+        (other.parent / "recording.toml").write_text('radius = "flat"\n[units]\nforce = "mm"\n')
+        assert "'mm' is not a unit of force; write N, kN, lbf or kgf, as recording.toml says" in refusal(
+            other
+        )
+
+    def test_other_rows_above_the_names(self, other: Path) -> None:
+        (other.parent / "recording.toml").write_text('radius = "flat"\nskip_rows = 2\n')
+        assert "has no header row below the rows that skip_rows in recording.toml leaves out" in refusal(
+            other
+        )
