@@ -94,14 +94,14 @@ double tire_elastic_tangent(double deflection, double coefficient, double expone
 }
 
 /* tracking.py: Return the track after the first measurement [m]. */
-static Tuple3 tracking_begin(double deflection)
+static inline Tuple3 tracking_begin(double deflection)
 {
     Vector14 at = (Vector14){{deflection, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}};
     return (Tuple3){(Vector14x4){{at, at, at, at}}, (Vector4){{0.25, 0.25, 0.25, 0.25}}, 0.0};
 }
 
 /* tracking.py: Return the motion in each mode at the second sample, from the difference v of the two. */
-static Vector14x4 tracking_second(double x, double v)
+static inline Vector14x4 tracking_second(double x, double v)
 {
     double u = UNKNOWN;
     Vector14 jerked = (Vector14){{x, v, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 2.0 + u, u, 0.0, u, 0.0, 0.0}};
@@ -110,7 +110,7 @@ static Vector14x4 tracking_second(double x, double v)
 }
 
 /* tracking.py: Return the motion predicted one interval ahead, which is r times the last one. */
-static Vector14 tracking_predicted(Vector14 moving, double r)
+static inline Vector14 tracking_predicted(Vector14 moving, double r)
 {
     double rr;
     double rrr;
@@ -149,7 +149,7 @@ static Vector14 tracking_predicted(Vector14 moving, double r)
 
 /* tracking.py: Return the motion after an interval of white jerk of a scaled intensity; the jerk itself is not
    estimated. */
-static Vector14 tracking_jerked(Vector14 moving, double intensity)
+static inline Vector14 tracking_jerked(Vector14 moving, double intensity)
 {
     double x = moving.v[0], v = moving.v[1], a = moving.v[2], p00 = moving.v[4], p01 = moving.v[5], p02 =
         moving.v[6], p11 = moving.v[8], p12 = moving.v[9], p22 = moving.v[11];
@@ -159,7 +159,7 @@ static Vector14 tracking_jerked(Vector14 moving, double intensity)
 }
 
 /* tracking.py: Return the motion after an interval in which the jerk's rate was white, of a scaled intensity. */
-static Vector14 tracking_snapped(Vector14 moving, double intensity)
+static inline Vector14 tracking_snapped(Vector14 moving, double intensity)
 {
     double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
         p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
@@ -170,7 +170,7 @@ static Vector14 tracking_snapped(Vector14 moving, double intensity)
 }
 
 /* tracking.py: Return the likelihood of an exact measurement [m], up to a factor that all modes share. */
-static double tracking_exact_likelihood(Vector14 moving, double deflection)
+static inline double tracking_exact_likelihood(Vector14 moving, double deflection)
 {
     double spread = moving.v[4] + 1.0;
     double innovation = deflection - moving.v[0];
@@ -178,7 +178,7 @@ static double tracking_exact_likelihood(Vector14 moving, double deflection)
 }
 
 /* tracking.py: Return the motion updated with a measurement [m]. */
-static Vector14 tracking_updated(Vector14 moving, double deflection)
+static inline Vector14 tracking_updated(Vector14 moving, double deflection)
 {
     double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
         p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
@@ -194,7 +194,7 @@ static Vector14 tracking_updated(Vector14 moving, double deflection)
 }
 
 /* tracking.py: Return the track after an exact measurement: two filters of the shortest memory, each for itself. */
-static Tuple3 tracking_exactly(Vector14x4 modes, Vector4 probability, double ratio, double deflection, double
+static inline Tuple3 tracking_exactly(Vector14x4 modes, Vector4 probability, double ratio, double deflection, double
     interval)
 {
     Vector14 ride = tracking_jerked(tracking_predicted(modes.v[1], ratio), JERK_MAX);
@@ -209,7 +209,7 @@ static Tuple3 tracking_exactly(Vector14x4 modes, Vector4 probability, double rat
 }
 
 /* tracking.py: Return mean and covariance of a motion that is b with the probability `share`, and a otherwise. */
-static Vector14 tracking_mixed(Vector14 a, Vector14 b, double share, double certainty)
+static inline Vector14 tracking_mixed(Vector14 a, Vector14 b, double share, double certainty)
 {
     double remainder = 1.0 - share;
     double d0 = b.v[0] - a.v[0];
@@ -228,7 +228,7 @@ static Vector14 tracking_mixed(Vector14 a, Vector14 b, double share, double cert
 }
 
 /* tracking.py: Return mean and covariance of the motion over all modes. */
-static Vector14 tracking_mean(Vector14x4 modes, Vector4 probability, double certainty)
+static inline Vector14 tracking_mean(Vector14x4 modes, Vector4 probability, double certainty)
 {
     Vector14 whole = modes.v[0];
     double weight = probability.v[0];
@@ -240,7 +240,7 @@ static Vector14 tracking_mean(Vector14x4 modes, Vector4 probability, double cert
 }
 
 /* tracking.py: Return the log likelihood of a measurement [m], without the terms that all modes share. */
-static double tracking_log_likelihood(Vector14 moving, double deflection, double certainty)
+static inline double tracking_log_likelihood(Vector14 moving, double deflection, double certainty)
 {
     double spread = moving.v[4] + 1.0;
     double innovation = deflection - moving.v[0];
@@ -248,7 +248,7 @@ static double tracking_log_likelihood(Vector14 moving, double deflection, double
 }
 
 /* tracking.py: Return the track after a measurement `deflection` [m], `interval` > 0 [s] after the last one. */
-static Tuple3 tracking_follow(Tuple3 track, double interval, double deflection, double noise)
+static inline Tuple3 tracking_follow(Tuple3 track, double interval, double deflection, double noise)
 {
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
@@ -295,7 +295,7 @@ static Tuple3 tracking_follow(Tuple3 track, double interval, double deflection, 
 
 /* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
    */
-static Tuple3 tracked_track(const double *s, double deflection, double interval, double noise)
+static inline Tuple3 tracked_track(const double *s, double deflection, double interval, double noise)
 {
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
@@ -309,7 +309,7 @@ static Tuple3 tracked_track(const double *s, double deflection, double interval,
 }
 
 /* flat_step.py: Write a track into a state. */
-static void store_track(double *n, Tuple3 track)
+static inline void store_track(double *n, Tuple3 track)
 {
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
@@ -328,7 +328,7 @@ static void store_track(double *n, Tuple3 track)
 }
 
 /* tracking.py: Return the rate [m/s] of the deflection at the last sample, 0 before the second one. */
-static double tracking_rate(Tuple3 track)
+static inline double tracking_rate(Tuple3 track)
 {
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
@@ -344,7 +344,7 @@ static double tracking_rate(Tuple3 track)
 }
 
 /* tracking.py: Return the acceleration [m/s^2] of the deflection at the last sample, 0 before the second one. */
-static double tracking_acceleration(Tuple3 track)
+static inline double tracking_acceleration(Tuple3 track)
 {
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
@@ -360,13 +360,13 @@ static double tracking_acceleration(Tuple3 track)
 }
 
 /* effects.deflection_offset.py: Shift the deflection [m] by x0. */
-static Tuple8 deflection_offset_respond(double signal, Instant instant, Nothing state, Vector1 values)
+static inline Tuple8 deflection_offset_respond(double signal, Instant instant, Nothing state, Vector1 values)
 {
     return (Tuple8){signal + values.v[0], state};
 }
 
 /* effects.deflection_lag.py: Advance the deflection [m] by the lag of its channel. */
-static Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing state, Vector2 values)
+static inline Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
     double tau = values.v[0], delta = values.v[1];
     double first_order = (tau + delta) * instant.rate;
@@ -375,7 +375,7 @@ static Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing sta
 }
 
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
-static double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
+static inline double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
 {
     if (p[6] != 0.0) {
         const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[7]}});
@@ -390,7 +390,7 @@ static double unremembered_deflection(double signal, Instant at, const double *p
 
 /* effects.series_compliance.py: Return the tire's part of the deflection x [m] over a spring that stiffens; plain:
    over one that does not. */
-static double series_compliance_stiffening(double x, double k, double h, double A, double B, double plain)
+static inline double series_compliance_stiffening(double x, double k, double h, double A, double B, double plain)
 {
     double force;
     double miss;
@@ -421,7 +421,7 @@ static double series_compliance_stiffening(double x, double k, double h, double 
 }
 
 /* effects.series_compliance.py: Return the tire's part [m] of a deflection above 0. */
-static double series_compliance_pressed(double signal, Instant instant, Vector2 values)
+static inline double series_compliance_pressed(double signal, Instant instant, Vector2 values)
 {
     double step;
     double k = values.v[0], h = values.v[1];
@@ -454,7 +454,7 @@ static double series_compliance_pressed(double signal, Instant instant, Vector2 
 }
 
 /* effects.series_compliance.py: Return the tire's part [m] of the deflection; that of a two-sided part is odd. */
-static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing state, Vector2 values)
+static inline Tuple8 series_compliance_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
     if (values.v[0] == 0.0 || (signal <= 0.0 && !(instant.two_sided && signal < 0.0))) {
         return (Tuple8){signal, state};
@@ -466,7 +466,7 @@ static Tuple8 series_compliance_respond(double signal, Instant instant, Nothing 
 }
 
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
-static double unremembered_series(double signal, Instant at, const double *p, const double *s)
+static inline double unremembered_series(double signal, Instant at, const double *p, const double *s)
 {
     if (p[11] != 0.0) {
         const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[12], p[13]}});
@@ -477,7 +477,7 @@ static double unremembered_series(double signal, Instant at, const double *p, co
 
 /* flat_step.py: Return the tire's deflection [m] for one that is read; effects before the elastic law have no
    memory. */
-static double compressed(Vector3 read, Tuple4 moment, Vector3 surface, const double *p, const double *s)
+static inline double compressed(Vector3 read, Tuple4 moment, Vector3 surface, const double *p, const double *s)
 {
     double deflection = read.v[0], rate = read.v[1], acceleration = read.v[2];
     double time = moment.a;
@@ -496,7 +496,7 @@ static double compressed(Vector3 read, Tuple4 moment, Vector3 surface, const dou
 
 /* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
    */
-static Tuple3 tracked_compression(const double *s, double deflection, double interval, double noise)
+static inline Tuple3 tracked_compression(const double *s, double deflection, double interval, double noise)
 {
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
@@ -510,7 +510,7 @@ static Tuple3 tracked_compression(const double *s, double deflection, double int
 }
 
 /* flat_step.py: Write a track into a state. */
-static void store_compression(double *n, Tuple3 track)
+static inline void store_compression(double *n, Tuple3 track)
 {
     Vector14x4 modes = track.a;
     Vector4 probability = track.b;
@@ -530,7 +530,7 @@ static void store_compression(double *n, Tuple3 track)
 
 /* power_law.py: Return the force [N] of a part that is held at both ends and pulls as it presses: A sign(x) |x|^B,
    x in cm. */
-static double power_law_two_sided(double deflection, double coefficient, double exponent)
+static inline double power_law_two_sided(double deflection, double coefficient, double exponent)
 {
     if (deflection < 0.0) {
         return -tire_elastic(-deflection, coefficient, exponent);
@@ -539,7 +539,7 @@ static double power_law_two_sided(double deflection, double coefficient, double 
 }
 
 /* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x)). */
-static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector8 values)
+static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector8 values)
 {
     double log_ratio;
     double bend = values.v[0], twist = values.v[1], reference = values.v[2], first = values.v[3], second =
@@ -571,14 +571,14 @@ static Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing stat
 }
 
 /* effect.py: Return whether a channel was recorded: NOT_MEASURED is not equal to itself. */
-static bool effect_is_measured(double value)
+static inline bool effect_is_measured(double value)
 {
     return value == value;
 }
 
 /* effects.inflation_pressure.py: Multiply the factor by the share of the casing and that of the air at this
    pressure. */
-static Tuple8 inflation_pressure_respond(double signal, Instant instant, Nothing state, Vector3 values)
+static inline Tuple8 inflation_pressure_respond(double signal, Instant instant, Nothing state, Vector3 values)
 {
     double gain = values.v[0], reference = values.v[1], power = values.v[2];
     if (!effect_is_measured(instant.pressure)) {
@@ -592,7 +592,7 @@ static Tuple8 inflation_pressure_respond(double signal, Instant instant, Nothing
 }
 
 /* effects.gas_compression.py: Multiply the factor by p / p0. */
-static Tuple8 gas_compression_respond(double signal, Instant instant, Nothing state, Vector5 values)
+static inline Tuple8 gas_compression_respond(double signal, Instant instant, Nothing state, Vector5 values)
 {
     double share = values.v[0], power = values.v[1], polytropic = values.v[2], surface = values.v[3], atmosphere =
         values.v[4];
@@ -608,7 +608,7 @@ static Tuple8 gas_compression_respond(double signal, Instant instant, Nothing st
 
 /* effects.mullins_softening.py: Multiply the factor by the softening; the state: largest measure, last counted
    position [m], path length [m]. */
-static Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
+static inline Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
 {
     double share = values.v[0], ratio = values.v[1], width = values.v[2], sharpness = values.v[3], history =
         values.v[4], gathering = values.v[5], load = values.v[6];
@@ -646,7 +646,7 @@ static Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3
 }
 
 /* effects.pressure_leak.py: Multiply the factor by the remaining pressure. */
-static Tuple8 pressure_leak_respond(double signal, Instant instant, Nothing state, Vector3 values)
+static inline Tuple8 pressure_leak_respond(double signal, Instant instant, Nothing state, Vector3 values)
 {
     double rate = values.v[0], structural = values.v[1], flow = values.v[2];
     double lost = rate * instant.time;
@@ -662,7 +662,7 @@ static Tuple8 pressure_leak_respond(double signal, Instant instant, Nothing stat
 
 /* effects.warm_up.py: Multiply the factor by the rise of the pressure; the state is the temperature [K] at the
    start. */
-static Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
+static inline Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
 {
     double start;
     double gain = values.v[0], tau = values.v[1], stretch = values.v[2];
@@ -675,7 +675,7 @@ static Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Ve
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
-static double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
+static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[14] != 0.0) {
         const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector8 *)(p + 15));
@@ -712,7 +712,7 @@ static double through_scale(double signal, Instant at, const double *p, const do
 }
 
 /* effects.rate_independent_hysteresis.py: Return z after `travel` [m] in one direction. */
-static double rate_independent_hysteresis_dahl(double z, double travel, double reach)
+static inline double rate_independent_hysteresis_dahl(double z, double travel, double reach)
 {
     if (travel > 0.0) {
         return z - (1.0 - z) * expm1(-travel / reach);
@@ -724,13 +724,14 @@ static double rate_independent_hysteresis_dahl(double z, double travel, double r
 }
 
 /* effects.rate_independent_hysteresis.py: Return y after `travel` [m] of an element that slips at `reach` [m]. */
-static double rate_independent_hysteresis_slip(double y, double travel, double reach)
+static inline double rate_independent_hysteresis_slip(double y, double travel, double reach)
 {
     return lesser(greater(y + travel / reach, -1.0), 1.0);
 }
 
 /* effects.rate_independent_hysteresis.py: Add the friction force [N]. */
-static Tuple16 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8 values)
+static inline Tuple16 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8
+    values)
 {
     double friction;
     double mean;
@@ -780,7 +781,7 @@ static Tuple16 rate_independent_hysteresis_respond(double signal, Instant instan
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
    ends always is. */
-static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector5 values)
+static inline Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector5 values)
 {
     double size;
     double damping = values.v[0], rate_exponent = values.v[1], deflection_exponent = values.v[2], thinning =
@@ -808,7 +809,7 @@ static Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing st
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt =
    (F_elastic - q_i) / tau_i. */
-static Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector11 values)
+static inline Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector11 values)
 {
     double added;
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
@@ -831,7 +832,7 @@ static Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vect
 
 /* effects.viscoelastic_relaxation.py: Return h after `interval` [s] in which the elastic force changed linearly by
    `change` [N]. */
-static double viscoelastic_relaxation_overstress(double h, double change, double interval, double tau)
+static inline double viscoelastic_relaxation_overstress(double h, double change, double interval, double tau)
 {
     double passed = interval / tau;
     if (passed == 0.0) {
@@ -843,7 +844,8 @@ static double viscoelastic_relaxation_overstress(double h, double change, double
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N]; the state holds the last elastic force and the five
    overstresses. */
-static Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector11 values)
+static inline Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector11
+    values)
 {
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
         values.v[5], sudden = values.v[6], g4 = values.v[7], tau4 = values.v[8], g5 = values.v[9], tau5 =
@@ -875,7 +877,7 @@ static Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, V
 }
 
 /* effects.bottoming.py: Add the second spring's force [N]. */
-static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, Vector4 values)
+static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, Vector4 values)
 {
     double stiffness = values.v[0], onset = values.v[1], softness = values.v[2], power = values.v[3];
     double beyond = instant.deflection - onset;
@@ -892,7 +894,7 @@ static Tuple8 bottoming_respond(double signal, Instant instant, Nothing state, V
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
-static double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
+static inline double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[49] != 0.0) {
         const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
@@ -929,13 +931,13 @@ static double through_parallel(double signal, Instant at, const double *p, const
 }
 
 /* effects.inertia.py: Add m d2x/dt2 [N]. */
-static Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vector1 values)
+static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing state, Vector1 values)
 {
     return (Tuple8){signal + values.v[0] * instant.acceleration, state};
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
-static double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
+static inline double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[81] != 0.0) {
         const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[82]}});
@@ -946,7 +948,7 @@ static double through_inertia(double signal, Instant at, const double *p, const 
 
 /* effects.force_lag.py: Return the force [N] a delay `delta` [s] ago and the stored samples after this one: times,
    then forces. */
-static Tuple22 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
+static inline Tuple22 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
 {
     Vector2 two;
     Vector4 four;
@@ -1000,7 +1002,7 @@ static Tuple22 force_lag_delayed(double signal, Instant instant, Vector35 state,
 
 /* effects.force_lag.py: Return the measured force [N] for a solver: the states are the output and its slope; the
    delay is memory. */
-static Tuple24 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
+static inline Tuple24 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
 {
     Vector3 held;
     double tau = values.v[0], delta = values.v[1], quality = values.v[2];
@@ -1047,7 +1049,7 @@ static Tuple24 force_lag_flow(double signal, Instant instant, Vector35 state, Ve
 
 /* effects.force_lag.py: Return output [N] and slope [N/s] after an interval [s] over which the input changes
    linearly to `late` [N]. */
-static Vector2 force_lag_low_passed(Vector3 before, double late, double interval, double tau, double quality)
+static inline Vector2 force_lag_low_passed(Vector3 before, double late, double interval, double tau, double quality)
 {
     double width;
     double quick;
@@ -1097,7 +1099,7 @@ static Vector2 force_lag_low_passed(Vector3 before, double late, double interval
 
 /* effects.force_lag.py: Return the measured force [N]; the state: output, its slope, its last input, and the stored
    samples. */
-static Tuple24 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
+static inline Tuple24 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
 {
     double tau = values.v[0], delta = values.v[1], quality = values.v[2];
     double reading = state.v[0];
@@ -1129,13 +1131,13 @@ static Tuple24 force_lag_respond(double signal, Instant instant, Vector35 state,
 }
 
 /* effects.force_offset.py: Shift the force [N] by F0. */
-static Tuple8 force_offset_respond(double signal, Instant instant, Nothing state, Vector1 values)
+static inline Tuple8 force_offset_respond(double signal, Instant instant, Nothing state, Vector1 values)
 {
     return (Tuple8){signal + values.v[0], state};
 }
 
 /* effects.force_drift.py: Add the drift since the start [N]. */
-static Tuple8 force_drift_respond(double signal, Instant instant, Nothing state, Vector2 values)
+static inline Tuple8 force_drift_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
     double drift = values.v[0], settling = values.v[1];
     double settled = settling * instant.time;
@@ -1147,7 +1149,7 @@ static Tuple8 force_drift_respond(double signal, Instant instant, Nothing state,
 }
 
 /* effects.saturation.py: Return the force as read [N]. */
-static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, Vector2 values)
+static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
     double limit = values.v[0], knee = values.v[1];
     double beyond = signal - limit;
@@ -1161,7 +1163,7 @@ static Tuple8 saturation_respond(double signal, Instant instant, Nothing state, 
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
-static double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
+static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[83] != 0.0 && p[3] != 0.0) {
         const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[84], p[85],
@@ -1282,7 +1284,7 @@ double tire_stiffness(Vector2 law, Vector7 motion, const double *p, const double
 
 /* hull1996.py: Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]; see
    `Hull1996.coefficients`. */
-static Vector2 hull1996_coefficients(Vector10 constants, double surface_radius)
+static inline Vector2 hull1996_coefficients(Vector10 constants, double surface_radius)
 {
     double A;
     double B;
@@ -1303,7 +1305,7 @@ static Vector2 hull1996_coefficients(Vector10 constants, double surface_radius)
 }
 
 /* curvature_law.py: Return A [N/cm^B] and B [1] on a surface of radius `surface_radius` [m]. */
-static Vector2 curvature_law_coefficients(Vector18 slots, double surface_radius)
+static inline Vector2 curvature_law_coefficients(Vector18 slots, double surface_radius)
 {
     double k1;
     double A1;
@@ -1334,13 +1336,13 @@ static Vector2 curvature_law_coefficients(Vector18 slots, double surface_radius)
 }
 
 /* recalibrated.py: _curvature */
-static double recalibrated_curvature(double radius)
+static inline double recalibrated_curvature(double radius)
 {
     return fabs(radius) >= FLAT_RADIUS ? 0.0 : 1.0 / radius;
 }
 
 /* recalibrated.py: Return a and b on a surface of radius `surface_radius` [m]. */
-static Vector2 recalibrated_changes(const double *q, int at, int count, double surface_radius)
+static inline Vector2 recalibrated_changes(const double *q, int at, int count, double surface_radius)
 {
     double above;
     double a1;
@@ -1369,7 +1371,7 @@ static Vector2 recalibrated_changes(const double *q, int at, int count, double s
 }
 
 /* recalibrated.py: Return A exp(a) and B + b, but no exponent below 0.05. */
-static Vector2 recalibrated_changed(double A, double B, Vector2 by)
+static inline Vector2 recalibrated_changed(double A, double B, Vector2 by)
 {
     double a = by.v[0], b = by.v[1];
     return (Vector2){{A * exp(a), greater(B + b, 0.05)}};

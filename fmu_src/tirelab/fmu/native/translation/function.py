@@ -74,7 +74,7 @@ class _Function(Statements):
         self.block(self.tree.body[1:] if note else self.tree.body)
         parameters = [self.declared(self.types[p], self.safe(p)) for p in self.parameters]
         result = self.program.struct(self.result) if self.result else "void"
-        head = f"{'' if public else 'static '}{result} {self.name}({', '.join(parameters)})"
+        head = f"{'' if public else 'static inline '}{result} {self.name}({', '.join(parameters)})"
         late = [f"    {self.declared(kind, self.safe(n))};" for n, kind in self.late.items()]
         module = self.function.__module__.rpartition("radialtire.")[2]
         comment = (note or self.function.__name__).splitlines()[0].replace("*/", "* /")
