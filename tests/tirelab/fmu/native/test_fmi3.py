@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from ctypes import byref, c_bool, c_char_p, c_double, c_size_t, c_uint, c_void_p
+from ctypes import byref, c_bool, c_char_p, c_double, c_size_t, c_ubyte, c_uint, c_void_p
 from pathlib import Path
 from typing import Any
 
@@ -261,11 +261,31 @@ SetBoolean                     |x|x|x|-||x|x|x|-|-
 GetDirectionalDerivative       |-|x|x|x||-|x|x|x|x
 SetDebugLogging                |x|x|x|x||x|x|x|x|x
 GetFMUState                    |x|x|x|x||x|x|x|x|x
+SetFMUState                    |x|x|x|x||x|x|x|x|x
+FreeFMUState                   |x|x|x|x||x|x|x|x|x
+SerializedFMUStateSize         |x|x|x|x||x|x|x|x|x
+SerializeFMUState              |x|x|x|x||x|x|x|x|x
+DeserializeFMUState            |x|x|x|x||x|x|x|x|x
 Reset                          |x|x|x|x||x|x|x|x|x
 """
 """FMI 3.0.2, sections 2.3, 3.2 and 4.2; Co-Simulation: instantiated, Initialization Mode, Step Mode, terminated; Model
 Exchange: instantiated, Initialization Mode, Event Mode, Continuous-Time Mode, terminated. Taken here beyond them, which
 harms nobody: 1 the time in Event Mode, as of FMI 2.0; 2 the numbers, which never change."""
+
+TYPES = (
+    "Int8",
+    "UInt8",
+    "Int16",
+    "UInt16",
+    "Int32",
+    "UInt32",
+    "Int64",
+    "UInt64",
+    "String",
+    "Binary",
+    "Clock",
+)
+"""Of which the tire has no variable; no variable is got and set where Booleans are."""
 
 STATES = (
     *((FMU3Slave, state) for state in ("instantiated", "initialization", "step", "terminated")),
@@ -276,8 +296,19 @@ STATES = (
 )
 
 
+def table() -> dict[str, list[str]]:
+    """The marks of every call, by its name."""
+    lines = (line.replace("||", "|").split("|") for line in IN_EACH_STATE.strip().splitlines())
+    marks = {name.strip(): [*row] for name, *row in lines}
+    return marks | {f"{verb}{kind}": marks[f"{verb}Boolean"] for kind in TYPES for verb in ("Get", "Set")}
+
+
 def calls(unit: Any) -> dict[str, Callable[[], int]]:
     """Every call with arguments that are right, by its name; each returns the status."""
+    saved, size, bytes_ = c_void_p(), c_size_t(), (c_ubyte * 100_000)()
+    unit.dll.fmi3GetFMUState(c_void_p(unit.component), byref(saved))
+    unit.dll.fmi3SerializedFMUStateSize(c_void_p(unit.component), saved, byref(size))
+    unit.dll.fmi3SerializeFMUState(c_void_p(unit.component), saved, bytes_, size)
     states, one, value = c_size_t(len(unit.description.derivatives)), c_size_t(1), (c_double * 8)()
     flags = [c_bool() for _ in range(5)]
     library, instance = unit.dll, c_void_p(unit.component)
@@ -308,15 +339,21 @@ def calls(unit: Any) -> dict[str, Callable[[], int]]:
         "GetBoolean": (in_range, one, (c_bool * 1)(), one),
         "GetDirectionalDerivative": (force, one, deflection, one, (c_double * 1)(1.0), one, value, one),
         "GetFMUState": (byref(c_void_p()),),
+        "SetFMUState": (saved,),
+        "FreeFMUState": (byref(saved),),
+        "SerializedFMUStateSize": (saved, byref(size)),
+        "SerializeFMUState": (saved, bytes_, size),
+        "DeserializeFMUState": (bytes_, size, byref(c_void_p())),
+        **{
+            f"{verb}{kind}": (None, c_size_t(), None, c_size_t()) for kind in TYPES for verb in ("Get", "Set")
+        },
+        **dict.fromkeys(("GetBinary", "SetBinary"), (None, c_size_t(), None, None, c_size_t())),
     }
 
     def act(name: str) -> Callable[[], int]:
         return lambda: int(getattr(library, f"fmi3{name}")(instance, *arguments.get(name, ())))
 
-    return {
-        line.split("|")[0].strip(): act(line.split("|")[0].strip())
-        for line in IN_EACH_STATE.strip().splitlines()
-    }
+    return {name: act(name) for name in table()}
 
 
 def test_a_solvers_states_can_be_set_as_variables(tmp_path: Path) -> None:
@@ -369,9 +406,9 @@ def test_what_is_discarded_is_told_where_the_host_wants_to_hear(tmp_path: Path, 
 @pytest.mark.parametrize(("kind", "state"), STATES)
 def test_each_call_in_each_state(tmp_path: Path, kind: type, state: str) -> None:
     column = STATES.index((kind, state))
-    for line in IN_EACH_STATE.strip().splitlines():
-        name, *marks = (part.strip() for part in line.replace("||", "|").split("|"))
-        with opened(DAMPED, tmp_path, kind) as unit:
+    with opened(DAMPED, tmp_path, kind) as unit:
+        for name, marks in table().items():
+            unit.reset()
             if state != "instantiated":
                 unit.enterInitializationMode()
                 if state != "initialization":
