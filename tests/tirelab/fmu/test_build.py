@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
@@ -16,6 +17,7 @@ from radialtire import CATALOGUE, Effect, PowerLaw, TireModel, read_tire
 from radialtire.effect import PLACES
 from tirelab.errors import TirelabError
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.native.pack import build_native_fmu
 
 
 def in_order() -> list[Effect]:
@@ -23,10 +25,26 @@ def in_order() -> list[Effect]:
     return sorted(CATALOGUE.values(), key=lambda effect: PLACES.index(effect.place))
 
 
+def python_fmu(tire: TireModel, folder: Path) -> Path:
+    return build_fmu(tire, folder, with_loader=False).path
+
+
+def native_fmu(tire: TireModel, folder: Path) -> Path:
+    return build_native_fmu(tire, folder).path
+
+
+Build = Callable[[TireModel, Path], Path]
+BOTH_KINDS = pytest.mark.parametrize("build", [python_fmu, native_fmu])
+
+
+def described(fmu: Path) -> ElementTree.Element:
+    with zipfile.ZipFile(fmu) as archive:
+        return ElementTree.fromstring(archive.read("modelDescription.xml"))
+
+
 @pytest.fixture(scope="module")
 def description(article_fmu: Path) -> ElementTree.Element:
-    with zipfile.ZipFile(article_fmu) as archive:
-        return ElementTree.fromstring(archive.read("modelDescription.xml"))
+    return described(article_fmu)
 
 
 def variable(description: ElementTree.Element, name: str) -> dict[str, str]:
@@ -77,19 +95,18 @@ def test_variables_have_units_and_meaning(description: ElementTree.Element) -> N
     } <= declared
 
 
-def test_start_values_are_the_numbers_themselves(tmp_path: Path) -> None:
+@BOTH_KINDS
+def test_start_values_are_the_numbers_themselves(tmp_path: Path, build: Build) -> None:
     """0.1 + 0.2 needs 17 digits."""
-    built = build_fmu(TireModel(law=PowerLaw(718.5, 0.1 + 0.2)), tmp_path, with_loader=False)
-    with zipfile.ZipFile(built.path) as archive:
-        description = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    assert float(variable(description, "law.exponent")["start"]) == 0.1 + 0.2
+    fmu = build(TireModel(law=PowerLaw(718.5, 0.1 + 0.2)), tmp_path)
+    assert float(variable(described(fmu), "law.exponent")["start"]) == 0.1 + 0.2
 
 
-def test_units_are_products_of_si_units(tmp_path: Path) -> None:
+@BOTH_KINDS
+def test_units_are_products_of_si_units(tmp_path: Path, build: Build) -> None:
     """Every declared unit says its base units; N/cm^B has none, so it stands in the description only."""
     effects = tuple((effect, effect.nominal) for effect in in_order())
-    with zipfile.ZipFile(build_fmu(TireModel(effects=effects), tmp_path, with_loader=False).path) as archive:
-        description = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    description = described(build(TireModel(effects=effects), tmp_path))
     units = {unit.get("name"): unit.find("BaseUnit") for unit in description.iterfind("UnitDefinitions/Unit")}
     assert None not in units.values()
     assert units["s/m"].attrib == {"s": "1", "m": "-1"}  # type: ignore[union-attr]
@@ -98,7 +115,8 @@ def test_units_are_products_of_si_units(tmp_path: Path) -> None:
     assert coefficient["description"].endswith("[N/cm^B]")
 
 
-def test_each_tire_says_who_it_is(tmp_path: Path, article_fmu: Path) -> None:
+@BOTH_KINDS
+def test_each_tire_says_who_it_is(tmp_path: Path, article_fmu: Path, build: Build) -> None:
     """Name, description and version are the tire's: those of two tires differ, those of one do not."""
     said = []
     for number, tire in enumerate(
@@ -108,25 +126,19 @@ def test_each_tire_says_who_it_is(tmp_path: Path, article_fmu: Path) -> None:
             TireModel(law=PowerLaw(720.0), name="Wang & Hull, off road", source="quoted"),
         )
     ):
-        path = build_fmu(tire, tmp_path / str(number), with_loader=False).path
-        with zipfile.ZipFile(path) as archive:
-            root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+        root = described(build(tire, tmp_path / str(number)))
         said.append((root.get("modelName"), root.get("description"), root.get("version")))
         assert said[-1][0] == tire.name
         assert tire.name in str(said[-1][1])
         assert tire.source in str(said[-1][1])
     assert len({version for _, _, version in said}) == 3
-    with zipfile.ZipFile(article_fmu) as archive:
-        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    assert root.get("version") == said[0][2]
+    assert described(article_fmu).get("version") == said[0][2]
 
 
-def test_the_default_step_is_the_one_that_the_text_recommends(
-    description: ElementTree.Element, article_fmu: Path
-) -> None:
-    experiment = description.find("DefaultExperiment")
+def test_the_default_step_is_the_one_that_the_text_recommends(either_fmu: Path) -> None:
+    experiment = described(either_fmu).find("DefaultExperiment")
     assert experiment is not None
-    with zipfile.ZipFile(article_fmu) as archive:
+    with zipfile.ZipFile(either_fmu) as archive:
         page = archive.read("documentation/index.html").decode()
     assert "Take h &le; 0.2 ms for a wheel" in page
     assert float(str(experiment.get("stepSize"))) == 0.2e-3
