@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import UNIT_OF, unit_of_column
+from .channels import EXAMPLE_UNITS, UNIT_OF, unit_of_column
 from .choices import Choices
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import quoted
@@ -20,18 +20,6 @@ from .units import measures
 from .vocabulary import begins_like, counts_rows
 
 FloatArray = NDArray[np.float64]
-
-EXAMPLE_UNITS: Mapping[str, str] = {
-    "time": "s",
-    "deflection": "mm",
-    "radius": "cm",
-    "force": "N",
-    "pressure": "kPa",
-    "temperature": "degC",
-    "speed": "m/s",
-    "believed_force": "N",
-}
-"""The unit of each channel that advice names."""
 
 PULLS = 0.1
 """A force of the other sign, over the largest one, beyond which what was recorded is hardly a tire."""

@@ -1,5 +1,6 @@
 """The channels of a recording, and the names that columns have for them."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,55 +15,96 @@ from .vocabulary import foreign_channel, is_measured, name_and_unit, without_cou
 
 @dataclass(frozen=True)
 class Channel:
-    """One channel: our name for it, its SI unit, and the names and symbols the field gives it."""
+    """One channel: our name for it, its SI unit, and the names and symbols the field gives it.
+
+    largest: magnitude [SI] that no rig and no ride reaches, a number beyond it has the wrong unit; example: the unit
+    that advice names; required: whether every recording has it
+    """
 
     name: str
     unit: str
     words: frozenset[str]
     symbol: str
+    largest: float
+    example: str
     required: bool = True
 
 
-def _channel(name: str, unit: str, words: str, symbol: str, required: bool = True) -> Channel:
-    return Channel(name, unit, frozenset([name, *words.split(", ")]), symbol, required)
+def _names(text: str) -> frozenset[str]:
+    return frozenset(text.split(", "))
 
 
 CHANNELS = (
-    _channel("time", "s", "elapsed time, test time, time stamp, timestamp", "t"),
-    _channel(
+    Channel("time", "s", _names("time, elapsed time, test time, time stamp, timestamp"), "t", 1e12, "s"),
+    Channel(
         "deflection",
         "m",
-        "tire deflection, tyre deflection, radial deflection, displacement, stroke, compression, travel, "
-        "lvdt",
+        _names(
+            "deflection, tire deflection, tyre deflection, radial deflection, displacement, stroke, compression, "
+            "travel, lvdt"
+        ),
         "x",
+        largest=1e3,
+        example="mm",
     ),
-    _channel(
+    Channel(
         "radius",
         "m",
-        "surface radius, radius of curvature, curvature radius, bump radius, obstacle radius, rb",
+        _names(
+            "radius, surface radius, radius of curvature, curvature radius, bump radius, obstacle radius, rb"
+        ),
         "R",
+        largest=math.inf,
+        example="cm",
         required=False,
     ),
-    _channel(
+    Channel(
         "force",
         "N",
-        "radial force, vertical force, normal force, compressive force, load, radial load, vertical load, "
-        "load cell, loadcell",
+        _names(
+            "force, radial force, vertical force, normal force, compressive force, load, radial load, "
+            "vertical load, load cell, loadcell"
+        ),
         "F",
+        largest=1e8,
+        example="N",
     ),
-    _channel(
+    Channel(
         "pressure",
         "Pa",
-        "inflation pressure, gauge pressure, absolute pressure, tire pressure, tyre pressure",
+        _names(
+            "pressure, inflation pressure, gauge pressure, absolute pressure, tire pressure, tyre pressure"
+        ),
         "p",
+        largest=1e9,
+        example="kPa",
         required=False,
     ),
-    _channel("temperature", "K", "temp, tire temperature, tyre temperature", "T", required=False),
-    _channel("speed", "m/s", "forward speed, riding speed, travel speed, vehicle speed", "v", required=False),
+    Channel(
+        "temperature",
+        "K",
+        _names("temperature, temp, tire temperature, tyre temperature"),
+        "T",
+        largest=1e4,
+        example="degC",
+        required=False,
+    ),
+    Channel(
+        "speed",
+        "m/s",
+        _names("speed, forward speed, riding speed, travel speed, vehicle speed"),
+        "v",
+        largest=1e4,
+        example="m/s",
+        required=False,
+    ),
     # a force that a simulation gave: read only where the user names its column
-    Channel("believed_force", "N", frozenset(), "", required=False),
+    Channel("believed_force", "N", frozenset(), "", largest=1e8, example="N", required=False),
 )
 """The channels in the order of the house form of a recording."""
+
+EXAMPLE_UNITS = {channel.name: channel.example for channel in CHANNELS}
+"""The unit of each channel that advice names."""
 
 UNIT_OF = {channel.name: channel.unit for channel in CHANNELS}
 """The SI unit of each channel."""

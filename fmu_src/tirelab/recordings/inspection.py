@@ -180,7 +180,7 @@ def _channels(found: Understood) -> list[ChannelFound]:
     for name, values in found.recording.channels():
         if name == "radius" and found.plan.settings.part and "radius" not in found.plan.matches:
             continue
-        unit, factor = SHOWN_IN.get(name, (_si(name), 1.0))
+        unit, factor = SHOWN_IN.get(name, (UNIT_OF[name], 1.0))
         finite = values[np.isfinite(values)] * factor
         span = _span(finite, unit, flat=len(finite) < len(values))
         step = None if name in ("time", "radius") or not len(finite) else step_of(finite)
@@ -209,12 +209,6 @@ def _span(finite: FloatArray, unit: str, flat: bool) -> str:
         return "flat"
     low, high = f"{finite.min():.5g}", f"{finite.max():.5g}"
     return f"{low}{f' to {high}' if high != low else ''} {unit}{', flat' if flat else ''}"
-
-
-def _si(name: str) -> str:
-    return {"time": "s", "force": "N", "believed_force": "N", "temperature": "K", "speed": "m/s"}.get(
-        name, ""
-    )
 
 
 def _settings(found: Understood) -> dict[str, Any]:

@@ -12,7 +12,6 @@ import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
-from .asking import EXAMPLE_UNITS
 from .channels import UNIT_OF
 from .choices import Choices
 from .description import facts, html_table, one_line
@@ -26,6 +25,7 @@ from .memory import memory_available, readable_size
 from .metadata import Settings, read_sidecar
 from .origin import Origin
 from .pieces import Piece, split_piece
+from .rows import OPTIONAL
 from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
 from .units import conversion
 
@@ -36,7 +36,7 @@ __all__ = ["Recording", "RecordingError", "Understood", "read_recording", "under
 
 FloatArray = NDArray[np.float64]
 
-_HOUSE_UNITS = {**EXAMPLE_UNITS, "deflection": "cm", "temperature": "K"}
+_HOUSE_UNITS = {**UNIT_OF, "deflection": "cm", "radius": "cm", "pressure": "kPa"}
 _SIGNIFICANT_DIGITS = 12
 
 
@@ -186,11 +186,7 @@ class Recording:
         )
 
     def _repr_html_(self) -> str:
-        extra = [
-            (name, "recorded")
-            for name in ("pressure", "temperature", "speed", "believed_force")
-            if getattr(self, name) is not None
-        ]
+        extra = [(name, "recorded") for name in OPTIONAL if getattr(self, name) is not None]
         notes = [("note", note) for note in self.notes]
         return html_table(self.name, [*self._facts(), *extra, *notes])
 

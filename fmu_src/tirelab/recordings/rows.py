@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .channels import CHANNELS
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
 from .origin import Origin
@@ -20,8 +21,8 @@ MOST_BLANK = 0.1
 MOST_NAMED = 12
 """How many rows a note names one by one."""
 
-OPTIONAL = ("pressure", "temperature", "speed", "believed_force")
-"""The channels a recording can do without."""
+OPTIONAL = tuple(channel.name for channel in CHANNELS if not channel.required and channel.name != "radius")
+"""The channels a recording can do without; a sample without its surface is none."""
 
 
 @dataclass(frozen=True)

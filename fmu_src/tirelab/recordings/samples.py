@@ -1,9 +1,11 @@
 """Checks of single samples: finite, plausible, time that increases, no radius of zero."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import UNIT_OF
+from .channels import CHANNELS, UNIT_OF
 from .formats import RecordingError
 
 FloatArray = NDArray[np.float64]
@@ -20,15 +22,7 @@ MOST_TESTS = 50
 DAY, LONGEST_PAUSE = 86_400.0, 3600.0
 """A clock without a date begins anew after so long [s]; what is recorded does not stop for longer than the latter."""
 
-LARGEST_PLAUSIBLE = {
-    "time": 1e12,
-    "deflection": 1e3,
-    "force": 1e8,
-    "pressure": 1e9,
-    "temperature": 1e4,
-    "speed": 1e4,
-    "believed_force": 1e8,
-}
+LARGEST_PLAUSIBLE = {channel.name: channel.largest for channel in CHANNELS if math.isfinite(channel.largest)}
 """Magnitudes [SI] that no rig and no ride reaches: the unit of a larger number is wrong."""
 
 
@@ -111,7 +105,7 @@ def check_time(time: FloatArray) -> None:
 def check_values(name: str, values: FloatArray) -> None:
     """Refuse what is not finite or not plausible, by its least and greatest value."""
     most = LARGEST_PLAUSIBLE[name]
-    least = 0.0 if name == "temperature" else -most
+    least = 0.0 if UNIT_OF[name] == "K" else -most
     if least <= float(values.min()) and float(values.max()) <= most:
         return
     index = int(np.argmin((least <= values) & (values <= most)))
