@@ -65,11 +65,11 @@ def command(
     if not isinstance(model, TireModel):
         _correction(model, native, output)
         return
-    if model.remainder is not None:
-        output.note(f"the FMU has {model.remainder}")
     if native:
         _native(model, int(fmi), output)
         return
+    if model.remainder is not None:
+        output.note(f"the FMU has {model.remainder}")
     if fmi == "3":
         raise TirelabError("the Python FMU is FMI 2.0 only; add --native for FMI 3.0")
 

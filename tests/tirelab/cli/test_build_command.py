@@ -115,6 +115,14 @@ def test_the_simulation_and_the_fmu_agree_with_a_remainder(rippled: Rippled, tmp
     )
 
 
+def test_a_remainder_in_a_native_fmu_is_refused_in_one_sentence(rippled: Rippled, tmp_path: Path) -> None:
+    done = build("--from", rippled.out, "--with-remainder", "--native", "--out", tmp_path)
+    assert done.exit_code == 2
+    assert "a learned remainder runs in the Python FMU only; leave out --native" in done.output
+    assert "the FMU has" not in done.output
+    assert not (tmp_path / "BicycleTire.fmu").exists()
+
+
 def test_a_remainder_is_no_baseline(rippled: Rippled, tmp_path: Path) -> None:
     built("--from", rippled.out, "--with-remainder", "--out", tmp_path)
     file = rippled.out.parent / "r1.csv"

@@ -58,7 +58,9 @@ def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFm
     Raises TirelabError where the folder cannot be written, the binaries are not there, or the FMU is not valid.
     """
     if tire.remainder is not None:
-        raise TirelabError("a learned remainder runs in the Python FMU only; leave out --native")
+        raise TirelabError(
+            "a learned remainder runs in the Python FMU only; leave out --native, or build the tire without it"
+        )
     description = described(tire)
     members = documentation.pages(tire, description, None, fmi=fmi)
     key = "guid"
