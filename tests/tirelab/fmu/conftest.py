@@ -43,6 +43,16 @@ def either_fmu(
 
 
 @pytest.fixture(scope="session")
+def three_fmus(article_fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The article's tire as each kind: "Python", "FMI 2" and "FMI 3"."""
+    natives = {
+        f"FMI {fmi}": build_native_fmu(TireModel(), tmp_path_factory.mktemp(f"fmi{fmi}"), fmi=fmi).path
+        for fmi in (2, 3)
+    }
+    return {"Python": article_fmu, **natives}
+
+
+@pytest.fixture(scope="session")
 def run_host() -> Callable[..., str]:
     """Runs a host script in isolation and returns what it printed; its failure is the test's."""
     return _run_host
@@ -60,7 +70,7 @@ def run_fmpy() -> Callable[[list[Path], list[list[Any]]], list[Any]]:
     return run
 
 
-def _tbb_folder() -> str:
+def tbb_folder() -> str:
     """The folder of the oneTBB that ecospy needs: where pip put it, and where the linker does not look."""
     try:
         files = metadata.files("tbb") or []
@@ -82,7 +92,7 @@ def proxyfmu() -> Path:
 
 def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) -> str:
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    environment["LD_LIBRARY_PATH"] = _tbb_folder()
+    environment["LD_LIBRARY_PATH"] = tbb_folder()
     with tempfile.TemporaryDirectory() as folder:  # proxyfmu writes its logs where it stands
         result = subprocess.run(
             [sys.executable, "-I", str(HOSTS / script), *map(str, arguments)],
@@ -98,26 +108,37 @@ def _run_host(script: str, *arguments: Any, job: Any, timeout: float = 120.0) ->
     return result.stdout
 
 
-@pytest.fixture(scope="session")
-def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The FMU add.fmu of OpenModelica (y = u1 + u2) that the package gemseo-fmu ships, without what that needs."""
-    folder = tmp_path_factory.mktemp("shipped")
-    words = [
-        "download",
-        "--quiet",
-        "--no-deps",
-        "--only-binary",
-        ":all:",
-        "--dest",
-        str(folder),
-        "gemseo-fmu==3.1.1",
-    ]
+def wheel_of(requirement: str, folder: Path) -> zipfile.ZipFile:
+    """The wheel of a package, without what the package needs; skips where it cannot be had."""
+    words = ["download", "--quiet", "--no-deps", "--only-binary", ":all:", "--dest", str(folder), requirement]
     done = subprocess.run([sys.executable, "-m", "pip", *words], capture_output=True, timeout=300)
     wheels = list(folder.glob("*.whl"))
     if done.returncode or not wheels or sys.platform != "linux":
-        pytest.skip("the package gemseo-fmu cannot be had here, or not for this machine")
-    with zipfile.ZipFile(wheels[0]) as wheel:
+        pytest.skip(f"the package {requirement} cannot be had here, or not for this machine")
+    return zipfile.ZipFile(wheels[0])
+
+
+@pytest.fixture(scope="session")
+def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU add.fmu of OpenModelica (y = u1 + u2) that the package gemseo-fmu ships."""
+    folder = tmp_path_factory.mktemp("shipped")
+    with wheel_of("gemseo-fmu==3.1.1", folder) as wheel:
         return Path(wheel.extract("gemseo_fmu/problems/fmu_files/linux/add.fmu", folder))
+
+
+@pytest.fixture(scope="session")
+def cosim_on_windows(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The program cosim of the Open Simulation Platform for Windows, which the package pycosim ships."""
+    folder, place = tmp_path_factory.mktemp("cosim"), "osp_cosim/win64/bin/"
+    with wheel_of("pycosim==0.6.5", folder) as wheel:
+        wheel.extractall(folder, [name for name in wheel.namelist() if name.startswith(place)])
+    return folder / place / "cosim.exe"
+
+
+@pytest.fixture(scope="session")
+def tbb() -> str:
+    """The folder of the oneTBB that ecos needs."""
+    return tbb_folder()
 
 
 @pytest.fixture(scope="session")
