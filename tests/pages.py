@@ -4,7 +4,10 @@ A block ```console holds commands behind `$ ` and what each prints below; a line
 are alike where their words are the same and their numbers differ by at most a twentieth, or three of the last digit
 shown; versions, GUIDs, rules and pictures of a terminal, and the width of lines are left out.
 
-`python tests/pages.py PAGE` runs the sessions of a page and prints what they print today.
+A command that takes hours is run with smaller numbers, and the shapes of the two texts are compared: without numbers,
+and of a table the first column alone.
+
+`python tests/pages.py PAGE` runs the sessions of a page, as the tests do, and prints what they print today.
 """
 
 from __future__ import annotations
@@ -16,8 +19,11 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import accumulate, groupby
 from pathlib import Path
+
+import numpy as np
+import polars as pl
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -29,12 +35,32 @@ PAGES = (
 CLOSE, LAST_DIGITS = 0.05, 3
 """Shown and printed numbers differ by at most this part, or by so many units of the last digit that is shown."""
 
-LONGEST = 560.0
-"""A command that takes longer [s] has failed: the slowest is a diagnosis, 20 s on an idle machine."""
+LONGEST, LONGEST_SLOW = 560.0, 3600.0
+"""A command that takes longer [s] has failed: a diagnosis takes 20 s on an idle machine, a small proof minutes."""
 
-_PROGRAMS = r"(?:tirelab|python3?|pytest|py)\b"
+SMALLER = {
+    "tirelab prove --kind all --seed 1732050807 --trials 200 --out DIR": "--trials 5",
+    "tirelab prove --kind none --seed 777001 --trials 40 --out DIR": "--trials 1",
+    "tirelab prove --seed 777002 --trials 70 --out DIR": "--trials 1",
+    "tirelab prove --kind pressure --seed 860221406 --trials 36 --out DIR": "--trials 1",
+    "python -m tirelab.validation.calibrate --seed 1202056903 --seed 1553160433 --seed 2236067977 "
+    "--trials 200 --out FILE": "--trials 10",
+    "python -m tirelab.validation.coverage --seed 6 --draws 200": "--draws 2",
+    "python -m tirelab.validation.form_errors --seed 1": "--draws 12",
+    "python -m tirelab.validation.plans --seed 20261122 --trials 12 --out FILE": "--trials 1",
+    "python tests/sensitivity.py --seed 701408733 --trials 200 --each 6": "--trials 1 --each 1 "
+    "--only selection/search.PRIOR_ODDS --out FILE",
+}
+"""Commands that take hours, and the words behind them, of which the last counts, that make them small."""
+
+SLOW = ("tirelab diagnose", "tirelab plan --stroke", "tirelab plan --rig", "tirelab build --from", *SMALLER)
+"""What a command begins with that takes long, or stands on one that does; but for the page of the five minutes."""
+
+FIVE_MINUTES = "examples/docs/five_minutes.md"
+
+_PROGRAMS = r"(?:tirelab|python3?|pytest|py|pip|sh|rm|cp|\.)"
 _NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-_LEFT_OUT = re.compile(r"\{[0-9a-f-]{36}\}|\b\d+\.\d+\.\d+\b|[─│┌┐└┘]+|[⠀-⣿▁]+")
+_LEFT_OUT = re.compile(r"\{[0-9a-f-]{36}\}|\b\d+\.\d+\.\d+\b|[─-╿]+|[⠀-⣿▁]+")
 GAP = "..."
 
 
@@ -42,8 +68,27 @@ GAP = "..."
 class Step:
     """A command of a page and what the page shows below it; None where it shows nothing."""
 
+    page: str
     command: str
     shown: str | None
+
+    @property
+    def slow(self) -> bool:
+        """Whether it is run with the tests marked slow only."""
+        return self.page != FIVE_MINUTES and self.command.startswith(SLOW)
+
+    def run(self, clone: Path, home: Path) -> subprocess.CompletedProcess[str]:
+        """Run it in a copy of the clone, a long one with smaller numbers."""
+        words = SMALLER.get(self.command)
+        command = self.command if words is None else f"{self.command} {words}"
+        return run(command, clone, home, LONGEST_SLOW if self.slow else LONGEST)
+
+    def fault(self, printed: str) -> str:
+        """Return where what it printed is not what is shown, as a sentence; empty where it is."""
+        if self.shown is None:
+            return ""
+        seen = shape if self.command in SMALLER else str
+        return difference(seen(self.shown), seen(printed))
 
 
 def blocks(page: str, language: str) -> list[str]:
@@ -58,7 +103,7 @@ def steps(page: str) -> list[Step]:
     for block in blocks(page, "console"):
         for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
             command, _, shown = part.partition("\n")
-            found.append(Step(command, shown if shown.strip() else None))
+            found.append(Step(page, command, shown if shown.strip() else None))
     return found
 
 
@@ -68,11 +113,11 @@ def commands(page: str) -> list[str]:
     lines = [line for block in blocks(page, "sh") for line in block.splitlines() if line.strip()]
     lines += [step.command for step in steps(page)]
     prose = re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL).replace("\n", " ")
-    within = re.findall(rf"`({_PROGRAMS} [^`]+)`", prose)
+    within = [span for span in re.findall(r"`([^`]+)`", prose) if re.match(rf"{_PROGRAMS} \S", span)]
     return list(dict.fromkeys([*lines, *within]))
 
 
-def run(command: str, folder: Path, home: Path) -> subprocess.CompletedProcess[str]:
+def run(command: str, folder: Path, home: Path, longest: float = LONGEST) -> subprocess.CompletedProcess[str]:
     """Run a command in a shell in a folder, with this Python's programs first, and no settings from outside."""
     keep = {k: v for k, v in os.environ.items() if k in ("LANG", "LC_ALL", "TMPDIR", "MPLCONFIGDIR")}
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -85,7 +130,7 @@ def run(command: str, folder: Path, home: Path) -> subprocess.CompletedProcess[s
         stderr=subprocess.STDOUT,  # as a terminal shows both
         text=True,
         encoding="utf-8",
-        timeout=LONGEST,
+        timeout=longest,
         check=False,
     )
 
@@ -93,7 +138,7 @@ def run(command: str, folder: Path, home: Path) -> subprocess.CompletedProcess[s
 def copied(folder: Path) -> Path:
     """Copy what a reader's commands may use of the repository, and nothing that they wrote."""
     clone = folder / "clone"
-    for name in ("examples", "fmu_src"):
+    for name in ("examples", "fmu_src", "tests"):
         ignored = shutil.ignore_patterns("__pycache__", "recording.toml", "*.egg-info")
         shutil.copytree(REPOSITORY / name, clone / name, ignore=ignored)
     for name in ("build_fmu.py", "pyproject.toml", "README.md"):
@@ -120,6 +165,12 @@ def difference(shown: str, printed: str) -> str:
     if parts and not open_end and at < len(have):
         return f"more is printed: {' '.join(have[at : at + 12])}"
     return ""
+
+
+def shape(text: str) -> str:
+    """Return what of a text does not depend on how many trials there were."""
+    cells = (re.split(r"[│┃]", line) for line in text.splitlines())
+    return _NUMBER.sub("#", "\n".join(cell[1] if len(cell) > 1 else cell[0] for cell in cells))
 
 
 def _words(text: str) -> list[str]:
@@ -150,13 +201,42 @@ def _first_difference(shown: list[str], printed: list[str]) -> str:
     return f"shown {' '.join(shown[around])!r}, printed {' '.join(printed[around])!r}"
 
 
+def prepare(clone: Path) -> None:
+    """Write the files that the pages speak of: three recordings, a damper's FMU, the limits of a rig."""
+    from foreign_models import damper
+
+    ride = pl.read_csv(clone / "examples" / "recordings" / "held_out.csv").filter(
+        pl.col("radius [cm]").is_infinite()
+    )
+    law = 540.0 * pl.col("deflection [cm]").clip(0.0) ** 1.4
+    ride.with_columns(law.alias("F model [N]")).drop("radius [cm]").write_csv(clone / "ride.csv")
+
+    time = np.arange(0.0, 20.0, 0.05)
+    depth = 10.0 * (1.0 - np.cos(0.4 * np.pi * time))
+    tared = {"deflection [mm]": 150.0 + depth, "force [N]": 200.0 + 540.0 * (0.1 * depth) ** 1.4}
+    pl.DataFrame({"time [s]": time, **tared}).write_csv(clone / "press.csv", float_precision=3)
+
+    time = np.arange(0.0, 40.0, 0.01)
+    stroke = 0.01 * np.sin(2.0 * np.pi * np.cumsum(np.repeat([0.2, 1.0], 2000)) * 0.01)
+    change = np.append(0.0, np.diff(stroke))
+    slip = np.fromiter(
+        accumulate(change, lambda y, dx: min(max(y + dx / 4e-4, -1.0), 1.0), initial=0.0), float
+    )[1:]
+    force = 1500.0 * change / 0.01 + 60.0 * slip + 3.0 * np.random.default_rng(1).normal(size=time.size)
+    moved = {"stroke [mm]": 1e3 * stroke, "force [N]": force}
+    pl.DataFrame({"time [s]": time, **moved}).write_csv(clone / "damper.csv", float_precision=4)
+    damper(clone)
+    (clone / "rig.toml").write_text(blocks("examples/docs/plan.md", "toml")[0], encoding="utf-8")
+
+
 def main() -> None:
     """Run the sessions of a page and print them as they are today."""
+    sys.path.insert(0, str(REPOSITORY / "tests" / "tirelab" / "fmu"))
     with tempfile.TemporaryDirectory() as name:
         clone = copied(Path(name))
+        prepare(clone)
         for step in steps(sys.argv[1]):
-            done = run(step.command, clone, Path(name))
-            print(f"$ {step.command}\n{done.stdout}", end="")
+            print(f"$ {step.command}\n{step.run(clone, Path(name)).stdout}", end="")
 
 
 if __name__ == "__main__":

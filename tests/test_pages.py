@@ -1,38 +1,92 @@
-"""Every command in the README and the pages is understood, and every session prints what is shown."""
+"""Every command in the README and the pages is run by a test, and every session prints what is shown."""
 
 from __future__ import annotations
 
 import importlib
 import re
 import shlex
+import shutil
 from pathlib import Path
 from typing import Any
 
 import click
-import polars as pl
 import pytest
-from pages import PAGES, REPOSITORY, blocks, commands, copied, difference, run, steps
+from pages import (
+    FIVE_MINUTES,
+    LONGEST_SLOW,
+    PAGES,
+    REPOSITORY,
+    SMALLER,
+    Step,
+    blocks,
+    commands,
+    copied,
+    difference,
+    prepare,
+    run,
+    shape,
+    steps,
+)
 from tirelab.cli import main
 
-FIVE_MINUTES = "examples/docs/five_minutes.md"
-
-INSTALLING = ("python3 -m venv", "python -m pip")
-"""The README's two commands begin with the first: test_readme.py runs one from a clean clone; the other runs us. Lines
-for pip are run by test_release.py."""
+INSTALLING = ("python3 -m venv", "python -m pip", "pip install")
 
 PLACEHOLDERS = {"N": "1", "S": "1"}
 """Words of a page that stand for numbers."""
 
 EACH = [pytest.param(page, c, id=f"{Path(page).stem}: {c}") for page in PAGES for c in commands(page)]
 
-SLOW = {"examples/docs/recordings.md"}
-"""Pages whose sessions diagnose more than once."""
+MAIN, TESTS = (c for c in commands("README.md") if c.startswith("python3 -m venv"))
+
+ELSEWHERE = {
+    MAIN: "tests/test_readme.py::test_the_main_command_from_a_clean_clone",
+    ". .venv/bin/activate": "tests/test_readme.py::test_tirelab_is_a_command_before_the_reader_types_it",
+    "tirelab open": "tests/tirelab/local_page/test_open.py::test_from_drop_to_download",
+    "tirelab open [DIR]": "tests/tirelab/local_page/test_open.py::test_from_drop_to_download",
+    "tirelab diagnose press/*.csv --fmu model.fmu": "tests/tirelab/diagnosis/test_simulation_correction.py::"
+    "test_what_is_printed_says_what_was_taken_and_that_it_is_native_code",
+    "python examples/gallery.py": "tests/examples/test_gallery.py::test_all_pictures_are_the_scripts",
+    "python tests/constants.py": "tests/test_constants.py::test_the_page_is_what_the_source_says",
+    "python -m tirelab.fmu.native.make": "tests/tirelab/fmu/native/test_make.py::"
+    "test_the_other_binaries_are_those_of_the_sources",
+    **{
+        command: "tests/test_release.py::test_the_pages_words_install_and_uninstall"
+        for command in commands(FIVE_MINUTES)
+        if command.startswith("python -m pip")
+    },
+    **{
+        command: "tests/test_pages.py::test_the_line_for_a_shell_completes_commands"
+        for command in commands("examples/docs/command_line.md")
+        if "_TIRELAB_COMPLETE=" in command
+    },
+}
+"""Commands that another test runs, each with its test."""
+
+CLOCKS = {
+    "python tests/benchmarks/bench_report.py": "# samples: written in # s, # MB, ready in # ms",
+    "pytest -s -n 0 tests/benchmarks/bench_native.py": "bare against the reference: #, the median of # turns",
+    "pytest -s -n 0 tests/benchmarks/bench_calls.py -k first_instance": "first instance: # s",
+}
+"""Commands that measure a time, each with the shape of a line that it prints. Their bars hold on an idle machine."""
+
+NOT_RUN = {
+    TESTS: "it runs all tests, this one too",
+    "pytest -m slow": "it runs all slow tests, those of the pages too",
+    "rm -rf .venv": "it removes what runs the tests",
+    "pip install -e '.[formats]'": "it is part of the extra `test`, with which the tests are installed",
+    "sh tests/tirelab/fmu/hosts/install.sh": "it installs programs of Debian on the machine",
+    "python tests/benchmarks/bench_real.py FOLDER": "its recordings may not be kept here; "
+    "tests/examples/test_real_recordings.py runs its parts where they are",
+}
+"""Commands that no test can run, each with the reason."""
 
 SESSIONS = [
-    pytest.param(page, marks=pytest.mark.slow if page in SLOW else (), id=Path(page).stem)
+    pytest.param(page, slow, marks=pytest.mark.slow if slow else (), id=Path(page).stem)
     for page in PAGES
-    if steps(page)
+    for slow in sorted({step.slow for step in steps(page)})
 ]
+
+IN_SESSIONS = {step.command for page in PAGES for step in steps(page)}
 
 
 def understood(command: click.Command, words: list[str], program: str) -> None:
@@ -93,34 +147,92 @@ def test_every_command_is_understood(page: str, command: str) -> None:
     elif program.startswith("python"):
         python_words(words)
     else:
-        assert program in ("cp", "rm", "."), f"{page}: nobody knows {program}"
+        assert program in ("cp", "rm", ".", "sh"), f"{page}: nobody knows {program}"
 
 
-def prepare(clone: Path) -> None:
-    """Write the file that the page on recordings speaks of: a ride with the force of a simulation beside it."""
-    ride = pl.read_csv(clone / "examples" / "recordings" / "held_out.csv").filter(
-        pl.col("radius [cm]").is_infinite()
-    )
-    law = 540.0 * pl.col("deflection [cm]").clip(0.0) ** 1.4
-    ride.with_columns(law.alias("F model [N]")).drop("radius [cm]").write_csv(clone / "ride.csv")
+def is_run(command: str) -> bool:
+    """Whether a test runs a command of a page: in a session, perhaps with more options, or as a register says."""
+    in_session = any(shown == command or shown.startswith(f"{command} ") for shown in IN_SESSIONS)
+    if command.startswith("pytest ") and command not in (*CLOCKS, *NOT_RUN):  # part of these tests
+        *_, path = command.split()
+        tests = [path] if path.endswith(".py") else sorted(map(str, (REPOSITORY / path).glob("test_*.py")))
+        return any("-m slow" not in command or "mark.slow" in (REPOSITORY / t).read_text() for t in tests)
+    return in_session or command in (*SMALLER, *ELSEWHERE, *CLOCKS, *NOT_RUN)
 
 
-@pytest.mark.parametrize("page", SESSIONS)
-def test_a_session_prints_what_is_shown(page: str, tmp_path: Path) -> None:
-    """In a copy of the clone, from the first command of the page to the last."""
+@pytest.mark.parametrize(("page", "command"), EACH)
+def test_every_command_is_run(page: str, command: str) -> None:
+    assert is_run(command), f"show what {command!r} prints in a block ```console, or say which test runs it"
+
+
+def test_a_command_that_nobody_runs_is_seen() -> None:
+    for command in (
+        "tirelab compare other.csv",
+        "pytest tests/nowhere",
+        "python -m tirelab.validation.score",
+    ):
+        assert not is_run(command)
+
+
+def test_the_registers_speak_of_commands_and_tests_that_are_there() -> None:
+    there = {command for page in PAGES for command in commands(page)}
+    assert {*SMALLER, *ELSEWHERE, *CLOCKS, *NOT_RUN} - there == set()
+    for place in ELSEWHERE.values():
+        file, _, name = place.partition("::")
+        assert re.search(rf"^def {name}\(", (REPOSITORY / file).read_text(encoding="utf-8"), re.MULTILINE), (
+            place
+        )
+
+
+@pytest.mark.parametrize(("page", "slow"), SESSIONS)
+def test_a_session_prints_what_is_shown(page: str, slow: bool, tmp_path: Path) -> None:
+    """In a copy of the clone, from the first command of the page to the last; the slow ones with the slow tests."""
     clone = copied(tmp_path)
     prepare(clone)
-    before = {path.relative_to(clone) for path in clone.rglob("*")}
     wrong = []
     for step in steps(page):
-        done = run(step.command, clone, tmp_path)
+        if step.slow and not slow:
+            continue
+        done = step.run(clone, tmp_path)
         assert done.returncode == 0, f"{step.command}\n{done.stdout}"
-        if step.shown is not None and (fault := difference(step.shown, done.stdout)):
+        if fault := step.fault(done.stdout):
             wrong.append(f"{step.command}: {fault}")
     assert wrong == []
-    # a session shows files being made: those that its pages name are there
-    made = {path.relative_to(clone) for path in clone.rglob("*") if path.is_file()} - before
-    assert made
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", sorted(set(SMALLER) - IN_SESSIONS))
+def test_a_long_command_runs_with_smaller_numbers(command: str, tmp_path: Path) -> None:
+    done = Step("", command, None).run(copied(tmp_path), tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert done.stdout.strip()
+    assert "failed" not in done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", CLOCKS)
+def test_a_clock_prints_its_line(command: str, tmp_path: Path) -> None:
+    if "bench_report" in command and not shutil.which("chromium"):
+        pytest.skip("no chromium on this machine")
+    printed = run(command, copied(tmp_path), tmp_path, LONGEST_SLOW).stdout
+    assert CLOCKS[command] in shape(printed), printed
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_line_for_a_shell_completes_commands(shell: str, tmp_path: Path) -> None:
+    if not shutil.which(shell):
+        pytest.skip(f"no {shell} on this machine")
+    (line,) = (c for c in commands("examples/docs/command_line.md") if f"={shell}_source" in c)
+    asked = {
+        "bash": "COMP_WORDS=(tirelab comp) COMP_CWORD=1; _tirelab_completion tirelab; echo ${COMPREPLY[@]}",
+        "zsh": "whence -f _tirelab_completion",
+        "fish": 'complete -C "tirelab comp"',
+    }[shell]
+    begin = "autoload -Uz compinit; compinit -u; " if shell == "zsh" else ""
+    script = tmp_path / "script"
+    script.write_text(f"{begin}{line}\n{asked}\n", encoding="utf-8")
+    printed = run(f"{shell} {script}", tmp_path, tmp_path).stdout
+    assert ("_TIRELAB_COMPLETE=zsh_complete" if shell == "zsh" else "compare") in printed
 
 
 def test_the_five_minutes_of_the_readme_are_those_of_their_page(repository: Path) -> None:
@@ -181,3 +293,17 @@ def test_lines_for_powershell_are_powershell_and_the_same_commands() -> None:
 )
 def test_a_difference_is_seen_and_a_tolerated_one_is_not(shown: str, printed: str, alike: bool) -> None:
     assert (difference(shown, printed) == "") is alike
+
+
+@pytest.mark.parametrize(
+    ("shown", "printed", "alike"),
+    [
+        ("200 trials", "5 trials", True),
+        ("200 trials", "5 draws", False),
+        ("│ exact set │ 80.0 % │", "│ exact set │ no trial │", True),
+        ("│ exact set │ 80.0 % │", "│ a set │ 80.0 % │", False),
+        ("│ the noise │ 80.0 % │\n│ floor     │        │", "│ the noise floor │ 60 % │", True),
+    ],
+)
+def test_another_shape_is_seen_and_other_numbers_are_not(shown: str, printed: str, alike: bool) -> None:
+    assert (difference(shape(shown), shape(printed)) == "") is alike
