@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from aims import beside
 
 ROWS = 1_000_000
 ROUNDS = 3
@@ -45,7 +46,8 @@ def main() -> None:
         write(path)
         seconds = min(cpu_seconds(path, Path(folder)) for _ in range(ROUNDS))
     size = 1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-    print(f"compare of {ROWS} samples: {seconds:.2f} s of CPU, {size / 1e9:.2f} GB")
+    print(f"compare of {ROWS} samples: {beside(seconds, 's', MOST_SECONDS)} of CPU")
+    print(f"memory {beside(size / 1e9, 'GB', MOST_BYTES / 1e9)}")
     assert seconds < MOST_SECONDS
     assert size < MOST_BYTES
 
