@@ -174,6 +174,18 @@ def test_a_command_that_nobody_runs_is_seen() -> None:
         assert not is_run(command)
 
 
+def test_commands_stand_in_blocks_that_are_looked_through() -> None:
+    """Not under another name of a shell, nor in a block without a name."""
+    for page in PAGES:
+        text = (REPOSITORY / page).read_text(encoding="utf-8")
+        named = set(re.findall(r"^```(\w+)", text, flags=re.MULTILINE))
+        assert named <= {"console", "sh", "powershell", "python", "toml", "mermaid"}, page
+        bare = re.findall(r"^```(\w*)\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+        assert [
+            b for name, b in bare if not name and re.match(r"(\$ )?(tirelab|python|pytest|pip) ", b)
+        ] == [], page
+
+
 def test_the_registers_speak_of_commands_and_tests_that_are_there() -> None:
     there = {command for page in PAGES for command in commands(page)}
     assert {*SMALLER, *ELSEWHERE, *CLOCKS, *NOT_RUN} - there == set()
