@@ -95,8 +95,9 @@ similar; where the name is another, change it in the one line of this block that
 tool writes the FMU's parameter <code>law.flat_coefficient</code> as <code>law_flat_coefficient</code>, write the ten
 modifiers of <code>fmu</code> in the same way.</li>
 <li>The Modelica compiler of OpenModelica imports FMUs for model exchange only, <code>importFMU(\"BicycleTire.fmu\")</code>:
-build the native FMU, <code>python build_fmu.py --native</code>, which has both. <code>model_exchange.py</code> beside this
-file simulates that in fmpy.</li>
+build the native FMU, <code>python build_fmu.py --native</code>, which has both, and take the block
+<code>BicycleTireOM</code> beside this one, which has the names that OpenModelica gives. <code>model_exchange.py</code>
+simulates that FMU in fmpy.</li>
 <li>Choose the FMU's communication step. With 3.5 kg on the wheel, held inputs and a master that runs its units one
 after the other 1 ms gives the force within about 1 % over a log.</li>
 </ol>

@@ -1,4 +1,4 @@
-"""The Modelica wrapper: its syntax, that it says of the FMU what the FMU says of itself, and that it compiles."""
+"""The Modelica wrappers: their syntax, that they say of the FMU what it says of itself, and that they compile."""
 
 from __future__ import annotations
 
@@ -15,12 +15,29 @@ from tirelab.fmu.native.pack import build_native_fmu
 
 parser = pytest.importorskip("pymoca.parser")
 
+NAMES = (
+    "flat_coefficient",
+    "convex_coefficient_drop",
+    "convex_coefficient_decay",
+    "concave_coefficient_rise",
+    "concave_coefficient_decay",
+    "flat_exponent",
+    "convex_exponent_drop",
+    "convex_exponent_decay",
+    "concave_exponent_rise",
+    "concave_exponent_decay",
+)
+WITH_A_RECORD = "record Law\n{parameters}\nend Law;\nLaw law;", "", "law."
+FLAT = "{parameters}", "law_", "law_"
+"""How a tool declares the FMU's parameters, what it writes before their names there, and where they are used."""
+
+BLOCKS = {"BicycleTire": ("BicycleTire_fmu", WITH_A_RECORD), "BicycleTireOM": ("BicycleTire_me_FMU", FLAT)}
+"""The class that each block names: that of tools with structured names; OpenModelica's importFMU writes MODEL_me_FMU
+and each dot as an underscore (its CodegenFMU.tpl and FMIImpl.c)."""
+
 IMPORTED = """
-block BicycleTire_fmu "What a tool makes of the FMU, on flat ground"
-  record Law
-    {parameters}
-  end Law;
-  Law law;
+block {name} "What a tool makes of the FMU, on flat ground"
+  {declared}
   Modelica.Blocks.Interfaces.RealInput deflection;
   Modelica.Blocks.Interfaces.RealInput surface_radius;
   Modelica.Blocks.Interfaces.RealOutput radial_force;
@@ -29,10 +46,10 @@ block BicycleTire_fmu "What a tool makes of the FMU, on flat ground"
 protected
   Real x = if deflection > 0 then 100 * deflection else 0;
 equation
-  radial_force = law.flat_coefficient * x ^ law.flat_exponent;
-  radial_stiffness = 100 * law.flat_coefficient * law.flat_exponent * x ^ (law.flat_exponent - 1);
+  radial_force = {law}flat_coefficient * x ^ {law}flat_exponent;
+  radial_stiffness = 100 * {law}flat_coefficient * {law}flat_exponent * x ^ ({law}flat_exponent - 1);
   in_tested_range = deflection < 0.03175;
-end BicycleTire_fmu;
+end {name};
 """
 
 AROUND = """
@@ -47,7 +64,7 @@ package Modelica
 end Modelica;
 
 model Ringing "A mass of 3 kg and a weight of 1000 N on a tire with another A"
-  BicycleTire tire(flat_coefficient = 600);
+  {block} tire(flat_coefficient = 600);
   Real x(start = 0.02, fixed = true);
   Real v(start = 0, fixed = true);
 equation
@@ -59,13 +76,22 @@ end Ringing;
 """
 
 
+def text_of(repository: Path, block: str) -> str:
+    return (repository / "examples" / "modelica" / f"{block}.mo").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
+def block(request: pytest.FixtureRequest) -> str:
+    """The name of each block."""
+    return str(request.param)
+
+
 @pytest.fixture(scope="module")
-def wrapper(repository: Path) -> Any:
-    """The block BicycleTire, parsed."""
-    text = (repository / "examples" / "modelica" / "BicycleTire.mo").read_text(encoding="utf-8")
-    tree = parser.parse(text)
-    assert tree is not None, "BicycleTire.mo is not Modelica"
-    return tree.classes["BicycleTire"]
+def wrapper(repository: Path, block: str) -> Any:
+    """The block, parsed."""
+    tree = parser.parse(text_of(repository, block))
+    assert tree is not None, f"{block}.mo is not Modelica"
+    return tree.classes[block]
 
 
 def _modified(symbol: Any) -> dict[str, Any]:
@@ -99,12 +125,11 @@ def test_inputs_outputs_and_units_are_the_fmus(wrapper: Any, tmp_path: Path) -> 
 def test_the_parameters_are_the_fmus(wrapper: Any, tmp_path: Path) -> None:
     """Ten constants of the law, each with the FMU's start, bounds and unit, and each handed to the FMU by its name."""
     fmu = build_native_fmu(TireModel(), tmp_path).path
-    (law,) = (
-        argument.value
-        for argument in wrapper.symbols["fmu"].class_modification.arguments
-        if str(argument.value.component) == "law"
-    )
-    handed = {str(a.value.component): str(a.value.modifications[0]) for a in law.modifications[0].arguments}
+    given = _modified(wrapper.symbols["fmu"])
+    if "law" in given:
+        handed = {str(a.value.component): str(a.value.modifications[0]) for a in given["law"].arguments}
+    else:
+        handed = {name.removeprefix("law_"): str(value) for name, value in given.items()}
     described = [
         v for v in fmpy.read_model_description(str(fmu)).modelVariables if v.causality == "parameter"
     ]
@@ -128,23 +153,30 @@ def test_the_article_s_force_is_never_negative(wrapper: Any, tmp_path: Path) -> 
             assert float(variable.min) == _modified(wrapper.symbols[variable.name])["min"].value == 0
 
 
-def test_the_import_is_named(wrapper: Any, repository: Path) -> None:
-    assert str(wrapper.symbols["fmu"].type) == "BicycleTire_fmu"
-    text = (repository / "examples" / "modelica" / "BicycleTire.mo").read_text(encoding="utf-8")
-    assert "dist/BicycleTire.fmu" in text
+def test_the_import_is_named(wrapper: Any, repository: Path, block: str) -> None:
+    assert str(wrapper.symbols["fmu"].type) == BLOCKS[block][0]
+    assert "dist/BicycleTire.fmu" in text_of(repository, block)
+
+
+def test_the_blocks_differ_in_the_import_only(repository: Path) -> None:
+    """What stands before the imported class, and from the equations to the text on the import."""
+    one, other = (text_of(repository, block) for block in BLOCKS)
+    for begin, end in (("  parameter Real", "  BicycleTire_"), ("equation", "<h4>Import</h4>")):
+        assert one[one.index(begin) : one.index(end)] == other[other.index(begin) : other.index(end)]
 
 
 def test_the_block_compiles_and_hands_its_parameters_on(
-    wrapper: Any, repository: Path, tmp_path: Path
+    wrapper: Any, block: str, repository: Path, tmp_path: Path
 ) -> None:
     """In rumoca, with a class in place of the imported FMU and the interfaces of the standard library: it rings."""
     rumoca = pytest.importorskip("rumoca")
-    block = (repository / "examples" / "modelica" / "BicycleTire.mo").read_text(encoding="utf-8")
-    parameters = [name for name, symbol in wrapper.symbols.items() if "parameter" in symbol.prefixes]
-    assert len(parameters) == 10
-    imported = IMPORTED.format(parameters="\n    ".join(f"parameter Real {name} = 1;" for name in parameters))
+    name, (declared, before, law) = BLOCKS[block]
+    assert [name for name, symbol in wrapper.symbols.items() if "parameter" in symbol.prefixes] == [*NAMES]
+    parameters = "\n".join(f"parameter Real {before}{parameter} = 1;" for parameter in NAMES)
+    imported = IMPORTED.format(name=name, declared=declared.format(parameters=parameters), law=law)
     model = tmp_path / "Ringing.mo"
-    model.write_text(AROUND + imported + block.replace("within ;", ""), encoding="utf-8")
+    text = text_of(repository, block).replace("within ;", "")
+    model.write_text(AROUND.format(block=block) + imported + text, encoding="utf-8")
     compiled = rumoca.Session().load(str(model), model="Ringing")
     found = compiled.simulate(t=(0, 0.1), dt=0.001)
     exact = solve_ivp(
