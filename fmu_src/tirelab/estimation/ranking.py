@@ -188,7 +188,7 @@ class _Board:
     judged: int = 0
 
     def floored(self) -> bool:
-        """Judge all sets under what the forms of the best one may miss; return whether that is another floor.
+        """Judge all sets under what the forms of the best one usually miss; return whether that is another floor.
 
         One floor for all sets: one of their own would favour those whose forms are thought to be good.
         """

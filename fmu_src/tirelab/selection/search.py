@@ -13,9 +13,10 @@ What the set leaves beyond the noise lies in these e samples, so with a residual
     2 ln p(V) = -(q - (n - e)) / V - e ln V,
 
 highest at V = (q - (n - e)) / e: a set is priced by e ln(what it leaves). V is a number of every set, found by the
-marginal likelihood. Below the floor, which follows from the measured errors of the forms, one remainder is like another
-and says nothing for a set; but forms may also be exact, and a set that leaves a remainder like the noise where the
-floor is far above it has them: wrong forms do not meet there by chance.
+marginal likelihood. What forms usually miss, f, follows from their measured errors. They may also be better: the
+density of a miss is flat below f, so one of tau or less has the chance tau / f, which is the price of a smaller V. A
+set that leaves far less than f has good forms, for wrong ones do not meet there by chance. Below the noise one miss is
+like another.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
@@ -51,46 +52,60 @@ GRID = 40
 
 @dataclass(frozen=True)
 class Discrepancy:
-    """samples: n; effective: e; lowest: V at the floor, highest: V of the whole misfit
-    exact: V of a remainder like the noise; below a higher floor it is allowed all the same.
+    """samples: n; effective: e; usual: V of what forms usually miss, highest: V of the whole misfit
+    exact: V of a remainder like the noise; where that is less than the usual V, it is the lowest.
     """
 
     samples: int
     effective: float
-    lowest: float
+    usual: float
     highest: float
     exact: float = math.inf
 
+    @property
+    def lowest(self) -> float:
+        """The lowest V."""
+        return min(self.exact, self.usual)
+
     def beside(self, variance: FloatArray) -> FloatArray:
-        """Return what the log likelihood holds beside -q / 2V, for several V."""
+        """Return what the log likelihood holds beside -q / 2V, for several V: with the price of a V below the usual."""
         e = self.effective
-        return np.asarray(0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance))
+        flat = 0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance)
+        missed = np.minimum(variance, self.usual) - 1.0
+        return np.asarray(flat + 0.5 * np.log(missed / (self.usual - 1.0)) if self.usual > 1.0 else flat)
 
     def likelihood(self, power: float, variance: float) -> float:
         """Return the log likelihood of a sum of squares left at one V."""
-        e = self.effective
-        return -0.5 * (power - (self.samples - e)) / variance - 0.5 * e * math.log(variance)
+        return -0.5 * power / variance + float(self.beside(np.array(variance)))
 
     def above(self, form_error: float) -> Discrepancy:
-        """Return the discrepancy of a set whose forms may always miss this much, a root mean square in units of the
+        """Return the discrepancy of a set whose forms usually miss this much, a root mean square in units of the
         noise.
         """
-        lowest = self.lowest + self._of(form_error)
-        return replace(self, lowest=lowest, highest=max(self.highest, 2.0 * lowest))
+        usual = self.usual + self._of(form_error)
+        return replace(self, usual=usual, highest=max(self.highest, 2.0 * usual))
 
     def blurred(self, error: float) -> Discrepancy:
         """Return the discrepancy where the reading adds this much whatever the forms are, in units of the noise."""
         return replace(self.above(error), exact=self.exact + self._of(error))
 
     def grid(self) -> FloatArray:
-        """Variances V to try: from the lowest to the highest, and what is below them."""
-        grid = np.geomspace(self.lowest, self.highest, GRID)
-        return np.append(grid, self.exact) if self.exact < self.lowest else grid
+        """Variances V to try: from the lowest to the highest."""
+        return np.geomspace(self.lowest, self.highest, GRID)
 
     def profile(self, power: float) -> tuple[float, float]:
-        """Return the log likelihood of a sum of squares left at its best V, and that V."""
-        best = (power - (self.samples - self.effective)) / self.effective
-        tried = {min(max(best, self.lowest), self.highest), min(self.exact, self.lowest)}
+        """Return the log likelihood of a sum of squares left at its best V, and that V.
+
+        Above the usual V it is highest where e V = q', with q' = q - (n - e); below it, where the price has the slope
+        1 / 2 (V - 1), at the larger root of (e - 1) V^2 - (q' + e) V + q' = 0.
+        """
+        e = self.effective
+        left = power - (self.samples - e)
+        tried = {min(max(left / e, self.usual), self.highest)}
+        if self.lowest < self.usual:
+            under = max((left + e) ** 2 - 4.0 * (e - 1.0) * left, 0.0)
+            root = (left + e + math.sqrt(under)) / (2.0 * (e - 1.0))
+            tried.add(min(max(root, self.lowest), self.usual))
         return max((self.likelihood(power, variance), variance) for variance in tried)
 
     def size(self, variance: float) -> float:
@@ -103,13 +118,13 @@ class Discrepancy:
 
 
 def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
-    """Return the discrepancy's law for a misfit (n,) in units of the noise, and the part of it that is the floor."""
+    """Return the discrepancy's law for a misfit (n,) in units of the noise; floor: part of it that forms miss."""
     n = misfit.size
     power = float(misfit @ misfit)
     effective = min(EFFECTIVE, n / 3.0)
-    lowest = 1.0 + floor**2 * max(power - n, 0.0) / effective
-    highest = max(2.0 * power / effective, 2.0 * lowest)
-    return Discrepancy(n, effective, lowest, highest, 1.0 + LIKE_NOISE**2 * n / effective)
+    usual = 1.0 + floor**2 * max(power - n, 0.0) / effective
+    highest = max(2.0 * power / effective, 2.0 * usual)
+    return Discrepancy(n, effective, usual, highest, 1.0 + LIKE_NOISE**2 * n / effective)
 
 
 def usual_form_error() -> float:
@@ -192,7 +207,7 @@ def evidence_of(
     signs_of = [(1.0, -1.0) if equations.signed[n] and n in new else (1.0,) for n in names]
     for part, signs in itertools.product(SIZES if new else (1.0,), itertools.product(*signs_of)):
         chosen = [known.get(n, part * unit * sign) for n, sign in zip(names, signs, strict=True)]
-        tries += [(chosen, max(begin / f, discrepancy.lowest)) for f in (1.0, 8.0, 64.0)]
+        tries += [(chosen, max(begin / f, discrepancy.usual)) for f in (1.0, 8.0, 64.0)]
     likelihoods = [_likelihood(names, s, v, equations, discrepancy)[0] for s, v in tries]
     best = int(np.argmax(likelihoods))
     sizes, variance = tries[best]
@@ -205,7 +220,8 @@ def evidence_of(
 
     first = np.append(np.log(np.maximum(np.abs(sizes), 1e-4 * unit)), math.log(variance))
     bounds = [(math.log(NARROWEST * unit), math.log(WIDEST * unit))] * len(names)
-    bounds.append((math.log(discrepancy.lowest), math.log(discrepancy.highest)))
+    # Below the usual V the price has another slope: a rough ranking can do without.
+    bounds.append((math.log(discrepancy.usual), math.log(discrepancy.highest)))
     answer = minimize(cost, first, method="L-BFGS-B", bounds=bounds, options={"maxiter": ROUNDS})
     found = direction * np.exp(answer.x[:-1])
     return Evidence(tuple(names), -float(answer.fun), tuple(found.tolist()), math.exp(answer.x[-1]))

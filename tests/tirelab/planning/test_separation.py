@@ -113,7 +113,7 @@ def test_the_variance_is_the_floor_under_which_a_diagnosis_judges_all_sets() -> 
     floor = Discrepancy(n, EFFECTIVE, 1.0, 2.0).above(
         CATALOGUE["inertia"].form_error * size * strong / math.sqrt(n)
     )
-    assert floor.lowest == pytest.approx(variance((size * strong) ** 2, "inertia"), rel=1e-12)
+    assert floor.usual == pytest.approx(variance((size * strong) ** 2, "inertia"), rel=1e-12)
 
 
 def test_a_loud_response_is_told_up_to_what_its_own_form_may_miss() -> None:

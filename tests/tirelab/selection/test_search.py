@@ -39,34 +39,48 @@ def test_profile_is_the_top_over_the_variance() -> None:
     assert top == pytest.approx(-found.fun)
 
 
-def test_form_error_lifts_the_lowest_variance() -> None:
+def test_form_error_lifts_the_usual_variance() -> None:
     misfit = np.full(600, 10.0)
     plain = discrepancy_of(misfit, 0.0)
     lifted = plain.above(0.5)
-    assert plain.lowest == 1.0
-    assert lifted.size(lifted.lowest) == pytest.approx(0.5)
+    assert plain.usual == 1.0
+    assert lifted.size(lifted.usual) == pytest.approx(0.5)
 
 
-def test_under_a_floor_only_a_remainder_like_the_noise_counts_for_a_set() -> None:
-    """Forms that miss ten noises: a remainder of three or of eight is alike; one like the noise has exact forms."""
-    floor = discrepancy_of(np.full(600, 100.0), 0.0).above(10.0)
-    like_noise, three, eight = (600.0 * (1.0 + size**2) for size in (0.5, 3.0, 8.0))
-    (exact, low), (some, high), (more, _) = (floor.profile(power) for power in (like_noise, three, eight))
-    assert high == floor.lowest
-    # 600 (8^2 - 3^2) / 2 V with V = 1 + 600 * 10^2 / 30
-    assert some - more == pytest.approx(33000.0 / 2.0 / 2001.0)
-    assert low == pytest.approx(1.0 + 600.0 / 30.0)
-    # Half of 30 ln(2001 / 21), less what 0.25 * 600 + 30 and 5400 are at these V.
-    gained = 15.0 * np.log(2001.0 / 21.0) - 180.0 / 42.0 + 5430.0 / 4002.0
-    assert exact - some == pytest.approx(gained)
-    assert low in floor.grid()
-    assert high in floor.grid()
+def test_forms_that_miss_less_than_usual_are_as_rare_as_they_are_good() -> None:
+    """Forms usually miss ten noises. Beside the likelihood of the remainder stands the chance of a smaller miss."""
+    usual = discrepancy_of(np.full(600, 100.0), 0.0).above(10.0)
+    for size in (1.5, 3.0, 6.0):
+        variance = 1.0 + 20.0 * size**2
+        free = Discrepancy(600, 30.0, 1.0, 1e6, 1.0).likelihood(600.0 * (1.0 + size**2), variance)
+        priced = usual.likelihood(600.0 * (1.0 + size**2), variance)
+        assert priced - free == pytest.approx(np.log(size / 10.0))
+    # Above the usual there is no price.
+    assert usual.likelihood(1e6, 4e4) == Discrepancy(600, 30.0, 1.0, 1e6, 1.0).likelihood(1e6, 4e4)
+
+
+@pytest.mark.parametrize("size", [0.3, 1.2, 3.0, 8.0, 25.0])
+def test_profile_is_the_top_on_both_sides_of_the_usual_variance(size: float) -> None:
+    usual = discrepancy_of(np.full(600, 100.0), 0.0).above(10.0)
+    power = 600.0 * (1.0 + size**2)
+    top, variance = usual.profile(power)
+    assert usual.lowest <= variance <= usual.highest
+    # A fine net over all variances, from that of a remainder like the noise on.
+    net = np.geomspace(1.0 + 600.0 / 30.0, usual.highest, 20001)
+    assert top == pytest.approx(max(usual.likelihood(power, v) for v in net), abs=1e-5)
+
+
+def test_a_set_that_leaves_far_less_than_usual_gains_as_if_its_forms_were_good() -> None:
+    """Of 600 blocks, 30 of them effective, a remainder of three noises in place of eight: about 30 ln(8 / 3) = 29."""
+    usual = discrepancy_of(np.full(600, 100.0), 0.0).above(10.0)
+    (some, _), (more, _) = (usual.profile(600.0 * (1.0 + size**2)) for size in (3.0, 8.0))
+    assert some - more == pytest.approx(29.4, abs=2.0)
 
 
 def test_what_the_reading_adds_is_added_to_exact_forms_too() -> None:
     plain = discrepancy_of(np.full(600, 100.0), 0.0)
     blurred = plain.blurred(2.0)
-    assert blurred.size(blurred.lowest) == pytest.approx(2.0)
+    assert blurred.size(blurred.usual) == pytest.approx(2.0)
     assert blurred.size(blurred.exact) == pytest.approx(np.sqrt(5.0))
 
 
