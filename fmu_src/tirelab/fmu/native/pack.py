@@ -280,4 +280,6 @@ def build_description(fmi: int) -> Element:
     )
     for file in c_files(fmi):
         SubElement(files, "SourceFile", name=file)
+    mathematics = "pow, exp, log and others; Windows and macOS have them in their C library"
+    SubElement(configuration, "Library", name="m", external="true", description=mathematics)
     return root

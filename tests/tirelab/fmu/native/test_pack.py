@@ -6,11 +6,16 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
+from fmpy.model_description import read_build_description
+from loader_bench import HERE, guid_of, unpacked_archive
+from native_tires import drive, read, stepped, written
 from radialtire import CATALOGUE, PowerLaw, TireModel
+from tirelab.fmu.loader import Compiler
 from tirelab.fmu.native.pack import build_native_fmu
 
 DAMPED = TireModel(
@@ -55,6 +60,34 @@ def test_five_platforms_and_sources_in_200_kilobytes(repository: Path, tmp_path:
     } <= names
     assert not any(name.endswith(".py") for name in names)
     assert fmu.stat().st_size < 200_000
+
+
+def test_its_sources_make_the_same_tire_as_their_description_says(compiler: Compiler, tmp_path: Path) -> None:
+    """Compiled with what buildDescription.xml names and nothing else, in a host that brings no mathematics along."""
+    fmu = unpacked_archive(build_native_fmu(DAMPED, tmp_path).path, tmp_path / "fmu")
+    assert len(read_build_description(str(fmu))) == 1  # valid by the schema of FMI 3.0
+    description = ElementTree.parse(fmu / "sources" / "buildDescription.xml").getroot()
+    files = description.find("BuildConfiguration/SourceFileSet")
+    assert files is not None
+    options = [f"-std={str(files.get('language')).lower()}", *str(files.get("compilerOptions")).split()]
+    libraries = [f"-l{library.get('name')}" for library in description.iterfind("*/Library")]
+    sources = [str(file.get("name")) for file in files.iterfind("SourceFile")]
+    library, host, out = tmp_path / "made.so", tmp_path / "host", tmp_path / "out.bin"
+    shared = [*compiler.command, *options, "-fPIC", "-shared", "-o", library, *sources, *libraries]
+    subprocess.run(shared, cwd=fmu / "sources", check=True)
+    subprocess.run([*compiler.command, "-std=c11", "-o", host, HERE / "drive.c", "-ldl"], check=True)
+    moments = drive(200, 1)
+    words = [
+        host,
+        library,
+        guid_of(fmu),
+        (fmu / "resources").as_uri(),
+        written(moments, tmp_path / "in"),
+        out,
+    ]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert read(out) == stepped(DAMPED, moments)
 
 
 def test_fmpys_cvode_finds_where_the_contact_begins(tmp_path: Path) -> None:
