@@ -198,6 +198,19 @@ def test_derivatives_of_the_law(tmp_path: Path) -> None:
         assert unit.getDirectionalDerivative([FORCE], [0], [1.0]) == [pytest.approx(slope, rel=1e-12)]
 
 
+def test_a_radius_of_zero_and_an_unknown_variable(tmp_path: Path) -> None:
+    with opened(TireModel(), tmp_path) as unit:
+        begun(unit, 0.01, FLAT)
+        unit.setFloat64([1], [0.0])
+        with pytest.raises(FMICallException):
+            unit.doStep(0.0, 0.1)
+        assert "surface_radius = 0 m is not allowed" in unit.messages[-1]
+        for reference in (RANGE, 99, 2**32 - 1):
+            with pytest.raises(FMICallException):
+                unit.setFloat64([reference], [1.0])
+        assert len(unit.messages) == 4
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, 22.0])
 def test_inputs_that_no_tire_has(tmp_path: Path, value: float) -> None:
     """One message, nothing changes, and a good value goes on, as with FMI 2.0."""
@@ -211,6 +224,31 @@ def test_inputs_that_no_tire_has(tmp_path: Path, value: float) -> None:
         unit.setFloat64([0], [0.01])
         unit.doStep(0.0, 0.1)
         assert unit.getFloat64([FORCE]) == [pytest.approx(550.9, rel=1e-12)]
+
+
+@pytest.mark.parametrize(
+    ("time", "width", "word"),
+    [
+        (0.5, -0.1, "communicationStepSize = -0.1"),
+        (0.5, math.nan, "communicationStepSize = nan s"),
+        (0.5, math.inf, "communicationStepSize = inf s"),
+        (0.0, 0.1, "currentCommunicationPoint = 0 s"),
+        (1.0, 0.1, "currentCommunicationPoint = 1 s"),
+        (math.nan, 0.1, "currentCommunicationPoint = nan s"),
+    ],
+)
+def test_a_step_of_no_length_or_from_elsewhere_is_refused(
+    tmp_path: Path, time: float, width: float, word: str
+) -> None:
+    """And the next one that is right is made."""
+    with opened(TireModel(), tmp_path) as unit:
+        begun(unit, 0.01, FLAT)
+        unit.doStep(0.0, 0.5)
+        with pytest.raises(FMICallException):
+            unit.doStep(time, width)
+        (message,) = unit.messages
+        assert word in message
+        unit.doStep(0.5, 0.1)
 
 
 def test_a_step_past_the_stop_time_is_refused(tmp_path: Path) -> None:
