@@ -111,6 +111,7 @@ NAN_AFTER_HALF_A_SECOND = """
 """
 
 
+@pytest.mark.parametrize("fmu", ["Python", "FMI 2", "FMI 3"])
 @pytest.mark.parametrize(
     ("value", "radius", "word"),
     [
@@ -120,12 +121,12 @@ NAN_AFTER_HALF_A_SECOND = """
     ],
 )
 def test_fmpys_simulation_ends_by_itself_after_an_input_that_no_tire_has(
-    either_fmu: Path, value: str, radius: str, word: str
+    three_fmus: dict[str, Path], fmu: str, value: str, radius: str, word: str
 ) -> None:
     """It retries a discarded step for ever: half a gigabyte of messages in ten minutes."""
     code = textwrap.dedent(NAN_AFTER_HALF_A_SECOND.format(value=value, radius=radius))
     done = subprocess.run(
-        [sys.executable, "-I", "-c", code, str(either_fmu)], capture_output=True, text=True, timeout=120
+        [sys.executable, "-I", "-c", code, str(three_fmus[fmu])], capture_output=True, text=True, timeout=120
     )
     assert "status 3" in done.stdout
     assert (done.stdout + done.stderr).count(word) == 1
