@@ -50,6 +50,43 @@ def test_a_low_pass_is_two_states_and_answers_a_step_as_its_equation(tmp_path: P
     assert lagging.evaluate(time, [0.01, FLAT], y)[0] == pytest.approx(expected, rel=1e-6)
 
 
+OF_INPUTS_AND_TIME = (
+    "deflection_offset",
+    "series_compliance",
+    "elastic_shape",
+    "gas_compression",
+    "bottoming",
+    "inflation_pressure",
+    "force_offset",
+    "force_drift",
+    "saturation",
+    "pressure_leak",
+    "warm_up",
+)
+"""The first row of the table of effects in examples/docs/fmu.md."""
+
+
+@pytest.mark.parametrize("name", OF_INPUTS_AND_TIME)
+def test_effects_without_memory_are_exact(tmp_path: Path, name: str) -> None:
+    """The force of the step of Co-Simulation at the same time, bit by bit; what a solver tries leaves no trace."""
+    effect = CATALOGUE[name]
+    tire = TireModel(effects=((effect, effect.nominal),))
+    fmu = unpacked_archive(build_native_fmu(tire, tmp_path).path, tmp_path / "fmu")
+    solved, stepped = (Unit(fmu, [0.01, FLAT], exchange=kind) for kind in (True, False))
+    bare = TireModel()
+    other = 0
+    for i in range(1, 40):
+        time, x = 0.25 * i, 0.012 * (1.0 + math.sin(0.7 * i))
+        solved.evaluate(time - 0.1, [x + 0.003, 0.3], [])
+        found, _ = solved.evaluate(time, [x, FLAT], [])
+        solved.accept()
+        stepped.set([x, FLAT])
+        stepped.step(0.25 * (i - 1), 0.25)
+        assert found == stepped.get()
+        other += found != bare.step(x, FLAT, time, bare.initial_state)[0]
+    assert other > 5 or name == "inflation_pressure"  # at its reference pressure it changes nothing
+
+
 @pytest.mark.parametrize("name", ["rate_independent_hysteresis", "mullins_softening"])
 def test_loops_of_memory_close(tmp_path: Path, name: str) -> None:
     """Kept at accepted steps; what a solver tries in between leaves no trace. The third loop is the second one."""
@@ -93,6 +130,15 @@ def test_a_mass_and_a_damper_follow_the_motion_that_is_connected(tmp_path: Path)
     for i, (x, v, a) in enumerate([(0.01, 0.1, 0.0), (0.01, -0.1, 50.0), (0.012, 0.0, -20.0)]):
         force, _ = one.evaluate(1e-3 * i, [x, FLAT, v, a], [])
         assert force == pytest.approx(STIFFNESS * x + c * v + m * a, rel=1e-12)
+
+
+def test_a_deflection_that_lags_is_ahead_by_the_rate_that_is_connected(tmp_path: Path) -> None:
+    """F = k (x + tau v): the reading lags by tau behind the tire."""
+    tau = 0.005
+    one = unit(tire_with(deflection_lag={"lag": tau}), tmp_path, 0.01, FLAT, 0.0, 0.0)
+    for i, (x, v, a) in enumerate([(0.01, 0.1, 0.0), (0.01, -0.1, 50.0), (0.012, 0.0, -20.0)]):
+        force, _ = one.evaluate(1e-3 * i, [x, FLAT, v, a], [])
+        assert force == pytest.approx(STIFFNESS * (x + tau * v), rel=1e-12)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
