@@ -6,7 +6,6 @@ The command, the batch and the blind trials all call `run_diagnosis`.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -17,7 +16,6 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
-from radialtire.model import DEFLECTION_HIGHEST
 
 from ..computing.staging import staged
 from ..errors import TirelabError
@@ -27,7 +25,6 @@ from ..fmu.replay import replay
 from ..fmu.system import SYSTEM
 from ..planning.rig import read_rig
 from ..recordings.files import recording_files
-from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
@@ -46,6 +43,7 @@ from .outcome import (
     files_read,
     sha256,
 )
+from .request_checks import check_apart, check_depth, check_folder, check_once
 from .simulation_correction import CORRECTION, Believed, believed_of, deliver, simulated_by, write_corrected
 from .verdict import Verdict
 
@@ -119,12 +117,12 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     asked = replace(asked, reading=asked.reading.of_part()) if baseline.is_part else asked
     files, skipped = recording_files(asked.recordings, asked.reading.columns)
     kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
-    _check_once([*files, *kept_files])
-    _check_folder(asked.out)
+    check_once([*files, *kept_files])
+    check_folder(asked.out)
     fitted = [_read(file, asked.reading, report) for file in files]
     kept = [_read(file, asked.reading, report) for file in kept_files]
-    _check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
-    _check_depth(fitted, kept)
+    check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
+    check_depth(fitted, kept)
     beside = [file for file in (asked.simulation, asked.rig) if file is not None]
     origin = {
         "command": command_line(
@@ -280,49 +278,6 @@ def _read(file: Path, reading: Reading, progress: Progress) -> Recording:
     return reading(file)
 
 
-def _check_once(files: Sequence[Path]) -> None:
-    seen = set()
-    for file in files:
-        if file.resolve() in seen:
-            raise TirelabError(
-                f"{file} is given twice; give each recording once, either to fit or to hold out"
-            )
-        seen.add(file.resolve())
-
-
-def _check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
-    """Raise TirelabError where two pieces of one file share samples: each sample is fitted or held out, once."""
-    for i, (file, one) in enumerate(read):
-        for other_file, other in read[:i]:
-            same = one.source is not None and other.source is not None and one.source.samefile(other.source)
-            if not same or split_piece(file)[1].trial != split_piece(other_file)[1].trial:
-                continue
-            if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
-                raise TirelabError(
-                    f"{other_file} and {file} share {max(one.time[0], other.time[0]):.6g} to "
-                    f"{min(one.time[-1], other.time[-1]):.6g} s; give each part of a file once"
-                )
-
-
-def _check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
-    """Refuse at once deflections that would fail when all is done: none above 0, or one beyond the wheel's radius."""
-    if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
-        raise TirelabError(
-            f"{', '.join(r.name for r in fitted)}: no deflection is above 0, and only what happens above it can be "
-            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give the "
-            "gauge's zero, --zero 'deflection=-80 mm' say"
-        )
-    for recording in (*fitted, *kept):
-        deepest = int(np.argmax(recording.deflection))
-        if recording.deflection[deepest] > DEFLECTION_HIGHEST:
-            at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"
-            raise TirelabError(
-                f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
-                f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit and its zero, or diagnose a "
-                "part: FILE@10s:20s (times), FILE@100:2000 (rows)"
-            )
-
-
 def _without_time(recordings: Sequence[Recording]) -> list[str]:
     """Return a warning where times were made up."""
     names = [recording.name for recording in recordings if not recording.timed]
@@ -332,14 +287,6 @@ def _without_time(recordings: Sequence[Recording]) -> list[str]:
         f"the time of {', '.join(names)} was not measured: seconds count samples here, and nothing of rate, time or "
         "acceleration was judged"
     ]
-
-
-def _check_folder(out: Path) -> None:
-    """Raise TirelabError where `out` cannot become a folder to write into: before the work, not after it."""
-    there = next(path for path in (out.absolute(), *out.absolute().parents) if path.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
-        why = "is not writable" if there.is_dir() else "is a file"
-        raise TirelabError(f"{out} cannot be written, {there} {why}; name another folder with --out")
 
 
 def _replayed(

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 import pytest
 from radialtire import TireModel, read_tire
-from tirelab.diagnosis import diagnosis_run
+from tirelab.diagnosis import diagnosis_run, request_checks
 from tirelab.diagnosis.diagnosis_run import run_diagnosis
 from tirelab.diagnosis.outcome import command_line
 from tirelab.errors import TirelabError
@@ -81,7 +81,7 @@ def test_a_folder_that_cannot_be_written_is_refused(
     ride = damped_run.rides / "ride.csv"
     refused("cannot be written, .*taken is a file; name another folder with --out", [ride], taken / "deeper")
     # Root may write everywhere, so the answer of the system is given by hand.
-    monkeypatch.setattr(diagnosis_run.os, "access", lambda path, mode: False)
+    monkeypatch.setattr(request_checks.os, "access", lambda path, mode: False)
     refused("is not writable; name another folder with --out", [ride], tmp_path / "new")
 
 

@@ -1,0 +1,72 @@
+"""What a diagnosis refuses before its work would be lost: files given twice, samples that two parts share, a motion
+that no tire can follow, a folder that cannot be written.
+
+Each check raises TirelabError with one sentence and returns nothing.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from radialtire.model import DEFLECTION_HIGHEST
+
+from ..errors import TirelabError
+from ..recordings.pieces import split_piece
+from ..recordings.recording import Recording
+
+
+def check_once(files: Sequence[Path]) -> None:
+    """Raise TirelabError where a file is given twice."""
+    seen = set()
+    for file in files:
+        if file.resolve() in seen:
+            raise TirelabError(
+                f"{file} is given twice; give each recording once, either to fit or to hold out"
+            )
+        seen.add(file.resolve())
+
+
+def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
+    """Raise TirelabError where two pieces of one file share samples: each sample is fitted or held out, once."""
+    for i, (file, one) in enumerate(read):
+        for other_file, other in read[:i]:
+            same = one.source is not None and other.source is not None and one.source.samefile(other.source)
+            if not same or split_piece(file)[1].trial != split_piece(other_file)[1].trial:
+                continue
+            if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
+                raise TirelabError(
+                    f"{other_file} and {file} share {max(one.time[0], other.time[0]):.6g} to "
+                    f"{min(one.time[-1], other.time[-1]):.6g} s; give each part of a file once"
+                )
+
+
+def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
+    """Raise TirelabError for deflections that would fail when all is done: none above 0, or one beyond the wheel's
+    radius.
+    """
+    if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
+        raise TirelabError(
+            f"{', '.join(r.name for r in fitted)}: no deflection is above 0, and only what happens above it can be "
+            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give the "
+            "gauge's zero, --zero 'deflection=-80 mm' say"
+        )
+    for recording in (*fitted, *kept):
+        deepest = int(np.argmax(recording.deflection))
+        if recording.deflection[deepest] > DEFLECTION_HIGHEST:
+            at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"
+            raise TirelabError(
+                f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
+                f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit and its zero, or diagnose a "
+                "part: FILE@10s:20s (times), FILE@100:2000 (rows)"
+            )
+
+
+def check_folder(out: Path) -> None:
+    """Raise TirelabError where `out` cannot become a folder to write into: before the work, not after it."""
+    there = next(path for path in (out.absolute(), *out.absolute().parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        why = "is not writable" if there.is_dir() else "is a file"
+        raise TirelabError(f"{out} cannot be written, {there} {why}; name another folder with --out")

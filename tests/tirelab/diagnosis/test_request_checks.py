@@ -1,0 +1,52 @@
+"""What is refused before the work, and what passes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tirelab.diagnosis.request_checks import check_apart, check_depth, check_folder, check_once
+from tirelab.errors import TirelabError
+from tirelab.recordings.recording import Recording
+
+
+def part(begin: float, end: float, deepest: float = 0.01, source: Path | None = None) -> Recording:
+    time = np.linspace(begin, end, 50)
+    none = np.zeros(50)
+    return Recording("press", time, np.linspace(0.0, deepest, 50), none + np.inf, none, source=source)
+
+
+def test_files_are_told_apart_by_where_they_are(tmp_path: Path) -> None:
+    check_once([tmp_path / "a" / "press.csv", tmp_path / "b" / "press.csv"])
+    with pytest.raises(TirelabError, match=r"press\.csv is given twice"):
+        check_once([tmp_path / "a" / "press.csv", tmp_path / "b" / ".." / "a" / "press.csv"])
+
+
+def test_parts_of_a_file_may_touch_nothing_of_each_other(tmp_path: Path) -> None:
+    file, other = tmp_path / "press.csv", tmp_path / "other.csv"
+    for path in (file, other):
+        path.write_text("")
+    first, second = (Path(f"{file}@{piece}") for piece in ("0s:9s", "10s:20s"))
+    check_apart([(first, part(0.0, 9.0, source=file)), (second, part(10.0, 20.0, source=file))])
+    check_apart([(file, part(0.0, 9.0, source=file)), (other, part(5.0, 12.0, source=other))])
+    check_apart([(file, part(0.0, 9.0)), (other, part(5.0, 12.0))])
+    with pytest.raises(TirelabError, match="share 5 to 9 s; give each part of a file once"):
+        check_apart([(first, part(0.0, 9.0, source=file)), (second, part(5.0, 12.0, source=file))])
+
+
+def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
+    check_depth([part(0.0, 1.0, 0.3)], [])
+    with pytest.raises(TirelabError, match="no deflection is above 0"):
+        check_depth([part(0.0, 1.0, -0.01)], [])
+    with pytest.raises(
+        TirelabError, match=r"the deflection is 0\.4 m at 1 s, and a tire takes 0\.33 m at most"
+    ):
+        check_depth([part(0.0, 1.0)], [part(0.0, 1.0, 0.4)])
+
+
+def test_a_folder_may_be_new_but_not_within_a_file(tmp_path: Path) -> None:
+    check_folder(tmp_path / "new" / "deeper")
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(TirelabError, match="taken is a file; name another folder with --out"):
+        check_folder(tmp_path / "taken" / "out")
