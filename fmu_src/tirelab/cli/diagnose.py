@@ -135,10 +135,10 @@ def _ranged(recordings: tuple[Path, ...], given: Path, option: str = "--held-out
     if not is_range(str(given)):
         if option == "--held-out":
             return given
-        raise TirelabError(f"{option} {given}: is no range; write 0s:20s (time) or 100:2000 (rows)")
+        raise TirelabError(f"{option} {given} is no range; write 0s:20s (time) or 100:2000 (rows)")
     if len(recordings) != 1 or recordings[0].is_dir():
         raise TirelabError(
-            f"{option} {given}: is a range of one recording; name its file, as in press.csv@{given}"
+            f"{option} {given} is a range of one recording; name its file, as in press.csv@{given}"
         )
     return recordings[0].with_name(f"{recordings[0].name}@{given}")
 

@@ -82,7 +82,7 @@ def read_stated(folder: Path) -> Stated:
         raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DiagnosisFileError(
-            f"{path}: is no diagnosis ({what_is_wrong(error)}); diagnose again"
+            f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again"
         ) from None
 
 
@@ -119,7 +119,7 @@ def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | C
         raise DiagnosisFileError(f"{path}: the corrected tire cannot be read: {error}") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DiagnosisFileError(
-            f"{path}: is no diagnosis ({what_is_wrong(error)}); diagnose again"
+            f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again"
         ) from None
 
 

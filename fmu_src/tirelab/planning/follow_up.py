@@ -78,7 +78,7 @@ def read_diagnosed(path: Path) -> Diagnosed:
     except TireFileError as error:
         raise TirelabError(f"{file}: the believed tire cannot be read: {error}") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise TirelabError(f"{file}: is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
+        raise TirelabError(f"{file} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
     table = None if data is None else file.parent / str(data)
     return Diagnosed(
         names,

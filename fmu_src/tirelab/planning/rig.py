@@ -109,7 +109,7 @@ def _content(file: Path) -> dict[str, Any]:
     except OSError as error:
         raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise TirelabError(f'{file}: is not TOML ({error}); write for instance stroke = "20 mm"') from None
+        raise TirelabError(f'{file} is not TOML ({error}); write for instance stroke = "20 mm"') from None
     for key in content:
         if key not in KEYS:
             raise TirelabError(f"{file}: {key!r} is not known here; the keys are {', '.join(KEYS)}")

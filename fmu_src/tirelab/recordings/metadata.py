@@ -175,7 +175,7 @@ def _content(file: Path) -> dict[str, Any]:
         content: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise RecordingError(
-            f'{file.name}: is not TOML ({error}); write for instance radius = "25.4 cm"'
+            f'{file.name} is not TOML ({error}); write for instance radius = "25.4 cm"'
         ) from None
     _check(file, content, "")
     files = content.get("files", {})

@@ -37,7 +37,7 @@ def settings_text(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> st
         return tomlkit.dumps(document)
     except (TOMLKitError, UnicodeDecodeError) as error:
         raise RecordingError(
-            f"{file}: is not TOML ({error}); correct it, or name another with --out"
+            f"{file} is not TOML ({error}); correct it, or name another with --out"
         ) from None
     except OSError as error:
         raise RecordingError(f"{file} cannot be read ({error.strerror}); name another with --out") from None

@@ -84,5 +84,5 @@ def read_json(path: Path) -> dict[str, Any]:
             f"{path}: cannot be read ({error}); remove the file, and it is written again"
         ) from None
     if not isinstance(content, dict):
-        raise TirelabError(f"{path}: is no object; remove the file, and it is written again")
+        raise TirelabError(f"{path} is no object; remove the file, and it is written again")
     return content

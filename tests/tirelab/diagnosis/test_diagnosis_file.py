@@ -118,7 +118,7 @@ def test_what_is_no_diagnosis_is_refused_in_a_sentence(
 ) -> None:
     with pytest.raises(DiagnosisFileError, match=said) as caught:
         read_stated(written(tmp_path, **changes))
-    assert str(caught.value).startswith(f"{tmp_path / 'diagnosis.json'}: is no diagnosis (")
+    assert str(caught.value).startswith(f"{tmp_path / 'diagnosis.json'} is no diagnosis (")
     assert str(caught.value).endswith("; diagnose again")
 
 

@@ -132,7 +132,7 @@ def test_a_recording_is_kept_and_understood(served: Server, ride: bytes) -> None
         ("page.html", b"<html></html>", "page.html: "),
         ("sheet.xlsx", b"no workbook at all", "sheet.xlsx"),
         ("empty.csv", b"", "is empty (0 bytes)"),
-        ("zip.csv", b"PK\x03\x04 and so on", "zip.csv: is no text table"),
+        ("zip.csv", b"PK\x03\x04 and so on", "zip.csv is no text table"),
     ],
 )
 def test_what_is_no_recording_gets_a_sentence_and_nothing_is_kept(

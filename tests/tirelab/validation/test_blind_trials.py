@@ -384,7 +384,7 @@ def test_a_changed_derived_answer_is_refused(undiagnosed: Folders, oracle: Any) 
 
 def test_a_file_that_holds_no_object_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "list.json").write_text("[1]")
-    with pytest.raises(TirelabError, match=r"list\.json: is no object"):
+    with pytest.raises(TirelabError, match=r"list\.json is no object"):
         read_json(tmp_path / "list.json")
 
 

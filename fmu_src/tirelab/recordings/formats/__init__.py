@@ -81,15 +81,15 @@ def open_table(path: Path, skip_rows: int | None = None) -> Table:
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file; check the path") from None
     except IsADirectoryError:
-        raise RecordingError(f"{path}: is a folder; name a file of measurements in it") from None
+        raise RecordingError(f"{path} is a folder; name a file of measurements in it") from None
     except OSError as error:
         raise RecordingError(f"{path}: cannot be opened ({error.strerror}); check its permissions") from None
     if not start:
-        raise RecordingError(f"{path.name}: is empty (0 bytes); record again, or export the file anew")
+        raise RecordingError(f"{path.name} is empty (0 bytes); record again, or export the file anew")
     suffix = path.suffix.lower()
     kind, read_as = next(((kind, end) for mark, kind, end in _SIGNATURES if start.startswith(mark)), ("", ""))
     if kind and suffix in TEXT_SUFFIXES:
-        raise RecordingError(f"{path.name}: is no text table but {kind}; {_advice(path, read_as)}")
+        raise RecordingError(f"{path.name} is no text table but {kind}; {_advice(path, read_as)}")
     known = suffix in LOADERS
     if not known and read_as in LOADERS:
         suffix = read_as

@@ -58,7 +58,7 @@ def _without_mark(path: Path, raw: bytes) -> str:
         if empty.count(0) > 0.9 * len(empty) and b"\x00" not in filled:
             return name
     raise RecordingError(
-        f"{path.name}: is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
+        f"{path.name} is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
     )
 
 

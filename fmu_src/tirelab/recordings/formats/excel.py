@@ -96,7 +96,7 @@ class ExcelTable:
         chosen = max(found, key=lambda sheet: (_channels(sheet.headers), sheet.rows))
         if not chosen.header_row:
             raise RecordingError(
-                f"{path.name}, row {chosen.first_row}: is no header; put a row above the numbers that names "
+                f"{path.name}, row {chosen.first_row} is no header; put a row above the numbers that names "
                 "the columns and their units, such as force [N]"
             )
         names = [header.text for header in chosen.headers]

@@ -36,7 +36,7 @@ class _Stream(io.BufferedReader):
         """The next bytes, while there is patience."""
         self.reads_left -= 1
         if self.reads_left < 0:
-            raise RecordingError(f"{self.file_name}: is damaged: its blocks lead in a circle; save it anew")
+            raise RecordingError(f"{self.file_name} is damaged: its blocks lead in a circle; save it anew")
         return super().read(size)
 
 
