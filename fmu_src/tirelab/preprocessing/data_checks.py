@@ -60,7 +60,7 @@ def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False)
 def check_signal(
     dataset: Dataset, names: Sequence[str], levels: Sequence[float], *, beside: bool = False
 ) -> None:
-    """Raise PoorRecording where the deflection is noise, or the force does not follow it.
+    """Raise PoorRecording where the deflection is noise, or the force does not follow it or is hardly more than noise.
 
     names, levels [N]: what each recording is called, its noise floor; beside: whether the force is what a simulation
     leaves of the recorded one beside its law, which of a part without a law may be noise alone
@@ -84,10 +84,16 @@ def check_signal(
         related = _related(
             record.force, (elastic, motion.rate, motion.acceleration), np.abs(np.gradient(motion.deflection))
         )
-        if not np.isfinite(related) or related < RELATED or level > 0.9 * float(np.std(record.force)):
+        if not np.isfinite(related) or related < RELATED:
             raise PoorRecording(
                 f"the force of recording {name} does not follow its deflection (correlation {related:.2f} with it, its "
                 "rate and acceleration together); check channels and units"
+            )
+        varies = float(np.std(record.force))
+        if level > 0.9 * varies > 0.0:
+            raise PoorRecording(
+                f"the force of recording {name} varies by {varies:.3g} N, hardly more than the noise of its readings "
+                f"({level:.3g} N, the deflection's through the stiffness with it); check the units, or press deeper"
             )
 
 
