@@ -81,9 +81,7 @@ def read_stated(folder: Path) -> Stated:
     except OSError as error:
         raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DiagnosisFileError(
-            f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again"
-        ) from None
+        raise DiagnosisFileError(f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
 
 
 def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | Correction:
@@ -118,9 +116,7 @@ def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | C
     except TireFileError as error:
         raise DiagnosisFileError(f"{path}: the corrected tire cannot be read: {error}") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DiagnosisFileError(
-            f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again"
-        ) from None
+        raise DiagnosisFileError(f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
 
 
 def _learned(path: Path, content: Mapping[str, Any]) -> LearnedRemainder:

@@ -33,6 +33,7 @@ from ..regressors.signature import (
 )
 from ..selection.search import (
     LIKE_NOISE,
+    LOST,
     PRIOR_ODDS,
     NormalEquations,
     discrepancy_of,
@@ -71,8 +72,8 @@ class Explanation:
 
     effects: of the set, the largest share first; probability: of the set
     evidence: all sets, this one first, then the likeliest
-    confounded: sets in which an effect that this motion cannot tell from one of the set stands in its place, or the
-    refitted law in that of effects which a law of another shape could be
+    confounded: sets that can still win in which an effect that this motion cannot tell from one of the set stands in
+    its place, or the refitted law in that of effects which a law of another shape could be
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     within_law: names of effects that leave no trace beside the refitted law of the set
     model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
@@ -306,6 +307,8 @@ def _alike(excitation: Excitation, name: str) -> tuple[str, ...]:
 def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[tuple[str, ...], ...]:
     """Return the sets with an effect that the motion cannot tell from one of the chosen ones in that one's place, and
     the one in which the refitted law stands for all effects beside it that a law of another shape could be.
+
+    Only sets that can still win beside the chosen one: recordings may tell what the motion alone would not.
     """
     found = []
     for name in chosen.names:
@@ -315,10 +318,12 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
             if fit is None or less is None or other in chosen.names:
                 continue
             if less.power - fit.power > AS_GOOD * (less.power - chosen.power):
-                found.append(fit.names)
+                found.append(fit)
     shape = frozenset(n for n in chosen.names if n == LAW or not excitation.within_law(n))
     law_alone = ranking.of(shape) if LAW in shape and len(shape) < len(chosen.names) else None
-    return (*found, law_alone.names) if law_alone is not None else tuple(found)
+    if law_alone is not None:
+        found.append(law_alone)
+    return tuple(fit.names for fit in found if ranking.behind(fit) - ranking.behind(chosen) < LOST)
 
 
 def _quiet(dataset: Dataset) -> Dataset:

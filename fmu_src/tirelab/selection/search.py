@@ -283,7 +283,7 @@ BEAM = POLISHED // 2
 """Sets kept from one size to the next."""
 
 LOST = 10.0
-"""A size of sets whose best is this far behind ends the search."""
+"""Sets this far behind, in log posterior, do not win: a size of sets whose best is ends the search."""
 
 
 @dataclass(frozen=True)

@@ -153,3 +153,21 @@ def test_on_one_surface_a_law_of_another_shape_is_told_beside_a_knee(surfaces: i
     both = found.of(("recalibration", "bottoming"))
     assert (("recalibration",) in both.confounded) == (surfaces == 1)
     assert found.of(("recalibration",)).confounded == ()
+
+
+@pytest.mark.parametrize(("breakaway", "alike"), [(0.5e-3, True), (2e-3, False)])
+def test_friction_at_one_speed_is_told_from_damping_by_how_it_breaks_away(
+    breakaway: float, alike: bool
+) -> None:
+    """Both jump by 120 N at a turn of the triangle; within 2 mm of it friction is far from that, and damping is not."""
+    time, deflection = triangle(samples=1500)
+    slip, slips = 0.0, []
+    for change in np.diff(deflection, prepend=0.0):
+        slip = np.sign(change) + (slip - np.sign(change)) * np.exp(-abs(change) / breakaway)
+        slips.append(slip)
+    press = read("press", time, deflection, flat_force(deflection) + 60.0 * np.array(slips), 3, noise=0.5)
+    effects = ("viscous_damping", "rate_independent_hysteresis")
+    found = explain_misfit([press], TireModel(), effects, lambda stage: None)
+    assert found.model.names == ("rate_independent_hysteresis",)
+    assert "viscous_damping" in found.excitation.alike("rate_independent_hysteresis")
+    assert (("viscous_damping",) in found.confounded) == alike
