@@ -33,7 +33,7 @@ def test_every_file_beside_the_code_is_installed(repository: Path, settings: Any
         file
         for package in ("tirelab", "radialtire", "concealed")
         for file in (source / package).rglob("*")
-        if file.is_file() and file.suffix not in (".py", ".pyc")
+        if file.is_file() and file.suffix != ".py" and "__pycache__" not in file.parts
     }
     assert beside == listed
 

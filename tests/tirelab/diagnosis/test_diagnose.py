@@ -114,13 +114,12 @@ def test_at_one_rate_the_loops_are_alternatives(one_rate_verdict):
     named = {frozenset(verdict.names), *(frozenset(r.names) for r in verdict.alternatives)}
     assert frozenset({"viscous_damping"}) in named
     assert frozenset({"rate_independent_hysteresis"}) in named
-    # Three other loops: with equal claims to its odds they leave it less than a verdict that stands alone has.
+    # One other loop can still win: with a claim to its odds it leaves it less than a verdict that stands alone has.
     alone = probability("verdict", verdict.grounds)
-    assert verdict.confidence == pytest.approx(shared(alone, 3))
+    assert verdict.confidence == pytest.approx(shared(alone, 1))
     assert verdict.confidence < alone
     each = {a.names: a.probability for a in verdict.alternatives}
-    equal = (unshared(verdict.confidence, 3) - verdict.confidence) / 3
-    assert min(each[("viscous_damping",)], each[("deflection_lag",)]) >= equal > 0.05
+    assert each[("viscous_damping",)] >= unshared(verdict.confidence, 1) - verdict.confidence > 0.05
 
 
 def test_a_verdict_is_json(alike_verdict):
