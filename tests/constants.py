@@ -145,7 +145,7 @@ EFFORT = (
     "estimation/problem.AWAKE",
     "estimation/ranking.BEGUN",
     "estimation/ranking.CORRECTIONS",
-    "estimation/ranking.FLOOR_MOVED",
+    "estimation/ranking.USUAL_MOVED",
     "estimation/ranking.HOPE",
     "estimation/ranking.MOST_FITS",
     "estimation/ranking.PROMISING",

@@ -95,7 +95,7 @@ def diagnose(
     shown = _places_told(localize(fitted, dataset, residuals, levels, residuals), timed)
     unexplained = tuple(by for by in unexplained_by(left, shown) if timed or by not in OF_TIME)
     grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
-    confidence = confidence_of(grounds, *([e.probability for e in own] for own in (effects, doubted)))
+    confidence = confidence_of(grounds, [e.probability for e in effects], [e.probability for e in doubted])
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(

@@ -131,8 +131,8 @@ SWAPPED = PROMISING // 2
 CORRECTIONS = 3
 """Budget: times that a set is fitted again with what its blocks leave out."""
 
-FLOOR_MOVED = 1.2
-"""Factor to another floor from which on the sets are judged again."""
+USUAL_MOVED = 1.2
+"""Factor to another usual error of the forms from which on the sets are judged again."""
 
 HOPE = 8.0
 """A promise may err by this much in log posterior, beside another promise, before it is not followed."""
@@ -184,20 +184,20 @@ class _Board:
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
-    floor: float = 0.0
+    usual: float = 0.0
     judged: int = 0
 
-    def floored(self) -> bool:
-        """Judge all sets under what the forms of the best one usually miss; return whether that is another floor.
+    def judge_again(self) -> bool:
+        """Judge all sets under what the forms of the best one usually miss; return whether that has moved.
 
-        One floor for all sets: one of their own would favour those whose forms are thought to be good.
+        One error for all sets: one of their own would favour those whose forms are thought to be good.
         """
-        floor = self.fits[self.best()].form_error
-        near = self.floor / FLOOR_MOVED <= floor <= self.floor * FLOOR_MOVED
+        usual = self.fits[self.best()].form_error
+        near = self.usual / USUAL_MOVED <= usual <= self.usual * USUAL_MOVED
         if self.judged == self.count or (self.judged and near):
             return False
-        self.floor, self.judged = floor, self.count
-        self.discrepancy = self.noise.above(floor)
+        self.usual, self.judged = usual, self.count
+        self.discrepancy = self.noise.above(usual)
         self.fits = {names: fit.judged(self.discrepancy) for names, fit in self.fits.items()}
         return True
 
@@ -249,7 +249,7 @@ def ranked(
     for variance, parts in starts:
         if parts and len(parts) <= MOST_EFFECTS:
             board.fit([_start(parts, board)], variance)
-    board.floored()
+    board.judge_again()
     followed: set[frozenset[str]] = set()
     while board.count < MOST_FITS:
         best = board.posterior(board.best())
@@ -259,7 +259,7 @@ def ranked(
         names = max(open_sets, key=board.posterior)
         followed.add(names)
         _follow(board, names)
-        if board.floored():
+        if board.judge_again():
             followed.clear()
     _nested(board)
     best_names = board.best()

@@ -1,7 +1,7 @@
 """With which probability a set of motions tells one effect from another, before anything is recorded.
 
 Effect i is true, with a response c of a given size. It is compared with a rival model M: a refitted law, perhaps with
-other effects, all linear in Gaussian coefficients, f = W z with z ~ N(0, 1), as in `selection.marginal_likelihood`.
+other effects, all linear in Gaussian coefficients, f = W z with z ~ N(0, 1), as in `selection.search`.
 What the rival cannot follow of c,
 
     S^2 = min_z |c - W z|^2 / V + |z|^2 = c' (V + W W')^-1 c,
@@ -9,8 +9,8 @@ What the rival cannot follow of c,
 is twice the log likelihood ratio that is to be expected: the T-optimal criterion (A. C. Atkinson, V. V. Fedorov,
 Biometrika 62, 57 (1975)), averaged over the draws of c (J. Lopez-Fidalgo et al., J. R. Stat. Soc. B 69, 231 (2007)).
 V = 1 + f^2 |c|^2 / e is the variance, in units of the noise, of what the forms miss: f of the response, in e effective
-samples, as in `selection.discrepancy`. f is the form error of the true effect, which is the best set's: under that one
-floor a diagnosis judges all sets (`estimation.ranking`).
+samples, as in `selection.search`. f is the form error of the true effect, which is the best set's: what its forms
+usually miss, under which a diagnosis judges all sets (`estimation.ranking`).
 
 Two models of equal standing: the log likelihood ratio is normal with mean S^2/2 and variance S^2, so the right one is
 the likelier one with probability Phi(S/2). A rival within the true model, M without i: twice the ratio is noncentral

@@ -117,12 +117,12 @@ class Discrepancy:
         return error**2 * self.samples / self.effective
 
 
-def discrepancy_of(misfit: FloatArray, floor: float) -> Discrepancy:
-    """Return the discrepancy's law for a misfit (n,) in units of the noise; floor: part of it that forms miss."""
+def discrepancy_of(misfit: FloatArray, missed: float) -> Discrepancy:
+    """Return the discrepancy's law for a misfit (n,) in units of the noise; missed: part of it by forms."""
     n = misfit.size
     power = float(misfit @ misfit)
     effective = min(EFFECTIVE, n / 3.0)
-    usual = 1.0 + floor**2 * max(power - n, 0.0) / effective
+    usual = 1.0 + missed**2 * max(power - n, 0.0) / effective
     highest = max(2.0 * power / effective, 2.0 * usual)
     return Discrepancy(n, effective, usual, highest, 1.0 + LIKE_NOISE**2 * n / effective)
 

@@ -107,13 +107,13 @@ def test_every_effect_is_asked_for_against_every_other() -> None:
     }
 
 
-def test_the_variance_is_the_floor_under_which_a_diagnosis_judges_all_sets() -> None:
+def test_the_variance_is_the_usual_one_under_which_a_diagnosis_judges_all_sets() -> None:
     """What `Discrepancy.above` makes of the best set's form error, a root mean square over n blocks."""
     n, size, strong = 900, 0.02, 4000.0
-    floor = Discrepancy(n, EFFECTIVE, 1.0, 2.0).above(
+    usual = Discrepancy(n, EFFECTIVE, 1.0, 2.0).above(
         CATALOGUE["inertia"].form_error * size * strong / math.sqrt(n)
     )
-    assert floor.usual == pytest.approx(variance((size * strong) ** 2, "inertia"), rel=1e-12)
+    assert usual.usual == pytest.approx(variance((size * strong) ** 2, "inertia"), rel=1e-12)
 
 
 def test_a_loud_response_is_told_up_to_what_its_own_form_may_miss() -> None:
