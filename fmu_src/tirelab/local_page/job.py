@@ -8,13 +8,12 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from ..errors import TirelabError
-from ..recordings.reading import Reading
 from .store import Upload
 
 
@@ -37,26 +36,10 @@ class Order:
         return cls(
             fitted,
             tuple(str(u.file) for u in uploads if u.use == "held-out"),
-            _names(uploads),
+            tuple((str(u.file), u.name) for u in uploads),
             None if tire is None else str(tire),
             str(out),
         )
-
-
-@dataclass(frozen=True)
-class Named(Reading):
-    """A reading that gives each recording the user's name for it."""
-
-    names: Mapping[str, str] = field(default_factory=dict)
-
-    def __call__(self, file: Path | str) -> Any:
-        """Return the recording in a file under its name."""
-        from ..recordings.pieces import split_piece  # its libraries take long to import
-
-        recording = super().__call__(file)
-        path, piece = split_piece(file)
-        name = self.names.get(str(path))
-        return recording if name is None else replace(recording, name=name + piece.suffix)
 
 
 class Job:
@@ -124,16 +107,6 @@ class Job:
         self._ended()
 
 
-def _names(uploads: Sequence[Upload]) -> tuple[tuple[str, str], ...]:
-    """Return files with names that tell them apart."""
-    found: dict[str, str] = {}
-    for upload in uploads:
-        stem = upload.name.rpartition(".")[0] or upload.name
-        name = stem if stem not in found.values() else f"{stem} ({upload.number})"
-        found[str(upload.file)] = name
-    return tuple(found.items())
-
-
 def main() -> None:
     """Do the order on standard input; say each stage, and the end, as a line of JSON."""
 
@@ -151,7 +124,6 @@ def main() -> None:
             Path(order.out),
             tire=None if order.tire is None else Path(order.tire),
             held_out=[Path(file) for file in order.held_out],
-            reading=Named(names=dict(order.names)),
             progress=lambda sentence: say(stage=sentence),
         )
     except (TirelabError, ValueError) as error:

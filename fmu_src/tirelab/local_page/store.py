@@ -1,7 +1,7 @@
 """Uploaded recordings and finished diagnoses in one folder, under names of our own.
 
     DIR/uploads/0001.csv       the file as it came, with its suffix where that is a plain word
-    DIR/uploads/0001.toml      how it is to be read, as `recordings.metadata` has it
+    DIR/uploads/0001.toml      its name in reports and how it is to be read, as `recordings.metadata` has it
     DIR/uploads/0001.json      what the user calls it, and what it is used for
     DIR/diagnoses/0001/        what `tirelab diagnose` writes
 
@@ -144,6 +144,7 @@ class Store:
         number = max((u.number for u in self.uploads()), default=0) + 1
         upload = Upload(number, self._uploads / f"{number:04d}{arrived.suffix}", arrived.name, "fitted")
         os.replace(arrived.file, upload.file)
+        self.settings(upload, {}, {}, "")
         self._tell(upload)
         return upload
 
@@ -156,8 +157,9 @@ class Store:
     def settings(
         self, upload: Upload, columns: Mapping[str, str], units: Mapping[str, str], radius: str
     ) -> None:
-        """Write how a recording is to be read; texts that are empty are left to the file."""
-        lines = [f"radius = {_toml(radius)}"] if radius else []
+        """Write a recording's name and how it is to be read; texts that are empty are left to the file."""
+        lines = [f"name = {_toml(self._apart(upload))}"]
+        lines += [f"radius = {_toml(radius)}"] if radius else []
         for table, values in (("columns", columns), ("units", units)):
             given = {channel: text for channel, text in values.items() if text}
             if given:
@@ -186,6 +188,12 @@ class Store:
             return None
         file = self._diagnoses / f"{number:04d}" / name
         return file if file.is_file() else None
+
+    def _apart(self, upload: Upload) -> str:
+        """Return what an upload is called in reports, told apart from others of the same name by its number."""
+        stem = upload.name.rpartition(".")[0] or upload.name
+        earlier = {u.name.rpartition(".")[0] or u.name for u in self.uploads() if u.number < upload.number}
+        return f"{stem} ({upload.number})" if stem in earlier else stem
 
     def _tell(self, upload: Upload) -> None:
         content = {"name": upload.name, "use": upload.use, "suffix": upload.file.suffix}

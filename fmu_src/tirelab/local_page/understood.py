@@ -84,7 +84,9 @@ def understood(file: Path, name: str) -> Understood:
         _refuse(error, file, name)
         return Understood(headers, _planned(first, table), problem=_by_name(str(error), file, name))
     more = (("tests", f"{1 + len(others)} side by side, each a recording; of the first:"),) if others else ()
-    notes = (*found.remarks, *(f"it says: {text}" for text in found.recording.provenance))
+    # The page itself wrote the settings beside it.
+    remarks = [r for r in found.remarks if r != f"settings read from {file.with_suffix('.toml').name}"]
+    notes = (*remarks, *(f"it says: {text}" for text in found.recording.provenance))
     doubts = tuple(_by_name(doubt, file, name) for doubt in found.recording.doubts)
     return Understood(headers, _channels(found, headers), (*more, *found.facts), notes, doubts)
 

@@ -24,7 +24,7 @@ FOLDER_SIDECAR = "recording.toml"
 _CONSTANT = {channel.name: f"{channel.usual:.4g} {channel.unit}" for channel in CHANNELS}
 """Channels of which a file may state one value for the whole recording, with an example."""
 
-_TEXTS = ("radius", "sampling", "from", "to", *_CONSTANT)
+_TEXTS = ("radius", "sampling", "from", "to", "name", *_CONSTANT)
 _TABLES = ("columns", "units", "zero")
 _KEYS = (*_TEXTS, *_TABLES, "skip_rows", "part", "files")
 _SAID = ("table", "provenance", "doubtful")
@@ -50,6 +50,7 @@ class Sidecar:
     constants: Mapping[str, str] = field(default_factory=dict)
     part: bool = False
     zero: Mapping[str, str] = field(default_factory=dict)
+    name: str = ""
     said_in: Mapping[str, str] = field(default_factory=dict)
 
     def overruled(
@@ -88,6 +89,7 @@ class Sidecar:
             constants={**self.constants, **over.constants},
             part=self.part or over.part,
             zero={**self.zero, **over.zero},
+            name=over.name or self.name,
             said_in={**self.said_in, **over.said_in},
         )
 
@@ -117,9 +119,9 @@ def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
     For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
-    `skip_rows = 3`, `part = true` of a damper or a bushing, `pressure = "2.5 bar"` and `temperature = "21 degC"` where
-    no column holds them, and the tables `[columns]`, `[units]` and `[zero]`, which say per channel what `--columns`,
-    `--units` and `--zero` say.
+    `skip_rows = 3`, `name = "front, 2 bar"` of one recording, as messages and the report call it, `part = true` of a
+    damper or a bushing, `pressure = "2.5 bar"` and `temperature = "21 degC"` where no column holds them, and the tables
+    `[columns]`, `[units]` and `[zero]`, which say per channel what `--columns`, `--units` and `--zero` say.
     The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
     named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of
@@ -132,8 +134,13 @@ def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None
     found = Sidecar()
     for file in dict.fromkeys(beside if named is None else (named,)):
         if file.is_file():
-            for content in _parts(_content(file), path.name, trial):
-                found = found.below(_sidecar(content, file.name))
+            content = _content(file)
+            if "name" in content and file != beside[1]:
+                raise RecordingError(
+                    f'{file.name}: a name is of one recording; write it below [files."{path.name}"]'
+                )
+            for part in _parts(content, path.name, trial):
+                found = found.below(_sidecar(part, file.name))
     return found
 
 
@@ -160,6 +167,7 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
         constants={name: content[name] for name in _CONSTANT if name in content},
         part=content.get("part", False),
         zero=content.get("zero", {}),
+        name=content.get("name", "").strip(),
         said_in=dict.fromkeys(
             [
                 *(key for key in ("skip_rows",) if key in content),
@@ -213,7 +221,14 @@ def _check(file: Path, content: Mapping[str, Any], inside: str) -> None:
 
 def _as_text(file: Path, key: str, value: object) -> None:
     if not isinstance(value, str) or (not value.strip() and not key.startswith("columns.")):
-        examples = {"radius": "25.4 cm", "sampling": "10 Hz", "from": "10 s", "to": "20 s", **_CONSTANT}
+        examples = {
+            "name": "front, 2 bar",
+            "radius": "25.4 cm",
+            "sampling": "10 Hz",
+            "from": "10 s",
+            "to": "20 s",
+            **_CONSTANT,
+        }
         raise RecordingError(
             f'{file.name}: {key} is {value!r}, not text; write {key} = "{examples.get(key, "...")}"'
         )

@@ -292,7 +292,7 @@ def understand(path: Path | str, how: Choices) -> Understood:
     _refuse_too_large(path, table, len(plan.headers) + 1)
     piece = piece.within(how.start, how.stop).within(sidecar.start, sidecar.stop)
     found = interpret(plan, _read(table, plan, piece), sidecar.sources, piece)
-    recording = _checked(found, plan, path.stem + piece.suffix, path)
+    recording = _checked(found, plan, (sidecar.name or path.stem) + piece.suffix, path)
     said_above = table.sheet_of(plan.matches["force"].index) if isinstance(table, ExcelTable) else table
     provenance = tuple(getattr(said_above, "provenance", ()))
     if provenance:

@@ -194,10 +194,11 @@ def summary(found: Sequence[dict[str, Any]]) -> list[str]:
     ]
     planned, *others = ARMS
     for other in others:
-        ratio = missed[planned] / missed[other] if missed[other] else math.nan
-        lines.append(
-            f"wrong or undecided after the plan over {ARMS[other]}: {ratio:.2f} (wanted: at most 0.33)"
-        )
+        if missed[other]:
+            told = f"{missed[planned] / missed[other]:.2f} (wanted: at most 0.33)"
+        else:
+            told = "none of the latter is wrong or undecided, more trials are needed"
+        lines.append(f"wrong or undecided after the plan over {ARMS[other]}: {told}")
     return lines
 
 

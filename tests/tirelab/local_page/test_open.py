@@ -138,6 +138,7 @@ def test_from_drop_to_download(chromium: Any, opened: tuple[str, Path], tmp_path
         "0001.toml",
         "0002.csv",
         "0002.json",
+        "0002.toml",
     ]
     told = json.loads((folder / "diagnoses" / "0001" / "diagnosis.json").read_text())
     assert told["fit"]["held_out_after"] < 0.5 * told["fit"]["held_out_before"]

@@ -121,7 +121,7 @@ def test_a_recording_is_kept_and_understood(served: Server, ride: bytes) -> None
     assert ["samples", "2000"] in told["facts"]
     units = {c["channel"]: c["unit"] for c in told["channels"] if c["column"]}
     assert units == {"time": "s", "deflection": "cm", "radius": "cm", "force": "N"}
-    assert kept(served) == ["0001.csv", "0001.json"]
+    assert kept(served) == ["0001.csv", "0001.json", "0001.toml"]
     assert ask(served, "GET", "state")[1]["recordings"] == [told]
 
 
@@ -285,7 +285,7 @@ def test_a_diagnosis_that_is_stopped_leaves_nothing(served: Server, ride: bytes)
     assert job is not None
     while job.running and not job.stages:
         time.sleep(0.05)
-    assert job.stages[0] == "reading ride"  # not 0001.csv
+    assert job.stages[0] == "reading ride.csv"  # not 0001.csv
     assert ask(served, "POST", "diagnose", b"")[0] == 422  # one at a time
     assert ask(served, "DELETE", "diagnose")[0] == 200
     job.wait(60.0)

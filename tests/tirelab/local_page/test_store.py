@@ -9,6 +9,7 @@ import pytest
 from tirelab.errors import TirelabError
 from tirelab.local_page.store import Store, clean_name, clean_texts
 from tirelab.recordings.metadata import read_sidecar
+from tirelab.recordings.recording import read_recording
 
 
 @pytest.fixture
@@ -40,7 +41,7 @@ def test_a_name_is_kept_as_text_and_the_file_has_a_number(store: Store, name: st
         upload = store.receive(name, io.BytesIO(b"12345"), 5)
         assert upload.name == shown
         assert upload.file == store.folder / "uploads" / "0001.csv"
-        assert files(store) == {"uploads/0001.csv", "uploads/0001.json"}
+        assert files(store) == {"uploads/0001.csv", "uploads/0001.json", "uploads/0001.toml"}
         assert store.uploads() == [upload]
 
 
@@ -66,7 +67,7 @@ def test_a_suffix_is_kept_where_it_is_a_plain_word_and_none_of_ours(
     store: Store, name: str, file: str
 ) -> None:
     assert store.receive(name, io.BytesIO(b"12345"), 5).file.name == file
-    assert files(store) == {f"uploads/{file}", "uploads/0001.json"}
+    assert files(store) == {f"uploads/{file}", "uploads/0001.json", "uploads/0001.toml"}
 
 
 def test_what_does_not_arrive_whole_is_not_kept(store: Store) -> None:
@@ -80,7 +81,18 @@ def test_numbers_go_on_and_a_removed_recording_leaves_nothing(store: Store) -> N
     assert (first.number, second.number) == (1, 2)
     store.settings(second, {"force": "#2"}, {}, "")
     store.remove(second)
-    assert files(store) == {"uploads/0001.csv", "uploads/0001.json"}
+    assert files(store) == {"uploads/0001.csv", "uploads/0001.json", "uploads/0001.toml"}
+
+
+def test_a_recording_is_called_by_its_name_wherever_it_is_read(store: Store) -> None:
+    table = b"time [s],deflection [m],force [N]\n" + b"".join(
+        b"%d,0.0%d,%d\n" % (i, i, 50 * i) for i in range(9)
+    )
+    names = ['<b>"slow", 2 bar.csv', "fast.csv", "fast.csv"]
+    uploads = [store.receive(name, io.BytesIO(table), len(table)) for name in names]
+    store.settings(uploads[2], {}, {}, "flat")
+    read = [read_recording(upload.file, radius="flat").name for upload in uploads]
+    assert read == ['<b>"slow", 2 bar', "fast", "fast (3)"]
 
 
 def test_settings_are_the_sidecar_that_the_reader_reads(store: Store) -> None:

@@ -44,12 +44,25 @@ class TestSidecar:
             ('diameter = "3 cm"', "not known"),
             ('[columns]\nstroke = "x"', "no channel"),
             ('columns = "x"', "table"),
+            ('name = "all"', r'below \[files\."bump\.csv"\]'),
+            ('[files."bump.csv"]\nname = ""', "not text"),
         ],
     )
     def test_a_wrong_sidecar_is_told_by_its_name(self, bare: Path, text: str, said: str) -> None:
         bare.with_name("recording.toml").write_text(text, encoding="utf-8")
         with pytest.raises(RecordingError, match=rf"recording\.toml.*{said}"):
             read_recording(bare)
+
+    @pytest.mark.parametrize(
+        ("file", "above"), [("recording.toml", '[files."bump.csv"]\n'), ("bump.toml", "")]
+    )
+    def test_a_recording_can_be_given_a_name(self, bare: Path, file: str, above: str) -> None:
+        told = f'{above}name = "front, 2 bar"\nradius = "flat"\n'
+        bare.with_name(file).write_text(told, encoding="utf-8")
+        columns, units = {"time": "Zeit", "deflection": "Weg", "force": "Kraft"}, {"deflection": "cm"}
+        assert read_recording(bare, columns=columns, units=units).name == "front, 2 bar"
+        part = read_recording(f"{bare}@2:8", columns=columns, units=units)
+        assert part.name.startswith("front, 2 bar@")
 
     def test_a_radius_in_the_file_of_settings_is_not_used_beside_a_column(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
