@@ -29,6 +29,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 
 PAGES = (
     "README.md",
+    "examples/quarter_bicycle/README.md",
     *(f"examples/docs/{p.name}" for p in sorted((REPOSITORY / "examples/docs").glob("*.md"))),
 )
 
