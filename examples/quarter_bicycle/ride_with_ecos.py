@@ -50,6 +50,7 @@ def main() -> None:
         simulation.terminate()
     with open(options.out, "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(rows)
+    print(options.out, flush=True)
 
 
 if __name__ == "__main__":

@@ -57,6 +57,7 @@ def main() -> None:
         rows.append([i * nanoseconds / 1e9, *values])
     with open(options.out, "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(rows)
+    print(options.out)
 
 
 if __name__ == "__main__":
