@@ -28,7 +28,7 @@ from ..names import REFITTED_LAW
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
 from ..preprocessing.noise import NEGLIGIBLE, STILL
-from ..preprocessing.samples import Dataset, Experiment, Recorded, dataset_of, is_timed
+from ..preprocessing.samples import RawDataset, RawExperiment, Recorded, is_timed, raw_dataset_of
 from ..regressors.signature import MOST_SURFACES
 from ..simulation.simulate import simulate, smoothed_motion
 
@@ -49,7 +49,7 @@ class Part:
     noise_free [N]: residual of the corrected tire where it is given the noise-free deflection
     """
 
-    experiment: Experiment
+    experiment: RawExperiment
     before: FloatArray
     after: FloatArray
     noise_free: FloatArray
@@ -98,7 +98,7 @@ def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) ->
 def given(
     held_out: Sequence[Recorded],
     recordings: Sequence[Recorded],
-    dataset: Dataset,
+    dataset: RawDataset,
     before: Sequence[FloatArray],
     explanation: Explanation,
 ) -> HeldOut:
@@ -110,7 +110,7 @@ def given(
     fitted = zip(
         dataset.experiments, recordings, before, explanation.residuals, explanation.compared, strict=True
     )
-    others = zip(dataset_of(held_out, baseline).experiments, held_out, compared(held_out), strict=True)
+    others = zip(raw_dataset_of(held_out, baseline).experiments, held_out, compared(held_out), strict=True)
     return HeldOut(
         "recordings given",
         tuple(
@@ -131,7 +131,7 @@ def given(
 
 def split(
     recordings: Sequence[Recorded],
-    dataset: Dataset,
+    dataset: RawDataset,
     before: Sequence[FloatArray],
     explanation: Explanation,
 ) -> HeldOut:
@@ -314,7 +314,7 @@ def is_worse(validation: HeldOut) -> bool:
 def validation_on(
     recordings: Sequence[Recorded],
     held_out: Sequence[Recorded],
-    dataset: Dataset,
+    dataset: RawDataset,
     before: Sequence[FloatArray],
 ) -> Validate:
     """Return how a set is validated: on recordings kept from the fit, else on a part of `recordings`.

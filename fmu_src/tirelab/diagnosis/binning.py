@@ -9,7 +9,7 @@ import numpy as np
 from radialtire import FLAT_RADIUS
 
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
-from ..preprocessing.samples import Dataset, Experiment, Recorded
+from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
 
 BINS = 800
 """Bins of a continuous coordinate at most, of about equal numbers of samples: a span of 1 % has eight of them."""
@@ -41,11 +41,11 @@ class Axis:
     recordings: tuple[str, ...] | None = None
 
 
-def axes_of(recordings: Sequence[Recorded], dataset: Dataset, kept: Sequence[IndexArray]) -> list[Axis]:
+def axes_of(recordings: Sequence[Recorded], dataset: RawDataset, kept: Sequence[IndexArray]) -> list[Axis]:
     """Return every coordinate of the recordings, at the samples `kept` of each one's rows."""
     records = [(record.sampled, own) for record, own in zip(dataset.experiments, kept, strict=True)]
 
-    def joined(value: Callable[[Experiment], FloatArray]) -> FloatArray:
+    def joined(value: Callable[[RawExperiment], FloatArray]) -> FloatArray:
         return np.concatenate([value(record)[own] for record, own in records])
 
     axes = [
@@ -124,7 +124,7 @@ def _cycles(cycle: FloatArray) -> Axis:
     return Axis("cycle", "1", bin_of, known, known, (0, known.size), label, slow=True)
 
 
-def _time(recordings: Sequence[Recorded], records: Sequence[tuple[Experiment, IndexArray]]) -> Axis:
+def _time(recordings: Sequence[Recorded], records: Sequence[tuple[RawExperiment, IndexArray]]) -> Axis:
     """Return the time of every recording, each a part of its own."""
     bins, starts, stops, parts = [], [], [], [0]
     for recording, (record, own) in zip(recordings, records, strict=True):

@@ -29,7 +29,7 @@ from ..names import REFITTED_LAW
 from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.motion import BoolArray, FloatArray
 from ..preprocessing.noise import STILL
-from ..preprocessing.samples import Dataset
+from ..preprocessing.samples import RawDataset
 from ..regressors.excitation import of_deflection
 from .acceptance import HeldOut
 
@@ -276,7 +276,7 @@ class Alternative:
 
 
 def alternatives_of(
-    explanation: Explanation, dataset: Dataset, confidence: float, limits: Limits | None = None
+    explanation: Explanation, dataset: RawDataset, confidence: float, limits: Limits | None = None
 ) -> tuple[Alternative, ...]:
     """Return the sets that the recordings cannot rule out; confidence: the calibrated probability of the verdict;
     limits: of the rig, where they are known.
@@ -322,7 +322,7 @@ def reason_of(
     names: Sequence[str],
     other: Sequence[str],
     explanation: Explanation,
-    dataset: Dataset,
+    dataset: RawDataset,
     limits: Limits | None = None,
 ) -> str:
     """Return what the recordings lack to tell two sets apart, as an action."""
@@ -343,7 +343,7 @@ def reason_of(
 
 
 def insufficient_excitation(
-    explanation: Explanation, dataset: Dataset, limits: Limits | None = None
+    explanation: Explanation, dataset: RawDataset, limits: Limits | None = None
 ) -> list[str]:
     """Return what the recordings lack that tells effects apart, each as an action."""
     timed = explanation.excitation.timed
@@ -366,7 +366,7 @@ def insufficient_excitation(
     return lacks
 
 
-def _another_speed(dataset: Dataset, limits: Limits | None) -> str:
+def _another_speed(dataset: RawDataset, limits: Limits | None) -> str:
     """Return a speed far from those recorded, with its unit: ten times the typical one where the rig reaches that."""
     speeds = np.concatenate([np.abs(e.motion.rate) for e in dataset.experiments])
     typical, fastest = float(np.sqrt(np.mean(speeds**2))), float(speeds.max())

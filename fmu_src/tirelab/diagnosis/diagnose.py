@@ -14,7 +14,7 @@ from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal, not_compared
 from ..preprocessing.motion import FloatArray
-from ..preprocessing.samples import OF_TIME, Dataset, Recorded, dataset_of, is_timed
+from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, is_timed, raw_dataset_of
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
 from .acceptance import HeldOut, accept, noise_free_residual, rmse, validation_on, without_unlikely
@@ -69,7 +69,7 @@ def diagnose(
     _check_names(allowed)
     refuse_far_zeros(fitted)
     check_recordings(fitted, two_sided=baseline.two_sided)
-    dataset = dataset_of(fitted, baseline)
+    dataset = raw_dataset_of(fitted, baseline)
     timed = is_timed(fitted)
     explanation = explain_misfit(fitted, baseline, allowed, report, timed=timed)
     levels = [floor.level for floor in explanation.floors]
@@ -143,7 +143,7 @@ def _said(*sentences: str) -> str:
 
 
 def _not_of_the_reading(
-    explanation: Explanation, dataset: Dataset, fitted: Sequence[Recorded]
+    explanation: Explanation, dataset: RawDataset, fitted: Sequence[Recorded]
 ) -> list[FloatArray]:
     """Return what the written tire leaves of each recording [N], as read or with the noise-free deflection.
 
@@ -236,7 +236,7 @@ def _recommend(
     return nearest
 
 
-def _limits_of(dataset: Dataset, timed: bool) -> Limits:
+def _limits_of(dataset: RawDataset, timed: bool) -> Limits:
     """Return the limits of a rig that did what was recorded, and may drive twice as fast."""
     if not timed:
         return Limits(deepest=dataset.max_deflection, fastest=REACHED)

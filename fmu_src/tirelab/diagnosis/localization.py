@@ -26,7 +26,7 @@ from scipy.stats import chi2
 
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
-from ..preprocessing.samples import Dataset, Experiment, Recorded
+from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
 from ..regressors.dataset import spikes
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
@@ -103,7 +103,7 @@ def _finite(value: float) -> float | str:
 
 def localize(
     recordings: Sequence[Recorded],
-    dataset: Dataset,
+    dataset: RawDataset,
     residuals: Sequence[FloatArray],
     levels: Sequence[float],
     left: Sequence[FloatArray] | None = None,
@@ -167,7 +167,7 @@ class _Samples:
 
 
 def _samples(
-    dataset: Dataset,
+    dataset: RawDataset,
     residuals: Sequence[FloatArray],
     levels: Sequence[float],
     left: Sequence[FloatArray] | None,
@@ -204,7 +204,7 @@ def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.array(lengths), np.array(counts)
 
 
-def _alike(record: Experiment, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
+def _alike(record: RawExperiment, chosen: IndexArray, values: Sequence[FloatArray]) -> list[FloatArray]:
     """Return the means of `values` at the deflection and direction of each sample."""
     depth = record.sampled.motion.deflection[chosen]
     edges = np.quantile(depth, np.linspace(0.0, 1.0, DEPTHS + 1)[1:-1])

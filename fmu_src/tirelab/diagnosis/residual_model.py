@@ -16,7 +16,7 @@ from ..estimation.explanation import Explanation
 from ..estimation.findings import UNEXPLAINED_SHARE, UNEXPLAINED_SIZE, Remainder
 from ..names import REFITTED_LAW
 from ..preprocessing.motion import FloatArray
-from ..preprocessing.samples import Dataset, Experiment, Recorded
+from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
 from .acceptance import HeldOut, rmse
 from .localization import Span
 
@@ -28,7 +28,7 @@ a ripple of a fifteenth of the range is followed; short recordings have fewer.""
 FOLDS = 5
 """Blocks of time; each is predicted from the others."""
 
-Coordinate = Callable[[Experiment], FloatArray]
+Coordinate = Callable[[RawExperiment], FloatArray]
 
 COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "deflection": ("m", lambda r: r.motion.deflection),
@@ -89,14 +89,14 @@ def unexplained_by(remainder: Remainder, places: Sequence[Span]) -> tuple[str, .
 
 
 def residual_models(
-    coordinates: Sequence[str], dataset: Dataset, residuals: Sequence[FloatArray], validation: HeldOut
+    coordinates: Sequence[str], dataset: RawDataset, residuals: Sequence[FloatArray], validation: HeldOut
 ) -> tuple[ResidualModel, ...]:
     """Return a regression over each of `coordinates`, from the residual of each recording [N]."""
     return tuple(_regressed(by, dataset, residuals, validation) for by in coordinates)
 
 
 def _regressed(
-    by: str, dataset: Dataset, residuals: Sequence[FloatArray], validation: HeldOut
+    by: str, dataset: RawDataset, residuals: Sequence[FloatArray], validation: HeldOut
 ) -> ResidualModel:
     unit, coordinate = COORDINATES.get(by, ("s", lambda r: r.time))
     at = np.concatenate([coordinate(r) for r in dataset.experiments])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import TirelabError
 from .noise import FEWEST_EVENTS, STANDS_OUT, deflection_noise, white_level
-from .samples import Dataset, Recorded
+from .samples import RawDataset, Recorded
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -58,7 +58,7 @@ def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False)
 
 
 def check_signal(
-    dataset: Dataset, names: Sequence[str], levels: Sequence[float], *, beside: bool = False
+    dataset: RawDataset, names: Sequence[str], levels: Sequence[float], *, beside: bool = False
 ) -> None:
     """Raise PoorRecording where the deflection is noise, or the force does not follow it or is hardly more than noise.
 

@@ -1,4 +1,7 @@
-"""The samples of one diagnosis as the misfit is located in them: motion, baseline law, and the rows looked at."""
+"""All samples of one diagnosis, as the misfit is located in them: motion, baseline law, and the rows looked at.
+
+Sets of effects are compared in blocks of them, see `regressors.dataset`.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +52,7 @@ class Recorded(Protocol):
 
 
 @dataclass(frozen=True)
-class Experiment:
+class RawExperiment:
     """One recording; arrays of one length n.
 
     time [s] from its start; force [N] as read; motion: its kinematics; coefficient A [N/cm^B], exponent B [1] of the
@@ -67,11 +70,11 @@ class Experiment:
     two_sided: bool = False
 
     @cached_property
-    def sampled(self) -> Experiment:
+    def sampled(self) -> RawExperiment:
         """The experiment at its `rows` alone."""
         rows = self.rows
         motion = Motion(**{k: v if k == "noise" else v[rows] for k, v in self.motion.__dict__.items()})
-        return Experiment(
+        return RawExperiment(
             self.time[rows],
             self.force[rows],
             motion,
@@ -91,15 +94,15 @@ class Experiment:
 
 
 @dataclass(frozen=True)
-class Dataset:
+class RawDataset:
     """All experiments of one diagnosis; radii [m]: of their surfaces; max_deflection [m]: the largest."""
 
-    experiments: tuple[Experiment, ...]
+    experiments: tuple[RawExperiment, ...]
     radii: tuple[float, ...]
     max_deflection: float
 
 
-def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
+def raw_dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> RawDataset:
     """Return the dataset of `recordings`, with the law of the `baseline` tire."""
     share = ROWS // len(recordings)
     experiments = []
@@ -108,7 +111,7 @@ def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
         distinct, inverse = np.unique(recording.surface_radius, return_inverse=True)
         pairs = np.array([baseline.law.coefficients(float(r)) for r in distinct])
         experiments.append(
-            Experiment(
+            RawExperiment(
                 time - time[0],
                 recording.force,
                 motion_of(time, recording.deflection),
@@ -120,7 +123,7 @@ def dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> Dataset:
             )
         )
     radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
-    return Dataset(
+    return RawDataset(
         tuple(experiments),
         tuple(radii.tolist()),
         max(float(e.motion.deflection.max()) for e in experiments),

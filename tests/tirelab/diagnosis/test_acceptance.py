@@ -20,7 +20,7 @@ from tirelab.diagnosis.acceptance import CONSIDERED, accept, split, validation_o
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.explanation import explain_misfit
 from tirelab.names import REFITTED_LAW
-from tirelab.preprocessing.samples import dataset_of
+from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.excitation import Excitation
 
@@ -42,7 +42,7 @@ def test_the_fit_does_not_use_the_held_out_recording():
         ("viscous_damping",)
     )
     before = [r.force - flat_force(r.deflection) for r in rides]
-    held_out = split(rides, dataset_of(rides, TireModel()), before, found)
+    held_out = split(rides, raw_dataset_of(rides, TireModel()), before, found)
     assert held_out.by == "recording ride 2"
     assert held_out.before == pytest.approx(error_of(200.0), rel=0.03)
     assert held_out.after == pytest.approx(error_of(300.0), rel=0.03)
@@ -76,7 +76,7 @@ def test_without_a_clock_the_end_is_named_by_its_samples():
     )
     found = explain_misfit([without], TireModel(), ("force_offset",), lambda stage: None, timed=False)
     before = [without.force - flat_force(without.deflection)]
-    held_out = split([without], dataset_of([without], TireModel()), before, found.of(("force_offset",)))
+    held_out = split([without], raw_dataset_of([without], TireModel()), before, found.of(("force_offset",)))
     first = int(np.searchsorted(np.cumsum(before[0] ** 2), 0.7 * np.sum(before[0] ** 2))) + 1
     assert held_out.by == f"samples {first}-1000"
 
@@ -117,7 +117,7 @@ def test_of_surfaces_in_turn_the_end_on_each_is_held_out():
     tire = TireModel(PowerLaw(550.9, 1.40), tested_range=None)
     found = explain_misfit([two], tire, ["recalibration"], lambda stage: None).of(("recalibration",))
     before = [two.force - flat_force(two.deflection)]
-    held_out = split([two], dataset_of([two], tire), before, found)
+    held_out = split([two], raw_dataset_of([two], tire), before, found)
     assert held_out.by == "the end of each motion"
     (part,) = held_out.held_out
     for surface in (half, ~half):
@@ -144,7 +144,7 @@ def test_what_is_driven_much_faster_is_not_held_out_as_a_whole():
         ("viscous_damping",)
     )
     before = [d.force - flat_force(d.deflection) for d in drives]
-    held_out = split(drives, dataset_of(drives, TireModel()), before, found)
+    held_out = split(drives, raw_dataset_of(drives, TireModel()), before, found)
     assert "ends of the others" in held_out.by
     assert held_out.after < 0.5 * held_out.before
     alike = [*drives, cycled("fast again", 6.4, 3)]
@@ -152,7 +152,7 @@ def test_what_is_driven_much_faster_is_not_held_out_as_a_whole():
         ("viscous_damping",)
     )
     before = [d.force - flat_force(d.deflection) for d in alike]
-    assert split(alike, dataset_of(alike, TireModel()), before, again).by == "recording fast again"
+    assert split(alike, raw_dataset_of(alike, TireModel()), before, again).by == "recording fast again"
 
 
 def above_and_onto_a_rim(noise: float) -> list[Recording]:
@@ -181,7 +181,7 @@ def test_nor_is_it_where_the_noise_hides_it():
     before = [d.force - flat_force(d.deflection) for d in drives]
     assert np.std(before[1]) < 2.0 * np.std(before[0])
     found = explain_misfit(drives, TireModel(), ["bottoming"], lambda stage: None).of(("bottoming",))
-    held_out = split(drives, dataset_of(drives, TireModel()), before, found)
+    held_out = split(drives, raw_dataset_of(drives, TireModel()), before, found)
     assert not held_out.by.startswith("recording")
     assert held_out.after < held_out.before
 
@@ -256,7 +256,7 @@ def made(names: str, left: float, damping: float = 0.0) -> Made:
 def delivered(*sets: Made, held_out: Drive = KEPT, surfaces: int = 1, near: bool = False) -> Any:
     before = [FITTED.force - flat_force(FITTED.deflection)]
     ranked: Any = Ranked(sets, surfaces, near)
-    return accept(ranked, validation_on([FITTED], [held_out], dataset_of([FITTED], TireModel()), before))
+    return accept(ranked, validation_on([FITTED], [held_out], raw_dataset_of([FITTED], TireModel()), before))
 
 
 def test_the_likeliest_set_is_delivered() -> None:
@@ -351,7 +351,7 @@ def likely_part(held_out: Drive, *sets: Made, **probabilities: float) -> set[str
 
     first: Any = Accepted(sets[0].names, sets[0].left, sets[0].tire, Ranked(sets))
     before = [FITTED.force - flat_force(FITTED.deflection)]
-    validate = validation_on([FITTED], [held_out], dataset_of([FITTED], TireModel()), before)
+    validate = validation_on([FITTED], [held_out], raw_dataset_of([FITTED], TireModel()), before)
     return set(without_unlikely(first, validate(first), probabilities, validate)[0].names)
 
 

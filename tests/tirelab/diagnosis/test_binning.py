@@ -9,7 +9,7 @@ import pytest
 from drives import Drive, flat_force, read, ride
 from radialtire import TireModel
 from tirelab.diagnosis.binning import BINS, Axis, axes_of
-from tirelab.preprocessing.samples import dataset_of
+from tirelab.preprocessing.samples import raw_dataset_of
 
 
 def press(cycles: int = 3, radius: float = np.inf, name: str = "press") -> Drive:
@@ -21,7 +21,7 @@ def press(cycles: int = 3, radius: float = np.inf, name: str = "press") -> Drive
 
 
 def axes(*drives: Drive) -> dict[str, Axis]:
-    dataset = dataset_of(drives, TireModel())
+    dataset = raw_dataset_of(drives, TireModel())
     kept = [np.arange(e.rows.size) for e in dataset.experiments]
     return {axis.by: axis for axis in axes_of(drives, dataset, kept)}
 
@@ -36,7 +36,7 @@ def test_a_single_press_has_every_coordinate_but_the_recording():
 def test_bins_hold_about_as_many_samples_and_are_bounded_by_them():
     drive = read("ride", *ride(3)[:2], flat_force(ride(3)[1]), 4)
     found = axes(drive)["deflection"]
-    dataset = dataset_of([drive], TireModel())
+    dataset = raw_dataset_of([drive], TireModel())
     values = dataset.experiments[0].sampled.motion.deflection
     counts = np.bincount(found.bin_of)
     assert found.start.size == counts.size <= BINS

@@ -34,7 +34,7 @@ from tirelab.diagnosis.confidence import (
 )
 from tirelab.estimation.findings import Estimate, Evidence, NamedEffect
 from tirelab.planning.waveforms import Limits
-from tirelab.preprocessing.samples import Dataset, dataset_of
+from tirelab.preprocessing.samples import RawDataset, raw_dataset_of
 
 CONTENT = json.loads((files("tirelab.diagnosis") / "calibration.json").read_text(encoding="utf-8"))
 ZERO = {"verdict": dict.fromkeys(OF_VERDICT, 0.0), "effect": dict.fromkeys(OF_EFFECT, 0.0)}
@@ -204,7 +204,7 @@ def test_the_file_says_how_it_was_made() -> None:
         assert 0.0 < CONTENT[of]["skill_left_out"] < 1.0
 
 
-RIDE = dataset_of([damped(1, samples=2000)], TireModel())
+RIDE = raw_dataset_of([damped(1, samples=2000)], TireModel())
 LOOP, DAMPING = ("rate_independent_hysteresis",), ("viscous_damping",)
 
 
@@ -223,7 +223,7 @@ def explained_by_sets(*sets: tuple[str, float, float], **more: Any) -> Any:
     )
 
 
-def listed(explanation: Any, confidence: float, dataset: Dataset = RIDE) -> list[tuple[str, ...]]:
+def listed(explanation: Any, confidence: float, dataset: RawDataset = RIDE) -> list[tuple[str, ...]]:
     return [a.names for a in alternatives_of(explanation, dataset, confidence)]
 
 
@@ -300,7 +300,7 @@ def test_the_reason_is_what_to_record(one: tuple[str, ...], other: tuple[str, ..
 
 def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
     time, deflection = triangle(samples=180)
-    press = dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
+    press = raw_dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
     said = "; ".join(insufficient_excitation(explained_by_sets(("inertia", 0.0, 1.0)), press))
     for words in ("press on a second surface", "hold 10 s at 15 mm", "drive each cycle twice"):
         assert words in said
@@ -310,7 +310,7 @@ def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
 def test_the_other_speed_is_one_that_the_rig_reaches(fastest: float, faster: bool) -> None:
     """The press goes 23 mm in 2 s, 11.5 mm/s: ten times that where the rig reaches it, else a tenth."""
     time, deflection = triangle(samples=180)
-    press = dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
+    press = raw_dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
     asked = explained_by_sets((" ".join(LOOP), 0.0, 1.0), one_speed=True)
     said = reason_of(LOOP, DAMPING, asked, press, Limits(fastest=fastest))
     speed = float(said.split("repeat at ")[1].split()[0])

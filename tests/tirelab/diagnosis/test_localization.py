@@ -8,7 +8,7 @@ from drives import Drive, flat_force, read, ride
 from radialtire import CATALOGUE, Recalibrated, TireModel
 from scipy.signal import lfilter
 from tirelab.diagnosis.localization import law_corrected, localize
-from tirelab.preprocessing.samples import dataset_of
+from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.simulation.simulate import simulate
 
 LEVEL = 5.0
@@ -17,7 +17,7 @@ LEVEL = 5.0
 
 def places(drives, residuals, noises):
     """Return the places of residuals of which a correction that explains everything leaves the noises."""
-    dataset = dataset_of(drives, TireModel())
+    dataset = raw_dataset_of(drives, TireModel())
     return localize(drives, dataset, residuals, [LEVEL] * len(drives), noises)
 
 
@@ -244,7 +244,7 @@ def test_places_are_those_of_the_physics_where_the_law_is_wrong_too():
 def test_noise_that_wanders_is_no_place_where_the_correction_leaves_it():
     time, deflection, _ = ride(3)
     drive = read("ride", time, deflection, flat_force(deflection), 4, noise=0.0)
-    dataset = dataset_of([drive], TireModel())
+    dataset = raw_dataset_of([drive], TireModel())
     found = {True: 0, False: 0}
     for seed in range(10):
         own = noise(seed, time.size) + 0.4 * noise(100 + seed, time.size, colour=0.999)

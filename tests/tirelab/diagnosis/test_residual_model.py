@@ -16,7 +16,7 @@ from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.localization import Span
 from tirelab.diagnosis.residual_model import residual_models, unexplained_by
 from tirelab.estimation.findings import Remainder
-from tirelab.preprocessing.samples import dataset_of
+from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.recordings.recording import Recording
 
 LEVEL = 5.0
@@ -26,7 +26,7 @@ def regressed(by: str, force, seed: int = 3):
     """Regress `force`(time, deflection) under noise over a coordinate; the last third is held out."""
     time, deflection, _ = ride(seed)
     own = force(time, deflection) + LEVEL * np.random.default_rng(1).standard_normal(time.size)
-    dataset = dataset_of([read("ride", time, deflection, flat_force(deflection), seed)], TireModel())
+    dataset = raw_dataset_of([read("ride", time, deflection, flat_force(deflection), seed)], TireModel())
     kept = time < 20.0
     (experiment,) = dataset.experiments
     parts = [(Part(experiment, own, own, own, chosen),) for chosen in (kept, ~kept)]

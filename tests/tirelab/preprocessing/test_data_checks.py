@@ -21,7 +21,7 @@ from tirelab.preprocessing.data_checks import (
     check_signal,
     not_compared,
 )
-from tirelab.preprocessing.samples import dataset_of
+from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.recordings.recording import Recording
 
 FloatArray = NDArray[np.float64]
@@ -46,7 +46,7 @@ def refused(*recordings: Recording) -> str:
 def checked(level: float = 0.0, **channels: np.ndarray) -> None:
     """Check a good recording and one with these channels."""
     pair = [recording(), recording(**channels)]
-    check_signal(dataset_of(pair, TireModel()), ["good.csv", "bad.csv"], [0.0, level])
+    check_signal(raw_dataset_of(pair, TireModel()), ["good.csv", "bad.csv"], [0.0, level])
 
 
 def first(samples: int) -> dict[str, np.ndarray]:
@@ -124,7 +124,7 @@ def test_a_force_that_relaxes_in_a_hold_is_not_refused() -> None:
     force = 4e4 * deflection * np.where(time < 1.0, 1.0, 0.3 + 0.7 * np.exp(-(time - 1.0) / 20.0))
     assert np.corrcoef(force, deflection)[0, 1] < 0.2
     held = Recording("held.csv", time, deflection, np.full(4000, np.inf), force)
-    check_signal(dataset_of([held], TireModel()), [held.name], [0.0])
+    check_signal(raw_dataset_of([held], TireModel()), [held.name], [0.0])
 
 
 CYCLE_TIME = np.linspace(0.0, 6.0, 2401)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from radialtire import TireModel, power_law
-from tirelab.preprocessing.samples import ROWS, dataset_of
+from tirelab.preprocessing.samples import ROWS, raw_dataset_of
 from tirelab.recordings.recording import Recording
 
 BASELINE = TireModel()
@@ -25,14 +25,14 @@ def sine(
 
 def test_the_baseline_law_is_the_tires() -> None:
     recording = sine(np.where(np.arange(2000) < 1000, np.inf, 0.3))
-    (experiment,) = dataset_of([recording], BASELINE).experiments
+    (experiment,) = raw_dataset_of([recording], BASELINE).experiments
     np.testing.assert_allclose(experiment.elastic(recording.deflection), recording.force, rtol=1e-12)
     assert np.all(experiment.elastic(np.full(2000, -1e-3)) == 0.0)
 
 
 def test_time_counts_from_the_start_and_the_rows_are_shared() -> None:
     recordings = [sine(np.inf, samples=12_000), sine(np.inf, samples=500)]
-    dataset = dataset_of(recordings, BASELINE)
+    dataset = raw_dataset_of(recordings, BASELINE)
     assert [e.number for e in dataset.experiments] == [0, 1]
     assert all(e.time[0] == 0.0 for e in dataset.experiments)
     rows = [e.rows for e in dataset.experiments]
@@ -43,7 +43,7 @@ def test_time_counts_from_the_start_and_the_rows_are_shared() -> None:
 
 
 def test_the_sampled_experiment_has_the_samples_of_its_rows() -> None:
-    (experiment,) = dataset_of([sine(0.3, samples=20_000)], BASELINE).experiments
+    (experiment,) = raw_dataset_of([sine(0.3, samples=20_000)], BASELINE).experiments
     sampled = experiment.sampled
     np.testing.assert_array_equal(sampled.time, experiment.time[experiment.rows])
     np.testing.assert_array_equal(sampled.motion.rate, experiment.motion.rate[experiment.rows])
@@ -52,7 +52,7 @@ def test_the_sampled_experiment_has_the_samples_of_its_rows() -> None:
 
 
 def test_the_largest_deflection_and_the_surfaces_are_those_of_all_recordings() -> None:
-    dataset = dataset_of(
+    dataset = raw_dataset_of(
         [sine(np.repeat([np.inf, 0.3], 1000), depth=22e-3), sine(-0.5, depth=15e-3)], BASELINE
     )
     assert dataset.max_deflection == pytest.approx(22e-3, rel=1e-4)
