@@ -229,7 +229,7 @@ def _recommend(
         if model is None:
             continue
         test = discriminate(explanation.model, model, noise, limits)
-        if nearest is None or test.separation > nearest.separation:
+        if nearest is None or test.gain > nearest.gain:
             nearest = test
         if test.sufficient:
             break

@@ -1,13 +1,15 @@
 """The discriminating test: the waveform on which two fitted models differ most, whatever their parameters then do.
 
 For every waveform that the rig can drive, both tires are simulated; what a refit of the alternative's own parameters
-could take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). The remainder,
-over the noise and times the root of the number of samples, is the separation: the square root of twice the expected
-gain in log likelihood.
+could take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). The remainder is
+judged as a diagnosis will judge it: by what it costs in log likelihood beside the noise and what the forms of the
+accepted effects usually miss on that waveform (`selection.search`). Noise alone would call a test decisive whose
+difference a slightly wrong form leaves as well.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -16,11 +18,13 @@ import numpy as np
 from ..estimation.findings import FittedModel
 from ..planning.waveforms import WAVEFORMS, Limits, sample_times
 from ..preprocessing.motion import FloatArray
+from ..regressors.dataset import ROWS
 from ..report.titles import question
+from ..selection.search import beside_noise
 from ..simulation.simulate import simulate
 
 DECISIVE = 5.7
-"""Least separation S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
+"""Least distance S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
 and deviation S; from here S^2/2 - 1.645 S > ln 1000, odds of 1000 to 1 in nineteen of twenty such tests."""
 
 
@@ -41,20 +45,44 @@ class Test:
 class DiscriminatingTest:
     """The test on which two sets of effects differ most.
 
-    between: the two sets; separation: expected distance in units of the noise, over all samples together; typical: root
-    mean square distance of one sample in units of the noise; sentence: what to do, or that no motion separates them
+    between: the two sets; gain: expected log likelihood ratio; separation: expected distance in units of the noise, all
+    samples together; typical: root mean square distance of one sample in units of the noise; missed: the same of what
+    the forms of the accepted effects may miss
     """
 
     test: Test
     between: tuple[tuple[str, ...], tuple[str, ...]]
+    gain: float
     separation: float
     typical: float
-    sentence: str
+    missed: float
 
     @property
     def sufficient(self) -> bool:
         """Whether the test separates the two sets."""
-        return self.separation >= DECISIVE
+        return math.sqrt(2.0 * self.gain) >= DECISIVE
+
+    @property
+    def sentence(self) -> str:
+        """What to do, or that no motion separates the two sets."""
+        place, path, asked = (
+            _surface(float(self.test.surface_radius[0])),
+            self.test.deflection,
+            question(*self.between),
+        )
+        differ = f"{self.typical:.2g} times the noise in a typical sample"
+        if self.missed > 0.0:
+            differ += f", {self.typical / self.missed:.2g} times what the forms of the effects may miss"
+        if not self.sufficient:
+            return (
+                f"No motion within the rig's limits decides {asked}: the forces would differ by at most {differ} "
+                f"({self.test.name} on {place})."
+            )
+        rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
+        return (
+            f"Drive {self.test.name} to {1e3 * path.max():.1f} mm on {place}, at up to {rate:.0f} mm/s, for "
+            f"{self.test.time[-1] - self.test.time[0]:.0f} s. It decides {asked}: the forces differ by {differ}."
+        )
 
     def to_dict(self) -> dict[str, object]:
         """Return the entry `separating_test` of diagnosis.json."""
@@ -67,6 +95,7 @@ class DiscriminatingTest:
             "surfaces": ["inf" if not np.isfinite(r) else float(r) for r in np.unique(t.surface_radius)],
             "between": [list(s) for s in self.between],
             "separation": self.separation,
+            "gain": self.gain,
             "sentence": self.sentence,
         }
 
@@ -74,7 +103,7 @@ class DiscriminatingTest:
 def discriminate(
     accepted: FittedModel, alternative: FittedModel, noise: float, limits: Limits
 ) -> DiscriminatingTest:
-    """Return the test within `limits` on which the two fitted models differ most.
+    """Return the test within `limits` that tells the two fitted models apart best.
 
     noise [N]: of one sample. The alternative may follow the accepted model with its free parameters.
     """
@@ -94,30 +123,25 @@ def discriminate(
                     difference - sensitivities @ np.linalg.lstsq(sensitivities, difference, rcond=1e-8)[0]
                 )
             typical = float(np.sqrt(np.mean(difference**2))) / noise
-            separation = typical * float(np.sqrt(difference.size))
-            if best is None or separation > best.separation:
-                sentence = _sentence(test, between, separation, typical)
-                best = DiscriminatingTest(test, between, separation, typical, sentence)
+            missed = accepted.missed(test) / noise
+            gain = expected_gain(path.size, typical, missed)
+            if best is None or gain > best.gain:
+                best = DiscriminatingTest(
+                    test, between, gain, typical * float(np.sqrt(path.size)), typical, missed
+                )
     assert best is not None
     return best
 
 
-def _sentence(
-    test: Test, between: tuple[tuple[str, ...], tuple[str, ...]], separation: float, typical: float
-) -> str:
-    place, path = _surface(float(test.surface_radius[0])), test.deflection
-    asked = question(*between)
-    if separation < DECISIVE:
-        return (
-            f"No motion within the rig's limits decides {asked}: the forces would differ by at most {separation:.2g} "
-            f"times the noise over all samples ({test.name} on {place}); {DECISIVE:g} times are needed."
-        )
-    rate = 1e3 * float(np.abs(np.diff(path) / np.diff(test.time)).max())
-    return (
-        f"Drive {test.name} to {1e3 * path.max():.1f} mm on {place}, at up to {rate:.0f} mm/s, for "
-        f"{test.time[-1] - test.time[0]:.0f} s. It decides {asked}: the forces differ by {typical:.2g} times the noise "
-        f"in a typical sample, by {separation:.0f} times the noise over all samples."
-    )
+def expected_gain(samples: int, different: float, missed: float) -> float:
+    """Return the expected log likelihood ratio of two sets whose forces differ so much, where the forms of the true one
+    miss so much; both root mean squares in units of the noise of one sample.
+    """
+    blocks = min(samples, ROWS)
+    averaged = samples / blocks
+    law = beside_noise(blocks).above(missed * math.sqrt(averaged))
+    left = blocks + samples * missed**2
+    return law.profile(left)[0] - law.profile(left + samples * different**2)[0]
 
 
 def _surface(radius: float) -> str:

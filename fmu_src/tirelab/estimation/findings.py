@@ -6,6 +6,7 @@ noise: how much, where, and on what it depends.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -14,11 +15,11 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..regressors.dataset import Dataset, spikes
-from ..regressors.signature import LAW
+from ..regressors.signature import LAW, form_error, size_of
 from ..selection.search import LIKE_NOISE
 from ..simulation.simulate import Sampled, simulate
 from .fit import Fit
-from .problem import COMMON, law_surfaces
+from .problem import COMMON, law_surfaces, tire_of
 
 FloatArray = NDArray[np.float64]
 
@@ -321,6 +322,12 @@ class FittedModel:
             moved[i] += step
             columns.append((simulate(problem.tire(moved), motion) - base) / step)
         return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))
+
+    def missed(self, motion: Sampled) -> float:
+        """Return the root mean square [N] of what the forms of its effects may miss on a motion."""
+        values, dataset, whole = self.fit.values, self.fit.problem.dataset, simulate(self.tire, motion)
+        without = {n: tire_of(dataset, {m: v for m, v in values.items() if m != n}) for n in values}
+        return math.hypot(*(form_error(n) * size_of(whole - simulate(t, motion)) for n, t in without.items()))
 
 
 @dataclass(frozen=True)

@@ -117,14 +117,17 @@ class Discrepancy:
         return error**2 * self.samples / self.effective
 
 
+def beside_noise(samples: int) -> Discrepancy:
+    """Return the discrepancy's law over so many samples where nothing is missed but what forms are said to miss."""
+    effective = min(EFFECTIVE, samples / 3.0)
+    return Discrepancy(samples, effective, 1.0, math.inf, 1.0 + LIKE_NOISE**2 * samples / effective)
+
+
 def discrepancy_of(misfit: FloatArray, missed: float) -> Discrepancy:
     """Return the discrepancy's law for a misfit (n,) in units of the noise; missed: part of it by forms."""
-    n = misfit.size
-    power = float(misfit @ misfit)
-    effective = min(EFFECTIVE, n / 3.0)
-    usual = 1.0 + missed**2 * max(power - n, 0.0) / effective
-    highest = max(2.0 * power / effective, 2.0 * usual)
-    return Discrepancy(n, effective, usual, highest, 1.0 + LIKE_NOISE**2 * n / effective)
+    law, power = beside_noise(misfit.size), float(misfit @ misfit)
+    usual = 1.0 + missed**2 * max(power - law.samples, 0.0) / law.effective
+    return replace(law, usual=usual, highest=max(2.0 * power / law.effective, 2.0 * usual))
 
 
 def usual_form_error() -> float:

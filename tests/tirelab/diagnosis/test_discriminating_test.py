@@ -1,11 +1,14 @@
 """The test that tells alternatives apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fits import model_of
 from scipy.stats import norm
-from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate
+from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate, expected_gain
 from tirelab.planning.waveforms import Limits
+from tirelab.selection.search import EFFECTIVE
 
 SLIPPING = {"rate_independent_hysteresis": {"slip_force": 30.0, "reach": 1e-3}}
 
@@ -29,8 +32,30 @@ def test_friction_and_viscosity_are_told_apart_by_more_than_one_rate():
     assert found.separation > 100.0
 
 
-def test_the_separation_is_in_units_of_the_noise():
-    assert fitted(3.0).separation == pytest.approx(2.0 * fitted(6.0).separation, rel=1e-6)
+def test_the_difference_is_in_units_of_the_noise_of_one_sample_and_of_all():
+    found = fitted(6.0)
+    assert found.separation == pytest.approx(found.typical * np.sqrt(found.test.time.size), rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 3.0, 10.0])
+def test_beside_forms_that_miss_more_than_the_noise_their_ratio_counts(ratio):
+    """The discrepancy's variance follows what is left: the gain is e / 2 times the logarithm of the squares' ratio."""
+    told = expected_gain(12_000, 100.0 * ratio, 100.0)
+    assert told == pytest.approx(0.5 * EFFECTIVE * np.log(1.0 + ratio**2), rel=0.01)
+    assert expected_gain(12_000, 400.0 * ratio, 400.0) == pytest.approx(told, rel=0.01)
+
+
+def test_where_forms_miss_nothing_a_faint_difference_counts_in_every_sample():
+    """Beside white noise the gain is half of the sum of squares, as long as no discrepancy is as likely: V = 1."""
+    assert expected_gain(12_000, 0.01, 0.0) == pytest.approx(0.5 * 12_000 * 0.01**2, rel=0.2)
+
+
+def test_a_test_on_which_the_forms_miss_as_much_as_the_difference_does_not_decide():
+    found = fitted(6.0)
+    assert found.sufficient
+    poor = replace(found, gain=expected_gain(found.test.time.size, found.missed, found.missed))
+    assert not poor.sufficient
+    assert poor.separation > 100.0
 
 
 def test_the_contract_of_a_test():
@@ -65,7 +90,6 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     assert found.sentence.startswith(
         "No motion within the rig's limits decides whether the force offset acts: the forces would differ by at most "
     )
-    assert "5.7 times are needed" in found.sentence
     assert fitted(6.0).sufficient
 
 
