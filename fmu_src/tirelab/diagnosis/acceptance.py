@@ -1,8 +1,8 @@
 """Which fitted set is delivered: judged by its written tire, on the recordings as they were read and on held-out data.
 
 Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so it may leave more. What is
-ranked is what is delivered: a set is refused where its written tire is clearly worse than that of another set of no
-more effects, and where it is worse than the baseline on held-out data. No effect at all is always accepted. An effect
+ranked is what is delivered: a set gives way to another of no more effects whose written tire leaves clearly less, and
+is refused where it is worse than the baseline on held-out data. No effect at all is always accepted. An effect
 of the deflection alone is not named beside a refitted law on one surface, where that law is nearly as likely alone; nor
 is an effect that is less likely than not, where the others leave as little without it.
 
@@ -246,7 +246,7 @@ WORSE = 1.01
 held-out data do not show."""
 
 NO_WORSE = 0.9
-"""A set is refused where one of no more effects leaves less than this part of what it leaves."""
+"""A set gives way to one of no more effects that leaves less than this part of what it leaves."""
 
 LIKELY = 0.5
 """An effect of at least this probability is likelier there than not."""
@@ -255,22 +255,28 @@ Validate = Callable[[Explanation], HeldOut]
 
 
 def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, HeldOut]:
-    """Return the first of the sets in their order that is not refused, and what it does on held-out data.
+    """Return the first of the sets in their order that is not refused, and what it does on held-out data. A set gives
+    way to one of no more effects that leaves clearly less.
 
     validate: what a set does there (see `validation_on`)
     """
     order = explanation.in_order(CONSIDERED)
     likely = [_plainer(explanation, names) for names in (order if () in order else (*order, ()))]
-    left = [e.error for e in likely]
-    for chosen, own in zip(likely, left, strict=True):
-        smaller = (v for e, v in zip(likely, left, strict=True) if len(e.effects) <= len(chosen.effects))
-        if min(smaller) < NO_WORSE * own:
-            continue
+    for chosen in {e.model.names: e for e in (_leaving_least(e, likely) for e in likely)}.values():
         validation = validate(chosen)
         if not chosen.effects or not is_worse(validation):
-            return chosen, validation
-    nothing = explanation.of(())
-    return nothing, validate(nothing)
+            break
+    return chosen, validation
+
+
+def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explanation:
+    """Return a set, or the likeliest of no more effects in its place whose written tire leaves clearly less, until
+    there is none.
+    """
+    for other in likely:
+        if len(other.effects) <= len(chosen.effects) and other.error < NO_WORSE * chosen.error:
+            return _leaving_least(other, likely)
+    return chosen
 
 
 def without_unlikely(
