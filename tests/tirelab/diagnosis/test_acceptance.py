@@ -279,7 +279,9 @@ def test_a_set_that_leaves_clearly_more_than_a_smaller_one_is_refused(
     assert chosen.names == names
 
 
-def test_a_set_gives_way_to_the_one_that_leaves_less_and_not_to_a_likelier_smaller_one_that_leaves_more() -> None:
+def test_a_set_gives_way_to_the_one_that_leaves_less_and_not_to_a_likelier_smaller_one_that_leaves_more() -> (
+    None
+):
     chosen, _ = delivered(
         made("inertia force_lag", 6.0, 500.0),
         made("inertia", 9.0, 500.0),

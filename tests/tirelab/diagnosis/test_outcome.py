@@ -81,7 +81,7 @@ def test_numbers_that_are_not_finite_become_null():
 
 def test_the_page_shows_evidence_reasons_and_the_motion():
     motion = Test("sweep", TIME, TIME / 1e3, np.full(4, np.inf))
-    test = DiscriminatingTest(motion, ((), ("inertia",)), 10.0, 1.0, "Drive it.")
+    test = DiscriminatingTest(motion, ((), ("inertia",)), gain=30.0, separation=10.0, typical=1.0, missed=0.0)
     rows = (
         Evidence(("inertia",), 0.0, 1.21, (), 0.95),
         Evidence((), -3.0, 4.0, (), 0.05),

@@ -139,10 +139,14 @@ def test_a_sure_verdict_is_not_opened_with_its_alternatives():
 
 
 def test_that_no_motion_separates_the_alternatives_is_said():
-    motion = Test("sweep", np.arange(3.0), np.zeros(3), np.full(3, np.inf))
+    motion = Test("sweep", np.arange(3.0), np.array([0.0, 0.01, 0.0]), np.full(3, np.inf))
     between = (("recalibration",), ("series_compliance",))
     alternatives = [Alternative(between[1], 1.0, "one surface", 0.2)]
-    worthless = DiscriminatingTest(motion, between, 0.3, 0.01, "No motion separates them.")
-    assert summarise((), alternatives, (), 0.4, STAYED, worthless).endswith("No motion separates them.")
-    telling = DiscriminatingTest(motion, between, 30.0, 1.0, "Drive it.")
-    assert "Drive it" not in summarise((), alternatives, (), 0.4, STAYED, telling)
+    worthless = DiscriminatingTest(motion, between, gain=0.3, separation=9.0, typical=0.1, missed=0.5)
+    assert summarise((), alternatives, (), 0.4, STAYED, worthless).endswith(
+        "decides between refitted law and series spring: the forces would differ by at most 0.1 times the noise in a "
+        "typical sample, 0.2 times what the forms of the effects may miss (sweep on flat ground)."
+    )
+    telling = DiscriminatingTest(motion, between, gain=30.0, separation=99.0, typical=1.0, missed=0.0)
+    assert telling.sentence.startswith("Drive sweep ")
+    assert "Drive sweep" not in summarise((), alternatives, (), 0.4, STAYED, telling)
