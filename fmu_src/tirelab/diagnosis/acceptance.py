@@ -26,10 +26,11 @@ from radialtire import TireModel
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
 from ..preprocessing.data_checks import compared
-from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
+from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..preprocessing.samples import RawDataset, RawExperiment, Recorded, is_timed, raw_dataset_of
 from ..regressors.signature import MOST_SURFACES
+from ..simulation.channels import begun
 from ..simulation.simulate import simulate, smoothed_motion
 
 FITTED = 0.7
@@ -91,8 +92,9 @@ def rmse(parts: Sequence[FloatArray]) -> float:
 
 def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) -> FloatArray:
     """Return the residual [N] of `tire` where it is given the smoothed motion in place of the readings."""
-    smooth = smoothed_motion(recording, motion)
-    return recording.force - simulate(tire, smooth, smooth)
+    whole, before = begun(recording)
+    smooth = smoothed_motion(whole, motion_of(whole.time, whole.deflection) if before else motion)
+    return recording.force - simulate(tire, smooth, smooth)[before:]
 
 
 def given(

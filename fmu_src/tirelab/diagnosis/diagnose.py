@@ -14,7 +14,7 @@ from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal, not_compared
 from ..preprocessing.motion import FloatArray
-from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, is_timed, raw_dataset_of
+from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_timed, raw_dataset_of
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
 from .acceptance import HeldOut, accept, noise_free_residual, rmse, validation_on, without_unlikely
@@ -55,15 +55,15 @@ def diagnose(
 ) -> Verdict:
     """Return what the `baseline` tire leaves out of one recording or several.
 
-    held_out: recordings that only check the correction (without any, the fit is repeated without a part of
-    `recordings`, see `held_out.split`); catalogue: names of the effects that may be found, None for all (what an effect
-    outside it does is something unknown); limits: of the rig that would drive the next test; progress: called with a
-    sentence for each stage
+    held_out: recordings that only check the correction, a part of a file after what was recorded before it; without
+    any, the fit is repeated without a part of `recordings` (see `acceptance.split`)
+    catalogue: names of the effects that may be found, None for all (what an effect outside it does is something
+    unknown); limits: of the rig that would drive the next test; progress: called with a sentence for each stage
 
     Raises PoorRecording where the recordings are too short or too poor, RecordingError where the zero of a gauge is so
     far off that no effect holds it, ValueError for an unknown name in `catalogue`.
     """
-    fitted, kept = _several(recordings), _several(held_out)
+    fitted, kept = [alone(r) for r in _several(recordings)], _several(held_out)
     report = progress or (lambda sentence: None)
     allowed = catalogue_names() if catalogue is None else tuple(catalogue)
     _check_names(allowed)

@@ -24,6 +24,7 @@ from ..fmu.foreign import ForeignFmu, Simulation, read_foreign, tire_inside
 from ..fmu.replay import replay
 from ..fmu.system import SYSTEM
 from ..planning.rig import read_rig
+from ..preprocessing.samples import alone
 from ..recordings.files import recording_files
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
@@ -119,7 +120,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
     check_once([*files, *kept_files])
     check_folder(asked.out)
-    fitted = [_read(file, asked.reading, report) for file in files]
+    fitted = [alone(_read(file, asked.reading, report)) for file in files]
     kept = [_read(file, asked.reading, report) for file in kept_files]
     check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
     check_depth(fitted, kept)
@@ -134,7 +135,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
             for file in files_read([*files, *kept_files], asked.reading.settings, beside)
         ],
     }
-    believed = _simulation(asked, model, fitted, kept, report)
+    believed = _simulation(asked, model, fitted, [alone(r) for r in kept], report)
     if believed is not None:
         baseline, fitted, kept = believed.tire, list(believed.fitted), list(believed.kept)
     try:

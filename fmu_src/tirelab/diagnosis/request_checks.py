@@ -53,7 +53,7 @@ def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
             "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give the "
             "gauge's zero, --zero 'deflection=-80 mm' say"
         )
-    for recording in (*fitted, *kept):
+    for recording in (r.whole for r in (*fitted, *kept)):
         deepest = int(np.argmax(recording.deflection))
         if recording.deflection[deepest] > DEFLECTION_HIGHEST:
             at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"

@@ -17,7 +17,8 @@ from radialtire import TireModel
 from ..regressors.dataset import Dataset, spikes
 from ..regressors.signature import LAW, form_error, size_of
 from ..selection.search import LIKE_NOISE
-from ..simulation.simulate import Sampled, simulate
+from ..simulation.channels import Sampled
+from ..simulation.simulate import simulate
 from .fit import Fit
 from .problem import COMMON, law_surfaces, tire_of
 

@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS
 
 from ..errors import TirelabError
+from ..simulation.channels import Sampled
 from .foreign import ForeignFmu
-from .replay import Motion
 from .unpacking import unpack
 
 EVEN = 1e-6
@@ -46,7 +46,7 @@ def native_code(fmu: ForeignFmu) -> str:
 
 
 def replay_foreign(
-    fmu: ForeignFmu, motion: Motion, name: str, timeout: float, progress: Progress
+    fmu: ForeignFmu, motion: Sampled, name: str, timeout: float, progress: Progress
 ) -> FloatArray:
     """Return the FMU's force [N] at every sample of `motion`, compression positive.
 

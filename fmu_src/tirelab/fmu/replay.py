@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import fmpy
 import numpy as np
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from radialtire import CHANNELS
 
 from ..errors import TirelabError
-from ..simulation.channels import measured_of
+from ..simulation.channels import Sampled, begun, measured_of
 from .unpacking import unpack
 
 INPUTS = ("deflection", "surface_radius")
@@ -31,17 +31,6 @@ FMI_TRUE, WARNING = 1, 1
 """fmi2True; the highest status that is no failure (FMI 2.0.4, 2.1.3)."""
 
 NO_REASON = "it logged no reason"
-
-
-class Motion(Protocol):
-    """The channels of a recording that a replay needs, in SI."""
-
-    @property
-    def time(self) -> NDArray[np.float64]: ...
-    @property
-    def deflection(self) -> NDArray[np.float64]: ...
-    @property
-    def surface_radius(self) -> NDArray[np.float64]: ...
 
 
 @dataclass(frozen=True)
@@ -172,19 +161,21 @@ class _Stepper:
                 _check("fmi2GetReal", status)
 
 
-def replay(fmu: Path, motion: Motion) -> NDArray[np.float64]:
+def replay(fmu: Path, motion: Sampled) -> NDArray[np.float64]:
     """Return the FMU's radial force [N] at every sample of `motion`, without a sample of delay.
 
-    A channel that the motion holds and the FMU has an input for, such as the pressure, is set at every sample.
+    A channel that the motion holds and the FMU has an input for, such as the pressure, is set at every sample. A part
+    of a file starts with what was recorded before it.
     Raises TirelabError where the FMU lacks a variable or refuses a sample.
     """
+    motion, before = begun(motion)
     measured = measured_of(motion)
     inputs = dict(zip(INPUTS, (motion.deflection, motion.surface_radius), strict=True))
     inputs |= {c.variable: measured[c.name] for c in CHANNELS if c.name in measured}
     force = driven(fmu, motion.time, inputs, OUTPUT, optional=[c.variable for c in CHANNELS])
     if not np.isfinite(force[0]):
         raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
-    return force
+    return force[before:]
 
 
 def driven(

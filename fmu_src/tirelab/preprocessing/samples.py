@@ -6,9 +6,9 @@ Sets of effects are compared in blocks of them, see `regressors.dataset`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from radialtire import TireModel
@@ -49,6 +49,9 @@ class Recorded(Protocol):
     def force(self) -> FloatArray:
         """[N], compressive > 0."""
         ...
+
+
+R = TypeVar("R", bound=Recorded)
 
 
 @dataclass(frozen=True)
@@ -128,6 +131,13 @@ def raw_dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> RawDa
         tuple(radii.tolist()),
         max(float(e.motion.deflection.max()) for e in experiments),
     )
+
+
+def alone(recording: R) -> R:
+    """Return a recording without what was recorded before it, where a fit begins (see `simulation.channels.begun`)."""
+    if getattr(recording, "history", None) is None:
+        return recording
+    return replace(recording, history=None)  # type: ignore[type-var]
 
 
 def is_timed(recordings: Sequence[Recorded]) -> bool:

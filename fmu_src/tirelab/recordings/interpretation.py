@@ -74,7 +74,7 @@ class Interpreted:
     """Channels in SI with compression positive, by name, and the rows that they came from.
 
     counted: how the gauges count; units: of the channels as they were read
-    doubts: what is doubtful of their sizes; first: how many samples were left out before those of the piece
+    doubts: what is doubtful of their sizes; before: the channels at the samples before those of the piece
     part: whether it is of a part, and not of a tire
     """
 
@@ -84,8 +84,13 @@ class Interpreted:
     counted: Counted
     units: Mapping[str, str] = field(default_factory=dict)
     doubts: Doubts = Doubts()  # noqa: RUF009
-    first: int = 0
+    before: Mapping[str, FloatArray] = field(default_factory=dict)
     part: bool = False
+
+    @property
+    def first(self) -> int:
+        """How many samples were left out before those of the piece."""
+        return len(self.before.get("time", ()))
 
     def error(self, index: int, channel: str, what: str) -> RecordingError:
         """Return the error for one sample, with its place in the file."""
@@ -240,12 +245,14 @@ def interpret(
         values["believed_force"] = -believed
         notes.append("believed_force turned in sign: it counts the other way than the force")
     part = samples_within(plan.origin.name, piece, values["time"], _numbered(rows, samples))
+    before: dict[str, FloatArray] = {}
     if part is not None:
+        before = {name: column[: part.start] for name, column in values.items()}
         values = {name: column[part] for name, column in values.items()}
         notes.append(f"{part.stop - part.start} of {samples} samples read: {_part_text(piece)}")
     notes += gap_notes(values["time"])
     units = {name: convert.unit for name, convert in plan.conversions.items()}
-    first = 0 if part is None else int(part.start)
+    first = len(before.get("time", ()))
 
     def where(channel: str, sample: int | None) -> str:
         header = plan.headers.get(channel)
@@ -257,7 +264,7 @@ def interpret(
     part_alone = plan.settings.part
     doubts = Doubts() if counted.fault else doubts_of(counted.gauges, values, units, where, part_alone)
     notes += [f"doubtful: {sentence}" for sentence in doubts.sentences]
-    return Interpreted(values, rows, tuple(notes), counted, units, doubts, first, part_alone)
+    return Interpreted(values, rows, tuple(notes), counted, units, doubts, before, part_alone)
 
 
 def _part_text(piece: Piece) -> str:

@@ -72,6 +72,7 @@ class Recording:
     doubts           what is doubtful of the sizes of the numbers, in sentences (among the notes too)
     provenance       what the file says above its table: of the machine, the tire, the test
     far_zero         why its zero is so far off that no effect holds it, "" where one does
+    history          of a part of a file what was recorded before it, or None: a simulation starts with it
 
     All arrays have the shape (samples,), samples >= 2, and are read-only.
     Errors: RecordingError (SampleFault where one sample is at fault) for unequal lengths, fewer than two
@@ -93,6 +94,7 @@ class Recording:
     provenance: tuple[str, ...] = ()
     believed_force: FloatArray | None = None
     far_zero: str = ""
+    history: Recording | None = None
 
     def __post_init__(self) -> None:
         samples = len(self.time)
@@ -200,6 +202,16 @@ class Recording:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    @cached_property
+    def whole(self) -> Recording:
+        """The recording with its history before it; itself where it has none."""
+        if self.history is None:
+            return self
+        pairs = zip(self.history.channels(), self.channels(), strict=True)
+        joined = {name: np.concatenate([earlier, own]) for (name, earlier), (_, own) in pairs}
+        joined["surface_radius"] = joined.pop("radius")
+        return replace(self, **joined, history=None)  # type: ignore[arg-type]
 
     def channels(self) -> Iterator[tuple[str, FloatArray]]:
         """The channels there are, by name, in the order of the house form."""
@@ -327,23 +339,16 @@ def _recording_of(origin: Origin, table: Table, settings: Settings) -> Recording
 
 def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> Recording:
     """Return the recording; a sample that cannot be is refused with its place in the file or table."""
-    values = found.values
     try:
         recording = Recording(
             name=name,
-            time=values["time"],
-            deflection=values["deflection"],
-            surface_radius=values["radius"],
-            force=values["force"],
-            pressure=values.get("pressure"),
-            temperature=values.get("temperature"),
-            speed=values.get("speed"),
+            **_arrays(found.values),
             source=source,
             notes=found.notes,
             timed=plan.timed,
             doubts=found.doubts.sentences,
-            believed_force=values.get("believed_force"),
             far_zero=found.doubts.far_zero,
+            history=_history(found.before, name),
         )
     except SampleFault as fault:
         part = (
@@ -354,6 +359,19 @@ def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> 
         raise found.error(fault.index, fault.channel, fault.what + part) from None
     found.check_loading()
     return recording
+
+
+def _history(before: Mapping[str, FloatArray], name: str) -> Recording | None:
+    """Return what was recorded before a part of a file, None where that is nothing, or cannot be."""
+    try:
+        return Recording(name, **_arrays(before)) if len(before.get("time", ())) > 1 else None
+    except RecordingError:
+        return None
+
+
+def _arrays(values: Mapping[str, FloatArray]) -> dict[str, Any]:
+    """Return channels under the names that a recording has for them."""
+    return {"surface_radius" if name == "radius" else name: column for name, column in values.items()}
 
 
 def write_recording(recording: Recording, path: Path | str) -> None:

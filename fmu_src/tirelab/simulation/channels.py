@@ -1,8 +1,9 @@
-"""The channels beside the motion that effects read: which of them something that is simulated holds."""
+"""What is simulated, beside its motion: the channels that effects read, and the history that it starts with."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,25 @@ from radialtire import CHANNELS
 from radialtire.effect import NOT_MEASURED
 
 FloatArray = NDArray[np.float64]
+
+
+class Sampled(Protocol):
+    """What is simulated: arrays of one length, time rising; the channels that effects read as `measured_of` says."""
+
+    @property
+    def time(self) -> FloatArray:
+        """[s]."""
+        ...
+
+    @property
+    def deflection(self) -> FloatArray:
+        """[m], compressed > 0."""
+        ...
+
+    @property
+    def surface_radius(self) -> FloatArray:
+        """[m], convex > 0, concave < 0, flat infinite."""
+        ...
 
 
 def measured_of(sampled: object) -> Mapping[str, FloatArray]:
@@ -22,6 +42,15 @@ def measured_of(sampled: object) -> Mapping[str, FloatArray]:
         return dict(given)
     found = {channel.name: getattr(sampled, channel.name, None) for channel in CHANNELS}
     return {name: values for name, values in found.items() if values is not None}
+
+
+def begun(sampled: Sampled) -> tuple[Sampled, int]:
+    """Return the samples from which a simulation starts, and how many of them lie before those of `sampled`.
+
+    A part of a file has the attributes `history`, what was recorded before it, and `whole`, both together.
+    """
+    history = getattr(sampled, "history", None)
+    return (sampled, 0) if history is None else (sampled.whole, len(history))  # type: ignore[attr-defined]
 
 
 def channel_rows(measured: Mapping[str, FloatArray], samples: int) -> tuple[FloatArray, ...]:

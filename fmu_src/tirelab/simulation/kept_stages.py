@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import Effect, State, TireModel
 
+from .channels import Sampled
 from .simulate import (
     UPSTREAM,
     Behind,
     History,
     Kinematics,
-    Sampled,
     behind_law,
     elastic_stage,
     learned_force,

@@ -22,31 +22,12 @@ from radialtire.model import Law
 from radialtire.tracking import FINEST
 
 from . import compiled
-from .channels import channel_rows, measured_of
+from .channels import Sampled, begun, channel_rows, measured_of
 
 FloatArray = NDArray[np.float64]
 
 UPSTREAM = ("deflection", "series")
 """Places that change the deflection."""
-
-
-class Sampled(Protocol):
-    """What is simulated: arrays of one length, time rising; the channels that effects read as `measured_of` says."""
-
-    @property
-    def time(self) -> FloatArray:
-        """[s]."""
-        ...
-
-    @property
-    def deflection(self) -> FloatArray:
-        """[m], compressed > 0."""
-        ...
-
-    @property
-    def surface_radius(self) -> FloatArray:
-        """[m], convex > 0, concave < 0, flat infinite."""
-        ...
 
 
 class Kinematics(Protocol):
@@ -124,11 +105,15 @@ class History:
 def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
     """Return the radial force [N] of `tire` at every sample: that of `TireModel.step` from its initial state, to 1e-12.
 
+    A part of a file starts with what was recorded before it (`channels.begun`).
     kinematics: rate and acceleration where they are known better than the tire can track them (see `tracking`)
     """
+    recording, before = begun(recording) if kinematics is None else (recording, 0)
     history, force = elastic_stage(tire, recording, kinematics)
     force = behind_law(tire, history, force, Behind())
-    return force if tire.remainder is None else force + learned_force(tire, recording, kinematics)
+    if tire.remainder is not None:
+        force = force + learned_force(tire, recording, kinematics)
+    return force[before:]
 
 
 class Behind:

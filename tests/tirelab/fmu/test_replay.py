@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tempfile
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from radialtire import CATALOGUE, TireModel
 from tirelab.errors import TirelabError
 from tirelab.fmu.build import build_fmu
 from tirelab.fmu.replay import replay
+from tirelab.recordings.recording import Recording
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,22 @@ def test_replay_with_a_memory_equals_the_model_stepped_by_hand(tmp_path: Path) -
     simulated = replay(build_fmu(tire, tmp_path).path, m)
     # time - step + step is rounded once more on its way through the FMI: 1e-16 of 9 s in a rate over 0.01 s.
     np.testing.assert_allclose(simulated, expected, rtol=1e-9, atol=1e-9)
+
+
+def test_a_part_of_a_file_is_replayed_after_what_was_recorded_before_it(tmp_path: Path) -> None:
+    friction = CATALOGUE["rate_independent_hysteresis"]
+    tire = TireModel(effects=((friction, (40.0, 2e-3, *(p.start for p in friction.parameters[2:]))),))
+    m, fmu = motion(), build_fmu(tire, tmp_path).path
+    whole = Recording("whole", m.time, m.deflection, m.surface_radius, np.zeros(m.time.size))
+
+    def cut(part: slice) -> Recording:
+        return Recording(
+            "part", *(a[part] for a in (m.time, m.deflection, m.surface_radius)), whole.force[part]
+        )
+
+    part = replace(cut(slice(100, None)), history=cut(slice(0, 100)))
+    np.testing.assert_array_equal(replay(fmu, part), replay(fmu, whole)[100:])
+    assert abs(replay(fmu, replace(part, history=None))[0] - replay(fmu, part)[0]) > 1.0
 
 
 def test_nothing_is_left_behind(fmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

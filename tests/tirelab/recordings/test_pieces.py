@@ -89,6 +89,22 @@ class TestRanges:
         parts = [read_recording(f"{rig}@{piece}") for piece in (":7s", "7s:13s", "13s:")]
         np.testing.assert_array_equal(np.concatenate([p.time for p in parts]), read_recording(rig).time)
 
+    def test_a_part_knows_what_was_recorded_before_it(self, rig: Path) -> None:
+        part, whole = read_recording(f"{rig}@7s:13s"), read_recording(rig)
+        assert part.history is not None
+        assert part.history.time[-1] < part.time[0]
+        for (name, joined), (_, own) in zip(part.whole.channels(), whole.channels(), strict=True):
+            np.testing.assert_array_equal(joined, own[: joined.size], err_msg=name)
+        assert whole.history is None
+        assert whole.whole is whole
+        assert read_recording(f"{rig}@:7s").history is None
+
+    def test_a_history_that_no_recording_can_have_is_none(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        time[20] = time[19]
+        path = write_rows(tmp_path / "a.csv", HOUSE_FORM, time, deflection, [25.4] * 101, force)
+        assert read_recording(f"{path}@50:").history is None
+
     def test_bounds_hold_for_every_file_that_has_none_of_its_own(self, rig: Path) -> None:
         reading = Reading(start="4s", stop="8s")
         assert reading(rig).time[0] == 4.0

@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Effect, Hull1996, PowerLaw, TireModel
 from radialtire.effect import PLACES
+from tirelab.preprocessing.samples import alone
+from tirelab.recordings.recording import Recording
 from tirelab.simulation import simulate as simulation
 from tirelab.simulation.channels import channel_rows, measured_of
 from tirelab.simulation.simulate import (
@@ -31,6 +33,8 @@ from tirelab.simulation.simulate import (
 )
 
 FloatArray = NDArray[np.float64]
+
+FIELDS = ("time", "deflection", "surface_radius", "force")
 
 
 @dataclass(frozen=True)
@@ -296,3 +300,25 @@ def test_without_a_folder_to_keep_it_in_it_is_compiled_anew(tmp_path: Path) -> N
     occupied = tmp_path / "file"
     occupied.write_text("not a folder")
     assert run(occupied) == run(tmp_path / "cache")
+
+
+def test_a_part_of_a_file_starts_with_what_was_recorded_before_it() -> None:
+    """Softening by the deepest deflection so far, and friction: both depend on all that was before."""
+    given = {"mullins_softening": {"share": 0.3}, "rate_independent_hysteresis": {"slip_force": 50.0}}
+    tire = TireModel(
+        effects=tuple(
+            (CATALOGUE[name], tuple(own.get(p.name, p.start) for p in CATALOGUE[name].parameters))
+            for name, own in given.items()
+        )
+    )
+    motion = random_motion(7)
+    whole = Recording(
+        "whole", motion.time, motion.deflection, motion.surface_radius, np.zeros(motion.time.size)
+    )
+
+    def cut(part: slice) -> Recording:
+        return replace(whole, **{name: getattr(whole, name)[part] for name in FIELDS})
+
+    part = replace(cut(slice(150, None)), history=cut(slice(0, 150)))
+    np.testing.assert_array_equal(simulate(tire, part), simulate(tire, whole)[150:])
+    assert np.abs(simulate(tire, alone(part)) - simulate(tire, part)).max() > 10.0
