@@ -15,8 +15,15 @@ from numpy.typing import NDArray
 from ..units import FLAT_WORDS
 from .cell_units import row_without_units, without_unit
 from .clock import Clock, ClockError, is_clock
-from .layout import Layout
-from .number_style import DECIMAL_COMMA, MAYBE_THOUSANDS, with_plain_minus
+from .layout import SAMPLE, Layout
+from .number_style import (
+    DECIMAL_COMMA,
+    MAYBE_THOUSANDS,
+    NumberStyle,
+    maybe_grouped,
+    style_of,
+    with_plain_minus,
+)
 from .spaced import with_tabs
 from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
 from .table_search import is_value
@@ -36,13 +43,17 @@ class Rows:
 
 
 class RowReader:
-    """Reads the rows of one file, from any line on; the decimal mark it finds holds for the whole file."""
+    """Reads the rows of one file, from any line on; the decimal mark it finds holds for the whole file.
+
+    fault_from: the line from which on a number is that could not be read
+    """
 
     def __init__(self, path: Path, layout: Layout, wanted: Sequence[Wanted]) -> None:
         self.path = path
         self.layout = layout
         self.wanted = wanted
         self.comments: list[int] = []
+        self.fault_from = 0
         self.clocks = {want.index: Clock() for want in wanted if layout.headers[want.index].dated}
         self.cells = _Cells(path, layout)
         self.guarded = layout.counted and all(want.index for want in wanted)
@@ -143,6 +154,34 @@ class RowReader:
                 first = max(first, rows[0])
                 return self.read(islice(lines, first - 1, max(first - 1, rows[1])), first)
             return self.read(islice(lines, first - 1, None), first)
+
+    def later_style(self) -> NumberStyle | None:
+        """Return how numbers are written where a row beyond the head of the file is the first to show it: 1,000.5.
+
+        None where no number leaves no doubt, or the first rows speak against it.
+        """
+        if self.layout.style.thousands:
+            return None
+        indices = {want.index for want in self.wanted}
+        grouped = maybe_grouped(self.layout.separator)
+        first: list[str] = []
+        with self.path.open(encoding=self.layout.encoding, errors="replace", newline="") as file:
+            lines = islice(self._bounded_lines(file), self.layout.lines_before_data, None)
+            for number, line in enumerate(lines):
+                beyond = number + self.layout.lines_before_data + 1 >= self.fault_from
+                if number >= SAMPLE and not (beyond and grouped.search(line)):
+                    continue
+                try:
+                    row = next(csv.reader([line], delimiter=self.layout.separator), [])
+                except csv.Error:
+                    continue
+                cells = [cell for index, cell in enumerate(row) if index in indices]
+                if number < SAMPLE:
+                    first += cells
+                style = style_of(cells, self.layout.separator)
+                if style.thousands:
+                    return style if style.explains(first) else None
+        return None
 
     def _bounded_lines(self, file: TextIO) -> Iterator[str]:
         number = 0

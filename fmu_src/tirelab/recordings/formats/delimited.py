@@ -4,6 +4,7 @@ import io
 import warnings
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -57,13 +58,7 @@ class DelimitedTable:
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
         """The columns wanted, block by block: by columns where that works, row by row where it does not."""
-        pieces = _Pieces(len(wanted))
-        reader = RowReader(self.path, self.layout, wanted)
-        if self.rows or not (self.layout.plain and _read_blocks(pieces, reader)):
-            # What cannot be cut into blocks, or is wrong, is judged by one reading from the first row.
-            pieces = _Pieces(len(wanted))
-            reader = RowReader(self.path, self.layout, wanted)
-            pieces.add_rows(reader.read_file(self.rows))
+        pieces, reader = self._pieces(wanted)
         notes = [*self.layout.notes, *(note for clock in reader.clocks.values() for note in clock.notes)]
         if reader.cells.decimal_mark() == ",":
             notes.append("commas read as decimal commas")
@@ -82,6 +77,21 @@ class DelimitedTable:
             )
             values = [column[:-1] for column in values]
         return Columns(tuple(values), pieces.place, tuple(notes))
+
+    def _pieces(self, wanted: Sequence[Wanted]) -> tuple["_Pieces", RowReader]:
+        """The columns wanted in pieces, and their reader, which knows what was said of them."""
+        pieces, reader = _Pieces(len(wanted)), RowReader(self.path, self.layout, wanted)
+        if not self.rows and self.layout.plain and _read_blocks(pieces, reader):
+            return pieces, reader
+        # The head of the file need not hold a number beyond 1,000: its mark may show in any row.
+        style = reader.later_style()
+        if style is not None:
+            self.layout = replace(self.layout, style=style)
+            return self._pieces(wanted)
+        # What cannot be cut into blocks, or is wrong, is judged by one reading from the first row.
+        pieces, reader = _Pieces(len(wanted)), RowReader(self.path, self.layout, wanted)
+        pieces.add_rows(reader.read_file(self.rows))
+        return pieces, reader
 
 
 class _Pieces:
@@ -141,6 +151,7 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
     try:
         for block in _blocks(path, layout):
             if reader.text_rows.open:
+                reader.fault_from = 0
                 return False
             if codec == "utf-8":
                 block = block.replace(MINUS, b"-")
@@ -155,6 +166,7 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
                 if comma or b"." in block:
                     reader.cells.hold_to("," if comma else ".", line)
             else:
+                reader.fault_from = line
                 text = io.StringIO(block.decode(codec, "surrogateescape"), newline="")
                 rows = reader.read(text, line)
                 pieces.add_rows(rows)

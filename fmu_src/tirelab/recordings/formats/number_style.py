@@ -10,6 +10,7 @@ from functools import cached_property
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
 MAYBE_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
 
+_PLAIN = re.compile(r"[+-]?\d*[.,]\d+(?:[eE][+-]?\d+)?", re.ASCII)
 _MINUS = re.compile("\N{MINUS SIGN}(?=[\\d.,])")
 _SPACES = " \u00a0\u202f\u2009'\u2019"
 _CERTAIN = (
@@ -44,10 +45,25 @@ class NumberStyle:
             return text.replace(self.thousands, "")
         return text
 
+    def explains(self, cells: Iterable[str]) -> bool:
+        """Whether no number among the cells, read without this style, is another one with it: 0.512 and 1.512."""
+        marked = [text for text in map(str.strip, cells) if self.thousands in text and _PLAIN.fullmatch(text)]
+        return not marked or (self.thousands != "." and all(map(self._compiled.match, marked)))
+
 
 def with_plain_minus(text: str) -> str:
     """Return a text in which the minus of typography before a number is that of a keyboard."""
     return _MINUS.sub("-", text) if "\N{MINUS SIGN}" in text else text
+
+
+def maybe_grouped(separator: str) -> re.Pattern[str]:
+    """Return what is in every line with a number whose mark between thousands leaves no doubt, and in few others."""
+    bare, quoted = (
+        rf"[1-9]\d{{0,2}}(?:[{marks}]\d{{3}}[{marks}]\d|[{_SPACES}]\d{{3}})"
+        for marks in (f".{_SPACES}", f".,{_SPACES}")
+    )
+    # where commas separate the columns, a number with a comma stands between quotes
+    return re.compile(rf'{bare}|"\s*[+-]?{quoted}' if separator == "," else quoted, re.ASCII)
 
 
 def style_of(cells: Iterable[str], separator: str) -> NumberStyle:

@@ -13,6 +13,7 @@ from tirelab.recordings.recording import RecordingError, read_recording
 X = 20.0 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 81)))
 F = 900.0 * (X / 10.0) ** 1.45
 T = np.arange(81) / 10.0
+SIGNED = {"deflection": "+Stroke", "force": "+Load"}
 
 
 def rows(separator: str = ";", comma: bool = True, number: str = "{:.3f}") -> str:
@@ -173,6 +174,52 @@ class TestNumbers:
         path.write_text("Zeit [s];Weg [mm];Kraft [N]\n" + rows() + "9,0;1.234,5;1.5\n", encoding="utf-8")
         with pytest.raises(RecordingError, match=r"row 83.*'1\.5' has the decimal mark"):
             read_recording(path, radius="flat")
+
+
+class TestThousandsBeyondTheHeadOfTheFile:
+    """A machine marks thousands from the row on where the force, or the time, exceeds 1,000."""
+
+    FORCE = np.concatenate(
+        [np.full(800, 0.125), np.linspace(0.5, 1234.5, 800), np.linspace(1234.5, 0.5, 800)]
+    )
+
+    def text(self, decimal: str, thousands: str, separator: str, quote: str = "") -> str:
+        def cell(value: float) -> str:
+            text = f"{value:,.3f}".replace(",", "T").replace(".", decimal).replace("T", thousands)
+            return f"{quote}{text}{quote}"
+
+        lines = [separator.join(map(cell, (i, i % 20, f))) for i, f in enumerate(self.FORCE)]
+        return "\n".join([separator.join(("Time [s]", "Stroke [mm]", "Load [N]")), *lines]) + "\n"
+
+    @pytest.mark.parametrize(
+        ("decimal", "thousands", "separator", "quote"),
+        [
+            (".", ",", ",", '"'),
+            (".", ",", ";", ""),
+            (",", ".", ";", ""),
+            (".", "'", ",", ""),
+            (",", "\u202f", "\t", ""),
+        ],
+    )
+    @pytest.mark.parametrize("comment", ["", "# one comment sends the file to the reader of rows\n"])
+    def test_they_are_read(
+        self, path: Path, decimal: str, thousands: str, separator: str, quote: str, comment: str
+    ) -> None:
+        recording = read(path, self.text(decimal, thousands, separator, quote) + comment, columns=SIGNED)
+        np.testing.assert_allclose(recording.force, np.round(self.FORCE, 3))
+        np.testing.assert_array_equal(recording.time, np.arange(len(self.FORCE)))
+        assert f"{thousands!r} read as the mark between thousands" in recording.notes
+
+    def test_a_damaged_number_does_not_make_thousands_of_decimals(self, path: Path) -> None:
+        text = self.text(".", "", ",").replace("\n1500.000,", "\n1.234.567,")
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(RecordingError, match=r"'1\.234\.567' is not a number"):
+            read_recording(path, radius="flat", columns=SIGNED)
+
+    def test_what_may_be_either_is_refused_as_before(self, path: Path) -> None:
+        path.write_text(self.text(".", "", ",").replace(",0.125\n", ',"1,234"\n', 1), encoding="utf-8")
+        with pytest.raises(RecordingError, match="'1,234' is not a number"):
+            read_recording(path, radius="flat", columns=SIGNED)
 
 
 class TestClocks:
