@@ -85,7 +85,7 @@ def asked(
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
     likely = guessed_units(sized, settings.part)
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
-    without_unit = [*lacking.units, *(n for n in guessed if headers[guessed[n]].unit is None)]
+    without_unit = [*lacking.units, *(n for n, i in guessed.items() if not unit_of_column(headers[i], n))]
     units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
     units |= {name: meant for name, (_, meant) in lacking.wrong.items()}
     radius = "flat" if lacking.radius else None

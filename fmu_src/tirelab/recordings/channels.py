@@ -10,7 +10,7 @@ from .formats import Header, RecordingError
 from .formats.table import quoted
 from .origin import in_quotes
 from .units import measures
-from .vocabulary import foreign_channel, is_measured, name_and_unit, without_count
+from .vocabulary import foreign_channel, is_measured, name_and_unit, second_channel, without_count
 
 
 @dataclass(frozen=True)
@@ -189,6 +189,20 @@ def may_be_foreign(header: Header, channel: Channel) -> bool:
 
     A channel that is not required needs a fitting unit too: it must not get in the way.
     """
+    parts = name_and_unit(header.name)
+    return any(
+        foreign_channel(name) == channel.name or (parts is not None and _words(name) in channel.words)
+        for name in _names_in_fitting_units(header, channel)
+    )
+
+
+def may_be_second(header: Header, channel: Channel) -> bool:
+    """Whether the name is one for the channel where no column has a better one: `Fx` where there is no `Fz`."""
+    return any(second_channel(name) == channel.name for name in _names_in_fitting_units(header, channel))
+
+
+def _names_in_fitting_units(header: Header, channel: Channel) -> list[str]:
+    """Return what a column is called, without the unit behind its name; nothing where its unit is not the channel's."""
     unit = header.unit
     names = [header.name]
     parts = name_and_unit(header.name)
@@ -197,12 +211,7 @@ def may_be_foreign(header: Header, channel: Channel) -> bool:
     elif unit is None and "_" in header.name and unit_of_column(header, channel.name):
         names, unit = [header.name.rpartition("_")[0]], unit_of_column(header, channel.name)
     fits = unit is not None and measures(unit, channel.unit)
-    if (unit is not None and not fits) or (not channel.required and not fits):
-        return False
-    return any(
-        foreign_channel(name) == channel.name or (parts is not None and _words(name) in channel.words)
-        for name in names
-    )
+    return [] if (unit is not None or not channel.required) and not fits else names
 
 
 def may_be_counted(header: Header, channel: Channel) -> bool:

@@ -376,7 +376,7 @@ def _in_si(values: FloatArray, convert: Conversion) -> FloatArray:
 def _unit_notes(conversions: Mapping[str, Conversion], headers: Mapping[str, Header]) -> list[str]:
     notes = []
     for name, convert in conversions.items():
-        stated = headers[name].unit
+        stated = unit_of_column(headers[name], name)
         if stated and stated not in (convert.unit, convert.unit.removesuffix(" abs")):
             notes.append(f"{name} read in {convert.unit} as given, not in {stated}")
         if convert.absolute_pressure:

@@ -11,6 +11,7 @@ from .channels import (
     may_be_counted,
     may_be_foreign,
     may_be_qualified,
+    may_be_second,
     unit_of_column,
     without_source,
 )
@@ -122,6 +123,7 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
         (may_be, sourceless),
         (may_be_foreign, sourceless),
         (may_be_qualified, free),
+        (may_be_second, free),
     ):
         found = [i for i, header in columns if named(header, channel)]
         if found:

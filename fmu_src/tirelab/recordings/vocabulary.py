@@ -70,7 +70,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("force verticale", "effort", "charge", "charge verticale"),
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
         *("forza", "carico", "forca", "kracht", "belasting"),
-        *("compressive load", "axial force", "axial load", "standard force"),
+        *("compressive load", "axial force", "axial load", "standard force", "fz"),
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
     "pressure": (
@@ -92,6 +92,9 @@ FOREIGN: dict[str, tuple[str, ...]] = {
     "speed": ("geschwindigkeit", "vitesse", "velocidad", "速度"),
 }
 """Names of each channel that are taken where no column has one of the usual English names; without accents."""
+
+SECOND = {"force": ("fx", "fy")}
+"""Names of each channel, in any language, that are taken where no column has one of the others."""
 
 BESIDE = {"deflection": ("displacement", "distance", "stroke", "travel"), "force": ("load",)}
 """English words for a channel of which a column may have the beginning."""
@@ -159,6 +162,11 @@ def foreign_channel(name: str) -> str | None:
     return _CHANNEL_OF.get(plain(name))
 
 
+def second_channel(name: str) -> str | None:
+    """Return the channel that a name is for where no other column is: `Fx` beside no `Fz`; None where it is none."""
+    return _SECOND_OF.get(plain(name))
+
+
 def begins_like(name: str, channel: str) -> bool:
     """Whether a name of four letters or more is the beginning of a word for a channel: `forc`, `displ`, `dist`."""
     short = plain(name)
@@ -188,4 +196,5 @@ def name_and_unit(text: str) -> tuple[str, str] | None:
     return (found["name"].strip(), found["unit"].strip()) if found else None
 
 
+_SECOND_OF = {word: channel for channel, words in SECOND.items() for word in words}
 _CHANNEL_OF = {word: channel for channel, words in FOREIGN.items() for word in words}

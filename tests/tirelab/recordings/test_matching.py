@@ -75,6 +75,34 @@ class TestColumns:
         # a column without a number, as a comma at the end of each row leaves it, is none to propose
         assert "NAME" not in said
 
+    def test_what_is_proposed_overrules_no_unit_that_the_name_states(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "time [s],stroke [mm],sensor_gf", time, deflection, force)
+        assert refusal(path, radius="flat").endswith("name it with --columns force=#3")
+        found = read_recording(path, radius="flat", columns={"force": "#3"})
+        np.testing.assert_allclose(found.force, force * 9.80665e-3, rtol=1e-5)
+        given = read_recording(path, radius="flat", columns={"force": "#3"}, units={"force": "N"})
+        assert "force read in N as given, not in gf" in given.notes
+
+    @pytest.mark.parametrize(
+        ("header", "column"), [("Fx [N],Fz [N]", 1), ("Fz_N,Fy_N", 0), ("torque,Fx [N]", 1)]
+    )
+    def test_of_the_forces_along_axes_the_vertical_one_is_taken(
+        self, tmp_path: Path, header: str, column: int
+    ) -> None:
+        time, deflection, force = loading()
+        values = [time, deflection, 2.0 * force, 2.0 * force]
+        values[2 + column] = force
+        path = write_rows(tmp_path / "a.csv", f"time [s],stroke [mm],{header}", *values)
+        np.testing.assert_allclose(read_recording(path, radius="flat").force, force, rtol=1e-5)
+
+    def test_of_two_horizontal_forces_none_is_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(
+            tmp_path / "a.csv", "time [s],stroke [mm],Fx [N],Fy [N]", time, deflection, force, force
+        )
+        assert "'Fx [N]' (#3) and 'Fy [N]' (#4) may each be the force" in refusal(path, radius="flat")
+
     def test_what_is_proposed_can_be_copied(self, tmp_path: Path) -> None:
         """By the beginnings of names, and of trials side by side the columns of the first one."""
         time, deflection, force = loading()
