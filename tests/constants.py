@@ -53,8 +53,10 @@ KINDS: dict[str, str] = {
 DERIVED = (
     "preprocessing/data_checks.FEWEST_SAMPLES",
     "preprocessing/data_checks.FEWEST_STEPS",
+    "preprocessing/data_checks.FOLLOWED",
     "preprocessing/data_checks.MOST",
     "preprocessing/data_checks.ONWARDS",
+    "preprocessing/data_checks.SETTLING",
     "preprocessing/motion.CORNER",
     "preprocessing/motion.CORNER_SAMPLES",
     "preprocessing/motion.PADDING",

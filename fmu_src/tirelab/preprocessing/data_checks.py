@@ -1,7 +1,8 @@
-"""Which recordings are too short or too poor to be diagnosed, and why; and where a gauge is at the end of its travel.
+"""Which recordings are too short or too poor to be diagnosed, and why; and which samples are not compared.
 
-Where the force goes on rising as before and falls again while the reading stands at its largest (or its smallest)
-value, by more than the reading's own changes there allow, the gauge did not follow. In a hold the force stops rising.
+After a pause of the recording no rate is known until some samples have come. Where the force goes on rising as before
+and falls again while the reading stands at its largest (or its smallest) value, by more than the reading's own changes
+there allow, the gauge did not follow. In a hold the force stops rising.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire.tracking import PAUSE
+from scipy.stats import t
 
 from ..errors import TirelabError
 from .noise import FEWEST_EVENTS, STANDS_OUT, deflection_noise, white_level
@@ -111,7 +114,8 @@ def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) 
 
 
 BEYOND = 5.0
-"""Rise of the force over what the mean stiffness makes of the reading: a progressive tire is stiffer there."""
+"""Rise of the force over what the stiffness, the mean one or that on the way there, makes of the reading: a progressive
+tire is stiffer there."""
 
 MOST = 0.5
 """A majority: of the samples that stand still (the motion is hardly more than its noise then), and of the stays in
@@ -119,6 +123,9 @@ which a gauge at the end of its travel is seen to be there."""
 
 ONWARDS = 0.5
 """Rate of the force in the first fifth of the stay over that before it: between going on (1) and stopping (0)."""
+
+FOLLOWED = 0.01
+"""Significance of the turn by which a reading near its end shows that it follows the motion."""
 
 BROAD = 0.4
 """Part of the stay in which the force is above half of its rise: half of it where the motion is a triangle, more in
@@ -130,22 +137,48 @@ def beyond_travel(deflection: FloatArray, force: FloatArray) -> BoolArray:
     return _stopped(deflection, force) | _stopped(-deflection, -force)
 
 
+SETTLING = 8
+"""Samples after a pause in which no rate is known: each of a tire's filters has four unknowns, and twice as many
+samples tell them from noise."""
+
+
+def after_pauses(recording: Recorded) -> BoolArray:
+    """Return at which samples (n,) of a recording, or of a part of one, a tire has begun anew to follow the motion.
+
+    That is after each interval that is PAUSE times the one before (see `radialtire.tracking`). Where most samples would
+    be so, the recording is sampled like that.
+    """
+    whole = getattr(recording, "whole", recording)
+    steps = np.diff(whole.time)
+    found = np.zeros(whole.time.size, dtype=bool)
+    for first in np.flatnonzero(steps[1:] > PAUSE * steps[:-1]) + 2:
+        found[first : first + SETTLING] = True
+    own = found[-recording.time.size :]
+    return own if own.mean() < MOST else np.zeros_like(own)
+
+
 def compared(recordings: Sequence[Recorded]) -> tuple[BoolArray, ...]:
-    """Return which samples of each recording are compared: those at which the deflection's gauge follows."""
-    return tuple(~beyond_travel(r.deflection, r.force) for r in recordings)
+    """Return which samples of each recording are compared: those at which the deflection's gauge follows, and the rate
+    is known.
+    """
+    return tuple(~beyond_travel(r.deflection, r.force) & ~after_pauses(r) for r in recordings)
 
 
 def not_compared(recordings: Sequence[Recorded]) -> tuple[str, ...]:
-    """Return a sentence on each recording whose gauge reached an end of its travel."""
+    """Return a sentence on each recording whose gauge reached an end of its travel, and on each with pauses."""
     sentences = []
-    for r, followed in zip(recordings, compared(recordings), strict=True):
-        lost = ~followed
-        if lost.any():
+    for r in recordings:
+        if (lost := beyond_travel(r.deflection, r.force)).any():
             place = 1e3 * float(np.median(r.deflection[lost]))
             sentences.append(
                 f"In {r.name} the deflection's reading stands still at {place:.4g} mm in {int(lost.sum())} samples "
                 "while the force rises and falls: its gauge is at the end of its travel, and these samples were not "
                 "compared; record with more travel."
+            )
+        if (lost := after_pauses(r)).any():
+            sentences.append(
+                f"In {r.name} {int(lost.sum())} samples behind pauses of its clock were not compared: no rate is known "
+                "there yet; record without pauses, or look at the times."
             )
     return tuple(sentences)
 
@@ -154,7 +187,8 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
     """Return where the reading stands at its largest while the force rises and falls."""
     if x.size <= FEWEST_EVENTS or not np.ptp(x) > 0.0:
         return np.zeros(x.size, dtype=bool)
-    band = STANDS_OUT * deflection_noise(x)
+    band, changes = STANDS_OUT * deflection_noise(x), np.abs(np.diff(x))
+    finest = float(np.min(changes[changes > 0.0]))
     near = x > np.partition(x, -FEWEST_EVENTS)[-FEWEST_EVENTS] - band
     if near.mean() > MOST:
         return np.zeros(x.size, dtype=bool)
@@ -162,15 +196,41 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
     places = np.flatnonzero(near)
     stopped = []
     # A single reading far off does not end a stay.
-    for stay in np.split(places, np.flatnonzero(np.diff(places) > FEWEST_EVENTS) + 1):
+    stays = np.split(places, np.flatnonzero(np.diff(places) > FEWEST_EVENTS) + 1)
+    if _turns([x[stay[0] : stay[-1] + 1] for stay in stays]):
+        return np.zeros(x.size, dtype=bool)
+    for stay in stays:
         begin, end = int(stay[0]), int(stay[-1]) + 1
         own, fifth = force[begin:end], (end - begin) // 5
         if own.size < FEWEST_EVENTS or begin < fifth:
             continue
         ends = float(max(own[0], own[-1]))
         rise = float(own.max()) - ends
-        allowed = BEYOND * stiffness * max(band, float(np.ptp(x[begin:end]))) + STANDS_OUT * noise
+        before = float(own[0] - force[begin - fifth]) / max(float(x[begin] - x[begin - fifth]), 1e-300)
+        steepest = max(stiffness, before if fifth else 0.0)
+        allowed = BEYOND * steepest * max(band, finest, float(np.ptp(x[begin:end]))) + STANDS_OUT * noise
         onwards = own[fifth] - own[0] > ONWARDS * (own[0] - force[begin - fifth]) > 0.0
         stopped.append(bool(rise > allowed and onwards and np.mean(own > ends + 0.5 * rise) > BROAD))
     # A gauge stops each time; what else moves the force may do so now and then.
     return near if stopped and np.mean(stopped) >= MOST else np.zeros(x.size, dtype=bool)
+
+
+def _turns(stays: Sequence[FloatArray]) -> bool:
+    """Return whether a reading turns in its stays near its largest value as a motion does: bent downwards, by a t-test.
+
+    A stay counts from the first to the last reading that is not below its median: a gauge that stands still is reached.
+    """
+    bent = straight = left = freedom = 0.0
+    for stay in stays:
+        high = np.flatnonzero(stay >= np.median(stay))
+        own = stay[high[0] : high[-1] + 1]
+        if own.size < FEWEST_EVENTS:
+            continue
+        place = np.linspace(-1.0, 1.0, own.size)
+        bow, own = place**2 - np.mean(place**2), own - np.polyval(np.polyfit(place, own, 1), place)
+        bent, straight = bent + float(bow @ own), straight + float(bow @ bow)
+        left, freedom = left + float(own @ own), freedom + own.size - 2.0
+    if bent >= 0.0:
+        return False
+    beside = max(left - bent**2 / straight, 1e-12 * left) / max(freedom - 1.0, 1.0)
+    return bool(t.cdf(bent / np.sqrt(straight * beside), max(freedom - 1.0, 1.0)) < FOLLOWED)

@@ -5,7 +5,7 @@ A gauge at the end of its travel is seen, and a hold, a ring or a quick peak is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,13 @@ from radialtire import TireModel
 from tirelab.preprocessing.data_checks import (
     FEWEST_SAMPLES,
     FEWEST_STEPS,
+    SETTLING,
     PoorRecording,
+    after_pauses,
     beyond_travel,
     check_recordings,
     check_signal,
+    compared,
     not_compared,
 )
 from tirelab.preprocessing.samples import raw_dataset_of
@@ -155,6 +158,43 @@ def test_at_the_other_end_too() -> None:
 def test_a_peak_that_was_followed_is_none(step: float) -> None:
     reading = noisy(MOTION) if step == 0.0 else step * np.round(MOTION / step)
     assert not beyond_travel(reading, STIFFENING_FORCE).any()
+
+
+@pytest.mark.parametrize("kind", ["stop", "friction"])
+def test_a_turn_that_was_followed_is_none_however_steep_the_force_is_there(kind: str) -> None:
+    """A stop twenty times as stiff as the rest, and a friction loop: the force changes much while the motion turns."""
+    stepped = 5e-6 * np.round(MOTION / 5e-6)
+    beyond = np.maximum(MOTION - 0.0238, 0.0)
+    loop = 300.0 * np.sign(np.gradient(MOTION, CYCLE_TIME))
+    force = 8e4 * MOTION + (1.6e6 * beyond if kind == "stop" else loop)
+    assert not beyond_travel(stepped, force).any()
+
+
+def test_behind_a_pause_no_rate_is_known_and_that_is_said() -> None:
+    kept = (CYCLE_TIME < 2.0) | (CYCLE_TIME > 3.0)
+    paused = Read("paused", CYCLE_TIME[kept], noisy(MOTION)[kept], STIFFENING_FORCE[kept])
+    first = int(np.sum(CYCLE_TIME < 2.0))
+    assert np.flatnonzero(after_pauses(paused)).tolist() == list(range(first, first + SETTLING))
+    (seen,) = compared([paused])
+    assert np.sum(~seen) == SETTLING
+    (said,) = not_compared([paused])
+    assert said.startswith(f"In paused {SETTLING} samples behind pauses of its clock were not compared")
+
+
+def test_a_part_that_begins_behind_a_pause_does_not_know_it_either() -> None:
+    whole = recording(time=np.where(np.arange(2000) < 900, TIME, TIME + 7.0))
+
+    def cut(begin: int, end: int) -> Recording:
+        return Recording("a", *(v[begin:end] for v in (whole.time, DEFLECTION, whole.surface_radius, FORCE)))
+
+    part = replace(cut(900, 2000), history=cut(0, 900))
+    assert np.flatnonzero(after_pauses(part)).tolist() == list(range(SETTLING))
+    assert not after_pauses(cut(900, 2000)).any()
+
+
+def test_uneven_intervals_are_how_it_is_sampled() -> None:
+    time = np.cumsum(np.tile([1e-4, 0.01], CYCLE_TIME.size))[: CYCLE_TIME.size]
+    assert not after_pauses(Read(time=time)).any()
 
 
 def test_the_force_relaxes_in_a_hold() -> None:
