@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from .channels import EXAMPLE_UNITS, UNIT_OF, unit_of_column
 from .choices import Choices
 from .formats import Header, RecordingError, Table, Wanted
-from .formats.table import quoted
+from .formats.table import listed, quoted
 from .matching import Match, columns_listed
 from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units
-from .units import measures
-from .vocabulary import begins_like, counts_rows
+from .units import meant_unit, measures
+from .vocabulary import begins_like, counts_rows, is_strained
 
 FloatArray = NDArray[np.float64]
 
@@ -30,6 +30,10 @@ OF_A_PART = (
 
 MOST_COLUMNS = 16
 """So many columns are looked at for one that may be a channel."""
+
+
+EVENLY = 1.5
+"""Steps of what a drive moves differ by less than this factor, but for a few."""
 
 
 class IncompleteRecording(RecordingError):
@@ -81,12 +85,20 @@ def asked(
             "export the readings themselves, one row for each sample"
         )
     guessed = _guessed_columns(lacking.columns, matches, values, headers) if lacking.columns else {}
+    strained = [quoted(h.text) for h in headers if is_strained(h.name)]
+    if strained and {"deflection", "force"} & set(lacking.columns) - set(guessed):
+        return RecordingError(
+            f"{origin}: no column for {', '.join(lacking.columns)}: {listed(strained)} say strain or stress, which are "
+            "neither deflection nor force; export the readings of the travel and the load cell, or multiply the strain "
+            "by the gauge length and the engineering stress by the cross-section"
+        )
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
     likely = guessed_units(sized, settings.part)
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
     without_unit = [*lacking.units, *(n for n, i in guessed.items() if not unit_of_column(headers[i], n))]
     units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
+    units |= {n: unit for n, i in guessed.items() if (unit := meant_unit(headers[i].unit or "", UNIT_OF[n]))}
     units |= {name: meant for name, (_, meant) in lacking.wrong.items()}
     radius = "flat" if lacking.radius else None
     whole = Settings(
@@ -205,6 +217,19 @@ def rises(values: FloatArray) -> bool:
     return bool(steps.min() > 0.0) and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
 
 
+def driven(values: FloatArray) -> bool:
+    """Whether numbers go up and down by even steps, as what a drive moves does and a force does not."""
+    steps = np.abs(np.diff(values[np.isfinite(values)]))
+    return len(steps) > 1 and bool(np.quantile(steps, 0.9) < EVENLY * np.quantile(steps, 0.1))
+
+
+def _states(header: Header, name: str) -> bool:
+    """Whether a column states a unit of a channel, or one by which it is meant."""
+    return measures(unit_of_column(header, name) or "", UNIT_OF[name]) or bool(
+        meant_unit(header.unit or "", UNIT_OF[name])
+    )
+
+
 def stating_time(headers: Sequence[Header], taken: Collection[int]) -> list[int]:
     """Return the columns with a unit of time, without those that are taken."""
     return [
@@ -223,10 +248,12 @@ def _guessed_columns(
     """Return a likely column for each channel that has none: time rises, others go by their unit, else by the beginning
     of their name ("forc"), else by their size.
 
-    A unit tells where one column alone states a fitting one; of two columns without, the larger is the force.
+    A unit tells where one column alone states a fitting one, the mass on a scale a force; of two columns without, the
+    one that a drive moves evenly is the deflection, else the smaller. A counter, a strain and a stress are neither.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
+    free = [i for i in free if not is_strained(headers[i].name) or _states(headers[i], "deflection")]
     guessed: dict[str, int] = {}
     if "time" in missing:
         clocks = [i for i in free if rises(values[i]) and not counts_rows(headers[i].name)]
@@ -236,11 +263,11 @@ def _guessed_columns(
             guessed["time"] = clocks[0]
             free = [i for i in free if i != clocks[0]]
     for name in ("deflection", "force"):
-        fits = [i for i in free if measures(unit_of_column(headers[i], name) or "", UNIT_OF[name])]
+        fits = [i for i in free if _states(headers[i], name)]
         if name in missing and len(fits) == 1:
             guessed[name] = fits[0]
             free.remove(fits[0])
-    free = [i for i in free if headers[i].unit is None]
+    free = [i for i in free if headers[i].unit is None and not counts_rows(headers[i].name)]
     for name in ("deflection", "force"):
         alike = [i for i in free if begins_like(headers[i].text, name)]
         if name in missing and name not in guessed and len(alike) == 1:
@@ -249,6 +276,8 @@ def _guessed_columns(
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     if len(free) >= len(both):
         # Of many columns the first ones: of trials side by side those of one trial.
-        sized = sorted(free[: len(both)], key=lambda i: float(np.nanmax(np.abs(values[i]))))
+        sized = sorted(
+            free[: len(both)], key=lambda i: (not driven(values[i]), float(np.nanmax(np.abs(values[i]))))
+        )
         guessed |= dict(zip(both, sized, strict=True))
     return guessed

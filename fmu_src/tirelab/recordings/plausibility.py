@@ -43,6 +43,9 @@ PULLS = 0.2
 FORCES = (("kN", 1e3), ("lbf", 4.4482216152605), ("kgf", 9.80665), ("mN", 1e-3))
 LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0))
 
+PART_STROKES = (("m", 0.05), ("mm", 1e3), ("um", np.inf))
+"""Units of the stroke of a part with the largest number that is likely in them: machines write millimetres."""
+
 CLOCKS = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
 """Units of clocks with their size [s]."""
 
@@ -322,7 +325,7 @@ def _likely_clock(time: FloatArray) -> str:
 def guessed_units(columns: Mapping[str, FloatArray], part: bool = False) -> dict[str, str]:
     """Return the likeliest unit of each of the channels time, deflection, radius and force, from their sizes alone.
 
-    part: not of a tire, so that the force's size says nothing
+    part: not of a tire, so that the size of the force says nothing and that of the deflection little
     """
     guesses: dict[str, str] = {}
     if "time" in columns:
@@ -332,7 +335,9 @@ def guessed_units(columns: Mapping[str, FloatArray], part: bool = False) -> dict
         if "deflection" in columns
         else 0.0
     )
-    if stroke > 0.0:
+    if part and stroke > 0.0:
+        guesses["deflection"] = next(unit for unit, most in PART_STROKES if stroke <= most)
+    elif stroke > 0.0:
         stroke = min(max(stroke, 1e-12), 1e12)  # a damaged number is no length, and its powers are no numbers
         sized = [(abs(float(np.log(stroke * f / 0.02))), name) for name, f in LENGTHS if name != "in"]
         guesses["deflection"] = min(sized)[1]

@@ -64,10 +64,10 @@ _MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
 _LIKELY = {
-    ("N", "lb"): "lbf",
-    ("N", "lbs"): "lbf",
-    ("N", "kg"): "kgf",
-    ("N", "g"): "gf",
+    **{("N", word): "lbf" for word in ("lb", "lbs", "pound", "pounds")},
+    **{("N", word): "kgf" for word in ("kg", "kgs", "kilogram", "kilograms")},
+    **{("N", word): "gf" for word in ("g", "gr", "gram", "grams", "gramm", "gramme", "grammes")},
+    **{("N", word): "ozf" for word in ("oz", "ounce", "ounces")},
     ("Pa", "kgf"): "kgf/cm^2",
     ("s", "hz"): "s, the time of each row",
 }
@@ -178,6 +178,11 @@ def measures(unit: str, si: str) -> bool:
     except UnitError:
         return False
     return True
+
+
+def meant_unit(unit: str, si: str) -> str:
+    """Return the unit that is meant by one of something else, the force by the mass of a scale; "" where none is."""
+    return _likely(unit.strip(), si, known=True)
 
 
 def split_header(text: str) -> tuple[str, str | None]:

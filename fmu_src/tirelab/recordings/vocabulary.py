@@ -136,11 +136,17 @@ COUNTERS = frozenset(
             "sample no",
             "sample nr",
         ),
+        *("step", "steps", "pulse", "pulses", "tick", "ticks", "cycle", "cycles", "schritt", "schritte"),
         *("point number", "messpunkt", "messwert", "nummer", "zeile", "echantillon", "numero", "muestra"),
         *("序号", "编号", "番号"),
     }
 )
-"""Names of columns that count the rows."""
+"""Names of columns that count the rows, or the steps of a motor."""
+
+STRAINED = frozenset(
+    ("strain", "stress", "dehnung", "spannung", "contrainte", "esfuerzo", "tensione", "应变", "应力")
+)
+"""Words of a name that say a deflection or a force by the size of the specimen, where no unit says otherwise."""
 
 SHORTEST = 4
 """Letters of a name that is taken for the beginning of a word."""
@@ -180,8 +186,13 @@ def is_measured(name: str) -> bool:
 
 
 def counts_rows(name: str) -> bool:
-    """Whether a name is one of a column that counts the rows: `Sample`, `No.`, `Messpunkt`."""
+    """Whether a name is one of a column that counts the rows or steps: `Sample`, `No.`, `Messpunkt`, `Steps`."""
     return plain(name) in COUNTERS
+
+
+def is_strained(name: str) -> bool:
+    """Whether a name is one of a strain or a stress: `True Strain`, `Spannung`."""
+    return bool(STRAINED & set(re.split(r"[^\w]+", plain(name))))
 
 
 def without_count(name: str) -> str | None:
