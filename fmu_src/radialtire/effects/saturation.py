@@ -54,7 +54,7 @@ SATURATION = Effect(
             "N",
             0.0,
             0.0,
-            1e3,
+            1e6,
             "rounding of the knee",
             optional=True,
             prior=Prior("normal", 0, 0.02, "force"),
