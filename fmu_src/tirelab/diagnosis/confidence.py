@@ -266,13 +266,14 @@ LAW_TRAITS = ("static",)
 class Alternative:
     """Another set of effects that the recordings cannot rule out: its probability, and what the recordings lack.
 
-    log_odds: of the verdict against it, not tempered
+    log_odds: of the verdict against it, not tempered; left [N]: what its tire leaves, where nothing else is named
     """
 
     names: tuple[str, ...]
     log_odds: float
     reason: str
     probability: float
+    left: float = float("nan")
 
 
 def alternatives_of(

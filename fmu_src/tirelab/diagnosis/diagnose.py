@@ -97,6 +97,8 @@ def diagnose(
     grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
     confidence = confidence_of(grounds, [e.probability for e in effects], [e.probability for e in doubted])
     alternatives = alternatives_of(explanation, dataset, confidence, limits)
+    if not effects:
+        alternatives = tuple(_with_error(a, explanation) for a in alternatives)
     remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
     places = localize(
         fitted,
@@ -154,6 +156,13 @@ def _not_of_the_reading(
         noise_free = noise_free_residual(tire, recording, e.motion)
         found.append(min(read, noise_free, key=lambda left: float(left @ left)))
     return found
+
+
+def _with_error(alternative: Alternative, explanation: Explanation) -> Alternative:
+    """Return an alternative with what its tire leaves [N], where it was fitted."""
+    if not explanation.was_fitted(alternative.names):
+        return alternative
+    return replace(alternative, left=explanation.of(alternative.names).error)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

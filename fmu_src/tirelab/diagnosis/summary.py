@@ -9,7 +9,7 @@ from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
-from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, sure
+from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import DECIDED, SURE, confidence_word, told
 from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
@@ -39,10 +39,14 @@ def summarise(
     left = more_than_noise(fit.left, fit.noise)
     undecided = bool(alternatives) and told(confidence) < DECIDED
     doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
-    said = ["Undecided; this is the likeliest explanation."] if undecided else []
+    told_likelier = any(
+        told(a.probability) > told(confidence) for a in alternatives if math.isfinite(a.probability)
+    )
+    likeliest = "no explanation is likely" if told_likelier else "this is the likeliest explanation"
+    said = [f"Undecided; {likeliest}."] if undecided else []
     said.append(headline(names, bool(regressions), doubted, left))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
-    said += _errors(bool(names), bool(regressions), fit)
+    said += _errors(bool(names), bool(regressions), fit, alternatives)
     if regressions:
         said.append(_remainder(regressions))
     said.append(sure(confidence))
@@ -53,15 +57,24 @@ def summarise(
     return " ".join(said)
 
 
+NEARER = 0.9
+"""Part of the error that an alternative leaves at most to be told where nothing is named."""
+
 AMPLIFIED = 1.1
 """The noise of the deflection is mentioned where it raises the held-out error by more than this factor."""
 
 
-def _errors(corrected: bool, unexplained: bool, fit: Fit) -> list[str]:
-    """Return what the correction does to the error."""
+def _errors(corrected: bool, unexplained: bool, fit: Fit, alternatives: Sequence[Alternative]) -> list[str]:
+    """Return what the correction does to the error, or what the alternative that leaves least would do."""
     noise = f"the noise is {newtons(fit.noise)}"
     if not corrected:
         stays = ", and no known effect reduces it" if unexplained else ""
+        nearest = min(alternatives, key=lambda a: a.left if a.left >= 0.0 else math.inf, default=None)
+        if unexplained and nearest is not None and nearest.left < NEARER * fit.before:
+            stays = (
+                f", and no known effect is likely enough to be named; {set_title(nearest.names)} would leave "
+                f"{newtons(nearest.left)}"
+            )
         return [f"The RMS error is {newtons(fit.before)}{stays}; {noise}."]
     verb = "reduces" if fit.after < fit.before else "does not reduce, it changes"
     found = [

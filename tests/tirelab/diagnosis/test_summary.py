@@ -1,5 +1,7 @@
 """What is said in the verdict's sentences, and what is not."""
 
+from dataclasses import replace
+
 import numpy as np
 from tirelab.diagnosis.confidence import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
@@ -53,6 +55,31 @@ def test_where_no_effect_helps_the_error_stays_and_the_regression_is_stated():
     assert "The RMS error is 32.5 N, and no known effect reduces it; the noise is 6.00 N." in told
     assert "A regression over it reduces the RMS error to 6.40 N, and to 6.50 N on held-out data" in told
     assert "the deflection" in told
+
+
+def test_an_alternative_that_would_reduce_the_error_is_told_where_nothing_is_named():
+    others = [
+        Alternative(("inertia",), -3.0, "one speed", 0.03, left=12.0),
+        Alternative(("bottoming", "mullins_softening"), -4.0, "one speed", 0.02, left=10.5),
+        Alternative(("saturation",), 0.0, "no ceiling", float("nan")),
+    ]
+    told = summarise((), others, (regressed("deflection", 0.95),), 0.9, STAYED)
+    assert (
+        "The RMS error is 32.5 N, and no known effect is likely enough to be named; bottoming and Mullins softening "
+        "would leave 10.5 N; the noise is 6.00 N." in told
+    )
+    hardly = [replace(other, left=32.0) for other in others]
+    assert "no known effect reduces it" in summarise(
+        (), hardly, (regressed("deflection", 0.95),), 0.9, STAYED
+    )
+
+
+def test_an_undecided_verdict_is_not_called_the_likeliest_beside_a_likelier_one():
+    others = [Alternative(("inertia",), -3.0, "one speed", 0.14)]
+    assert summarise((FRICTION,), others, (), 0.06, STAYED).startswith(
+        "Undecided; no explanation is likely. "
+    )
+    assert summarise((FRICTION,), others, (), 0.3, STAYED).startswith("Undecided; this is the likeliest ")
 
 
 def test_a_curve_that_does_not_repeat_is_not_offered():
