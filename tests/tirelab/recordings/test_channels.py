@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from house_form import edited, loading, refusal, write_rows
-from tirelab.recordings.channels import parse_columns, parse_units
+from tirelab.recordings.channels import assignments_text, parse_columns, parse_units
 from tirelab.recordings.recording import RecordingError, read_recording
 
 
@@ -17,6 +17,10 @@ class TestColumns:
             "force": "Load cell",
         }
         assert parse_columns("Force='F, left [N]', time = #1") == {"force": "F, left [N]", "time": "#1"}
+        time = "Temps d'essai"
+        for text in (f"time={time},force=F", f'time="{time}",force=F', f"time='{time}',force=F"):
+            assert parse_columns(text) == {"time": time, "force": "F"}
+        assert parse_columns(assignments_text({"time": time, "force": "a'b\"c,d'e"}))["force"] == "a'b\"c,d'e"
         assert parse_columns("temperature=") == {"temperature": ""}
         assert parse_units("time=ms,deflection=mm") == {"time": "ms", "deflection": "mm"}
 
