@@ -58,7 +58,7 @@ def print_diagnosis(
         console.print()
 
     for effect in verdict["effects"]:
-        title = f"{titles.full_title(effect['name'])}, {words.percent(effect['share'])} of the error"
+        title = f"{titles.full_title(effect['name'])}, without it {words.percent(effect['share'])} of the error is back"
         console.print(Text(title, style="dim"))
         if effect.get("law"):
             surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
