@@ -40,7 +40,7 @@ INERTIA = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="a mass is accelerated between the tire and the load cell",
+    statement="a mass is accelerated in front of the load cell",
     tell_tale="the residual is in proportion to the acceleration, so it grows with the square of the frequency",
     imitators=("force_lag", "deflection_lag", "viscous_damping"),
     source="Newton's second law; masses of fixtures are not published, bounds wide",

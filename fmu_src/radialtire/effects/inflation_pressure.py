@@ -79,7 +79,7 @@ INFLATION_PRESSURE = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="the tire is at another pressure: the force changes with the gauge pressure at every deflection",
+    statement="it is at another pressure: the force changes with the gauge pressure at every deflection",
     tell_tale="recordings at several pressures differ in proportion to the force, as the pressure channel says",
     imitators=("recalibration", "pressure_leak", "gas_compression", "warm_up"),
     source="MF-Tyre 6.1, pFz1 (Besselink, Schmeitz & Pacejka, Vehicle System Dynamics 48, 2010, S1); Dressel & "

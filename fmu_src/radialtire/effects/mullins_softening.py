@@ -145,7 +145,7 @@ MULLINS_SOFTENING = Effect(
     ),
     initial_state=(0.0, 0.0, 0.0),
     respond=respond,
-    statement="the tire is softer below the largest deflection it has seen",
+    statement="it is softer below the largest deflection it has seen",
     tell_tale="the first loading to a new largest deflection differs from every later one, however long the rest",
     imitators=("rate_independent_hysteresis", "pressure_leak", "warm_up", "bottoming"),
     source="Ogden & Roxburgh 1999; no magnitude for bicycle tires was found, bounds wide",

@@ -122,7 +122,7 @@ SERIES_COMPLIANCE = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="the wheel or the machine gives way in series with the tire",
+    statement="something gives way in series: the wheel, a fixture or the machine",
     tell_tale="large forces are too low, on every surface by the same function of the force",
     imitators=("recalibration", "deflection_offset", "gas_compression", "saturation"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Hopkins & Principe 1990: 2e6 N/m",

@@ -71,7 +71,7 @@ WARM_UP = Effect(
     ),
     initial_state=(0.0,),
     respond=respond,
-    statement="the tire warms: the force rises with time to a new level at every deflection",
+    statement="it warms: the force rises with time to a new level at every deflection",
     tell_tale="a cycle that is repeated at the end is higher, in proportion to the force; the rise levels off",
     imitators=("pressure_leak", "mullins_softening", "force_drift"),
     source="gas law at constant volume: about 1 psi for 10 degF near 40 psi; time constants not found, bounds wide",

@@ -354,7 +354,8 @@ def insufficient_excitation(
     elif explanation.excitation.one_speed:
         lacks.append(f"one speed only: repeat at {_another_speed(dataset, limits)}")
     mountable = set() if limits is None else set(limits.surfaces)
-    if len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):
+    ground = not explanation.model.baseline.is_part
+    if ground and len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):
         lacks.append("one surface only: press on a second surface")
     rates = [np.abs(e.motion.rate) for e in dataset.experiments]
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)

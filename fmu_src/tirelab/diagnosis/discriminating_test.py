@@ -56,6 +56,7 @@ class DiscriminatingTest:
     separation: float
     typical: float
     missed: float
+    ground: bool = True
 
     @property
     def sufficient(self) -> bool:
@@ -65,22 +66,19 @@ class DiscriminatingTest:
     @property
     def sentence(self) -> str:
         """What to do, or that no motion separates the two sets."""
-        place, path, asked = (
-            _surface(float(self.test.surface_radius[0])),
-            self.test.deflection,
-            question(*self.between),
-        )
+        path, asked = self.test.deflection, question(*self.between)
+        place = f" on {_surface(float(self.test.surface_radius[0]))}" if self.ground else ""
         differ = f"{self.typical:.2g} times the noise in a typical sample"
         if self.missed > 0.0:
             differ += f", {self.typical / self.missed:.2g} times what the forms of the effects may miss"
         if not self.sufficient:
             return (
                 f"No motion within the rig's limits decides {asked}: the forces would differ by at most {differ} "
-                f"({self.test.name} on {place})."
+                f"({self.test.name}{place})."
             )
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
         return (
-            f"Drive {self.test.name} to {1e3 * path.max():.1f} mm on {place}, at up to {rate:.0f} mm/s, for "
+            f"Drive {self.test.name} to {1e3 * path.max():.1f} mm{place}, at up to {rate:.0f} mm/s, for "
             f"{self.test.time[-1] - self.test.time[0]:.0f} s. It decides {asked}: the forces differ by {differ}."
         )
 
@@ -92,7 +90,9 @@ class DiscriminatingTest:
             "duration": float(t.time[-1]),
             "amplitude": float(t.deflection.max()),
             "rate_max": float(np.abs(np.gradient(t.deflection, t.time)).max()),
-            "surfaces": ["inf" if not np.isfinite(r) else float(r) for r in np.unique(t.surface_radius)],
+            "surfaces": [
+                "inf" if not np.isfinite(r) else float(r) for r in np.unique(t.surface_radius) if self.ground
+            ],
             "between": [list(s) for s in self.between],
             "separation": self.separation,
             "gain": self.gain,
@@ -126,9 +126,9 @@ def discriminate(
             missed = accepted.missed(test) / noise
             gain = expected_gain(path.size, typical, missed)
             if best is None or gain > best.gain:
-                best = DiscriminatingTest(
-                    test, between, gain, typical * float(np.sqrt(path.size)), typical, missed
-                )
+                separation = typical * float(np.sqrt(path.size))
+                ground = not accepted.baseline.is_part
+                best = DiscriminatingTest(test, between, gain, separation, typical, missed, ground)
     assert best is not None
     return best
 

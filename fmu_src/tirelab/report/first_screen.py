@@ -289,9 +289,9 @@ def _drive(test: Mapping[str, Any]) -> str:
     keys = ("waveform", "amplitude", "rate_max", "duration", "surfaces")
     if any(test.get(key) is None for key in keys):
         return str(test.get("sentence", ""))
-    place = titles.listed([words.on_surface(radius) for radius in test["surfaces"]])
+    place = titles.listed([f" on {words.on_surface(radius)}" for radius in test["surfaces"]])
     return (
-        f"Record {test['waveform']} to {words.number(1e3 * test['amplitude'])} mm on {place}, at up to "
+        f"Record {test['waveform']} to {words.number(1e3 * test['amplitude'])} mm{place}, at up to "
         f"{words.number(1e3 * test['rate_max'])} mm/s, for {words.number(test['duration'], 2)} s."
     )
 

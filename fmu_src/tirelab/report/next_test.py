@@ -29,7 +29,7 @@ def next_test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None
     facts = []
     for key, title, unit, remark in FACTS:
         value = test.get(key)
-        if value is None:
+        if value is None or value == []:
             continue
         if key == "surfaces":
             text = titles.listed([words.surface(radius) for radius in value])
