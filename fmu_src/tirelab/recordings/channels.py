@@ -10,7 +10,14 @@ from .formats import Header, RecordingError
 from .formats.table import quoted
 from .origin import in_quotes
 from .units import measures
-from .vocabulary import foreign_channel, is_measured, name_and_unit, second_channel, without_count
+from .vocabulary import (
+    foreign_channel,
+    is_measured,
+    is_strained,
+    name_and_unit,
+    second_channel,
+    without_count,
+)
 
 
 @dataclass(frozen=True)
@@ -206,6 +213,8 @@ def _names_in_fitting_units(header: Header, channel: Channel) -> list[str]:
     unit = header.unit
     names = [header.name]
     parts = name_and_unit(header.name)
+    if unit is None and is_strained(header.name):
+        return []
     if unit is None and parts is not None and measures(parts[1], channel.unit):
         names, unit = [parts[0]], parts[1]
     elif unit is None and "_" in header.name and unit_of_column(header, channel.name):

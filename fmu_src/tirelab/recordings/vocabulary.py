@@ -25,9 +25,10 @@ FOREIGN: dict[str, tuple[str, ...]] = {
     ),
     "deflection": (
         *("weg", "traversenweg", "standardweg", "federweg", "kolbenweg", "hub", "stauchung", "verformung"),
-        *("einfederung", "eindruckung", "eindrueckung", "prufweg", "pruefweg"),
+        *("einfederung", "eindruckung", "eindrueckung", "prufweg", "pruefweg", "dehnung", "verlangerung"),
         *("deplacement", "deplacement traverse", "deplacement de la traverse", "course", "ecrasement"),
-        *("enfoncement", "fleche"),
+        *("enfoncement", "fleche", "allongement", "allongement standard", "course standard", "traverse"),
+        *("course traverse", "course de traverse", "course de la traverse", "deplacement de traverse"),
         *("desplazamiento", "desplazamiento del cabezal", "recorrido", "carrera", "deformacion", "deflexion"),
         *(
             "crosshead",
@@ -36,6 +37,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "crosshead position",
             "axial displacement",
         ),
+        *("standard travel", "standard extension"),
         *("spostamento", "corsa", "deformazione", "schiacciamento", "freccia"),
         *("deslocamento", "deformacao", "verplaatsing", "indrukking"),
         *("compressive displacement", "compressive extension", "extension", "position"),
@@ -67,10 +69,11 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "druckkraft",
             "last",
         ),
+        *("force standard", "force d essai", "force de compression", "force de traction"),
         *("force verticale", "effort", "charge", "charge verticale"),
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
         *("forza", "carico", "forca", "kracht", "belasting"),
-        *("compressive load", "axial force", "axial load", "standard force", "fz"),
+        *("compressive load", "axial force", "axial load", "standard force", "compression force", "fz"),
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
     "pressure": (
@@ -93,7 +96,21 @@ FOREIGN: dict[str, tuple[str, ...]] = {
 }
 """Names of each channel that are taken where no column has one of the usual English names; without accents."""
 
-SECOND = {"force": ("fx", "fy")}
+SECOND = {
+    "deflection": (
+        *(
+            "werkzeugabstand",
+            "klemmenabstand",
+            "einspannlange",
+            "ecartement entre outils",
+            "ecartement des outils",
+        ),
+        *("traversenposition", "traversenweg absolut", "absoluter traversenweg", "absolute crosshead travel"),
+        *("position traverse", "position de la traverse"),
+        *("distance entre mors", "tool separation", "grip to grip separation", "grip separation"),
+    ),
+    "force": ("fx", "fy"),
+}
 """Names of each channel, in any language, that are taken where no column has one of the others."""
 
 BESIDE = {"deflection": ("displacement", "distance", "stroke", "travel"), "force": ("load",)}
@@ -171,6 +188,11 @@ def foreign_channel(name: str) -> str | None:
 def second_channel(name: str) -> str | None:
     """Return the channel that a name is for where no other column is: `Fx` beside no `Fz`; None where it is none."""
     return _SECOND_OF.get(plain(name))
+
+
+def any_channel(name: str) -> str | None:
+    """Return the channel that a name is a word for in one of the languages, of the first choice or the second."""
+    return foreign_channel(name) or second_channel(name)
 
 
 def begins_like(name: str, channel: str) -> bool:

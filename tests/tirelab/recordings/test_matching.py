@@ -96,6 +96,28 @@ class TestColumns:
         path = write_rows(tmp_path / "a.csv", f"time [s],stroke [mm],{header}", *values)
         np.testing.assert_allclose(read_recording(path, radius="flat").force, force, rtol=1e-5)
 
+    @pytest.mark.parametrize(
+        ("header", "deflection_at"),
+        [
+            ("Temps d'essai [s],Force standard [N],Allongement [mm],Ecartement entre outils [mm]", 2),
+            ("Temps d'essai [s],Force standard [N],Ecartement entre outils [mm],Course standard [mm]", 3),
+            ("Prüfzeit [s],Standardkraft [N],Dehnung [mm],Werkzeugabstand [mm]", 2),
+            ("Prüfzeit [s],Standardkraft [N],Werkzeugabstand [mm],Standardweg [mm]", 3),
+            ("Test time [s],Standard force [N],Standard travel [mm],Grip to grip separation [mm]", 2),
+            ("Test time [s],Standard force [N],Tool separation [mm],Grip [kN]", 2),
+            ("Test time [s],Standard force [N],Crosshead [mm],Tool separation [mm]", 2),
+        ],
+    )
+    def test_the_words_of_one_machine_in_three_languages(
+        self, tmp_path: Path, header: str, deflection_at: int
+    ) -> None:
+        time, deflection, force = loading()
+        values = [time, force, 5.0 * time + 1.0, 5.0 * time + 1.0]
+        values[deflection_at] = 10.0 * deflection
+        found = read_recording(write_rows(tmp_path / "a.csv", header, *values), radius="flat")
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+
     def test_of_two_horizontal_forces_none_is_chosen(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         path = write_rows(

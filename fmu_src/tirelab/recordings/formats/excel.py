@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..units import FLAT_WORDS, measures, split_header
-from ..vocabulary import foreign_channel
+from ..vocabulary import any_channel
 from .cell_units import lines_without_units, row_without_units, taken_from_cells, units_in_cells, without_unit
 from .layout import below_names, column_counted
 from .libraries import load_library, reading_with
@@ -285,7 +285,7 @@ def _channels(headers: Sequence[Header]) -> int:
     for channel, si, words in _NEEDED:
         found += any(
             measures(h.unit or "", si)
-            or foreign_channel(h.name) == channel
+            or any_channel(h.name) == channel
             or words & set(h.name.lower().split())
             for h in headers
         )

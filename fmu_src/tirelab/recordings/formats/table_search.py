@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..units import QUANTITIES, is_unit, measures, split_header
-from ..vocabulary import foreign_channel
+from ..vocabulary import any_channel
 from .clock import is_clock
 from .number_style import style_of
 from .table import BLANK_WORDS, is_comment
@@ -184,4 +184,4 @@ def _names_something(cell: str) -> bool:
     name, unit = split_header(cell)
     if unit and any(measures(unit, si) for si in QUANTITIES):
         return True
-    return bool(_KNOWN & set(name.lower().split())) or foreign_channel(name) is not None
+    return bool(_KNOWN & set(name.lower().split())) or any_channel(name) is not None
