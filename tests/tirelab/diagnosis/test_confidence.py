@@ -23,6 +23,7 @@ from tirelab.diagnosis.confidence import (
     OF_EFFECT,
     OF_VERDICT,
     alternatives_of,
+    confidence_of,
     grounds_of_effect,
     grounds_of_verdict,
     insufficient_excitation,
@@ -167,6 +168,17 @@ def test_a_verdict_is_no_surer_than_an_effect_that_it_names() -> None:
 def test_a_verdict_is_no_surer_than_that_what_it_leaves_out_is_not_there() -> None:
     assert of_all(0.9, [0.95], [0.1, 0.25]) == 0.75
     assert of_all(0.9, [], [0.1]) == of_all(0.9, [], []) == 0.9
+
+
+@pytest.mark.parametrize("odds", [-15.0, -3.0, 0.0, 2.0, 15.0])
+def test_that_no_known_effect_acts_is_no_surer_than_the_evidence_against_all_of_them(odds: float) -> None:
+    """Odds of e^x to 1 are a probability of e^x / (1 + e^x)."""
+    grounds = ZERO["verdict"] | {"nothing": 1.0, "significance": 1.0, "odds": odds}
+    free = confidence_of(grounds | {"unknown": 0.0}, [], [])
+    unknown = grounds | {"unknown": 1.0, "unknown_size": 4.0, "remainder_size": 4.0, "loudness": 4.0}
+    posterior = np.exp(odds) / (1.0 + np.exp(odds))
+    assert confidence_of(unknown, [], []) == pytest.approx(min(probability("verdict", unknown), posterior))
+    assert free == probability("verdict", grounds | {"unknown": 0.0})
 
 
 def test_what_speaks_for_sets_without_an_effect_contests_it() -> None:
