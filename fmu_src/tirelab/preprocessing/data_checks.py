@@ -145,13 +145,14 @@ samples tell them from noise."""
 def after_pauses(recording: Recorded) -> BoolArray:
     """Return at which samples (n,) of a recording, or of a part of one, a tire has begun anew to follow the motion.
 
-    That is after each interval that is PAUSE times the one before (see `radialtire.tracking`). Where most samples would
-    be so, the recording is sampled like that.
+    That is after each interval that is PAUSE times the one before (see `radialtire.tracking`) and the usual one: what
+    follows a short one is none. Where most samples would be so, the recording is sampled like that.
     """
     whole = getattr(recording, "whole", recording)
     steps = np.diff(whole.time)
     found = np.zeros(whole.time.size, dtype=bool)
-    for first in np.flatnonzero(steps[1:] > PAUSE * steps[:-1]) + 2:
+    before = np.maximum(steps[:-1], np.median(steps))
+    for first in np.flatnonzero(steps[1:] > PAUSE * before) + 2:
         found[first : first + SETTLING] = True
     own = found[-recording.time.size :]
     return own if own.mean() < MOST else np.zeros_like(own)

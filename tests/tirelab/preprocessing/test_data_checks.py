@@ -192,8 +192,9 @@ def test_a_part_that_begins_behind_a_pause_does_not_know_it_either() -> None:
     assert not after_pauses(cut(900, 2000)).any()
 
 
-def test_uneven_intervals_are_how_it_is_sampled() -> None:
-    time = np.cumsum(np.tile([1e-4, 0.01], CYCLE_TIME.size))[: CYCLE_TIME.size]
+@pytest.mark.parametrize("steps", [[1e-4, 0.01], [0.01, 0.01, 0.01, 1e-4], [0.01, 0.01, 0.05]])
+def test_uneven_intervals_are_how_it_is_sampled(steps: list[float]) -> None:
+    time = np.cumsum(np.tile(steps, CYCLE_TIME.size))[: CYCLE_TIME.size]
     assert not after_pauses(Read(time=time)).any()
 
 
