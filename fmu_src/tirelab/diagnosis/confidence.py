@@ -360,7 +360,7 @@ def insufficient_excitation(
     if not timed:
         lacks.append("no time: record the time of each sample")
     elif explanation.excitation.one_speed:
-        lacks.append(f"one speed only: repeat at {_another_speed(dataset, limits)}")
+        lacks.append(f"one speed at each deflection only: repeat at {_another_speed(dataset, limits)}")
     mountable = set() if limits is None else set(limits.surfaces)
     ground = not explanation.model.baseline.is_part
     if ground and len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):

@@ -104,7 +104,7 @@ class TestDiagnose:
         for unseen in ("viscous damping", "pressure leak", "inertia"):
             assert f"+ {unseen} not seen the recording has no time" in said
         assert "was not measured" in said
-        assert "one speed only" not in said
+        assert "one speed at each deflection" not in said
 
 
 def test_settings_are_named_by_an_option(rig: Path, tmp_path: Path) -> None:

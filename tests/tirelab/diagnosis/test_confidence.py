@@ -303,7 +303,7 @@ def test_the_log_odds_are_those_of_the_verdict_that_is_delivered() -> None:
     [
         (("recalibration",), ("gas_compression",), "surface only: repeat at a second pressure"),
         (("warm_up",), ("pressure_leak",), "repeat the first cycle after a rest"),
-        (LOOP, DAMPING, "one speed only: repeat at "),
+        (LOOP, DAMPING, "one speed at each deflection only: repeat at "),
     ],
 )
 def test_the_reason_is_what_to_record(one: tuple[str, ...], other: tuple[str, ...], said: str) -> None:
