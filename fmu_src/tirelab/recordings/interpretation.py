@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from .asking import Lacking, asked, rises, stating_time
 from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column
 from .counting import Counted, count_from_zero
 from .formats import Columns, Header, RecordingError, Table, Wanted
-from .formats.table import listed, quoted
+from .formats.table import SomeColumns, listed, quoted
 from .matching import Match, match_channels, option_name, recognised
 from .metadata import Settings
 from .origin import Origin
@@ -134,11 +134,17 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     conversions, without_unit, wrong = _conversions(origin, headers, settings.units)
     lacking = tuple(name for name in found.missing if name != "time")
     no_time = "time" not in matches and interval is None
-    if no_time and settings.columns.get("time") is None and _may_hold_time(table, matches):
+    looked_at: Table = table
+    of_test = matches
+    if found.looked_at is not None:
+        first, width = found.looked_at
+        looked_at = SomeColumns(table, first, width)
+        of_test = {name: replace(match, index=match.index - first) for name, match in matches.items()}
+    if no_time and settings.columns.get("time") is None and _may_hold_time(looked_at, of_test):
         lacking = ("time", *lacking)
     wanted = Lacking(lacking, without_unit, radius is None and "radius" not in matches, wrong)
     if wanted:
-        raise asked(origin, table, matches, wanted, settings)
+        raise asked(origin, looked_at, of_test, wanted, settings)
     if no_time:
         interval = 1.0
         notes.append(

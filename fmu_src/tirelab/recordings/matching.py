@@ -1,7 +1,8 @@
 """Which column of a table is which channel."""
 
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .channels import (
     CHANNELS,
@@ -20,6 +21,8 @@ from .formats.table import listed, quoted
 from .origin import Origin
 from .units import measures
 
+_NUMBER = re.compile(r"[+-]?\s*#(\d{1,6})", re.ASCII)
+
 
 @dataclass(frozen=True)
 class Match:
@@ -34,11 +37,13 @@ class Matches:
     """Which column holds which channel, the required channels that none holds, and how many trials the table has.
 
     trials: 1, or the number of tests that stand side by side, of which the columns of one are taken
+    looked_at: the columns among which they were looked for, the first and how many; None: all
     """
 
     columns: Mapping[str, Match]
     missing: tuple[str, ...]
     trials: int = 1
+    looked_at: tuple[int, int] | None = None
 
 
 def match_channels(
@@ -54,10 +59,75 @@ def match_channels(
     its number (#1 the first); `+` or `-` before it fixes its sign; an empty name leaves the channel out.
     Others are found by the words and symbols of `CHANNELS`, symbols in their own case unless a fitting unit
     follows; where there is none, by the words of other languages, and then by names that end in a number.
-    trial: which one, from 1, where several tests stand side by side
+    trial: which one, from 1, where several tests stand side by side; where their columns have the same names, a
+    column is named as in one test alone
 
     Errors: RecordingError when a column named is not there, or several may be the one of a channel.
     """
+    width = len(headers) if time_axis is not None else _width_of_a_test(headers)
+    equal = None if width == len(headers) else _of_equal_tests(origin, headers, width, columns, trial)
+    return equal or _matched(origin, headers, time_axis, columns, trial)
+
+
+def _width_of_a_test(headers: Sequence[Header]) -> int:
+    """Return after how many columns the names begin again, all columns being such tests; the number of columns else."""
+    texts = [header.text for header in headers]
+    widths = (width for width in range(2, len(texts) // 2 + 1) if len(texts) % width == 0)
+    return next((width for width in widths if texts[width:] == texts[:-width]), len(texts))
+
+
+def _of_equal_tests(
+    origin: Origin, headers: Sequence[Header], width: int, columns: Mapping[str, str], trial: int | None
+) -> Matches | None:
+    """Return the columns of one of several tests whose columns have the same names; where none is asked for, those of
+    the first if a channel that is needed has no column in it.
+
+    None where the columns are named across the tests, or each holds several tests itself.
+    Errors: SeveralTrials where none is asked for, and all that is needed is there.
+    """
+    tests = len(headers) // width
+    if trial is not None and not 1 <= trial <= tests:
+        raise _no_such_trial(origin, tests)
+    numbered = filter(None, (_NUMBER.fullmatch(text.strip()) for text in columns.values()))
+    numbers = [int(number[1]) for number in numbered]
+    if trial is None and numbers and (max(numbers) > width or _complete(origin, headers, columns)):
+        return None
+    first = width * ((trial or 1) - 1)
+    own = {name: _within(text, first, width) for name, text in columns.items()}
+    try:
+        found = _matched(origin, headers[first : first + width], None, own, None)
+    except SeveralTrials:
+        return None
+    if trial is None and not {"deflection", "force"} & set(found.missing):
+        raise SeveralTrials(origin, tests)
+    matches = {name: replace(match, index=first + match.index) for name, match in found.columns.items()}
+    return replace(found, columns=matches, trials=tests, looked_at=(first, width))
+
+
+def _complete(origin: Origin, headers: Sequence[Header], columns: Mapping[str, str]) -> bool:
+    """Return whether columns that are named by numbers leave nothing open in the whole table."""
+    try:
+        return not _matched(origin, headers, None, columns, None).missing
+    except RecordingError:
+        return False
+
+
+def _within(text: str, first: int, width: int) -> str:
+    """Return a number of a column in the whole table as that in the test that begins after `first` columns."""
+    found = _NUMBER.fullmatch(text.strip())
+    if found is None or not first < int(found[1]) <= first + width:
+        return text
+    return text.replace(found[1], str(int(found[1]) - first))
+
+
+def _matched(
+    origin: Origin,
+    headers: Sequence[Header],
+    time_axis: int | None,
+    columns: Mapping[str, str],
+    trial: int | None,
+) -> Matches:
+    """Return which column holds which channel, as `match_channels`, of tests without regard to how they are named."""
     matches = _named_columns(origin, headers, columns)
     assigned = {match.index for match in matches.values()}
     found: dict[str, list[int]] = {}
@@ -166,11 +236,15 @@ def _of_trial(
     if trial is None:
         raise SeveralTrials(origin, trials)
     if not 1 <= trial <= trials:
-        raise RecordingError(f"{origin}: has {trials} trials side by side; name @trial1 to @trial{trials}")
+        raise _no_such_trial(origin, trials)
     return {
         name: [columns[trial - 1]] if len(columns) == trials else columns if len(columns) == 1 else []
         for name, columns in found.items()
     }
+
+
+def _no_such_trial(origin: Origin, trials: int) -> RecordingError:
+    return RecordingError(f"{origin}: has {trials} trials side by side; name @trial1 to @trial{trials}")
 
 
 class SeveralTrials(RecordingError):

@@ -185,3 +185,44 @@ class TestTrials:
             RecordingError, match=r"'Weg \[cm\]' \(#2\) and 'Hub \[cm\]' \(#3\) may each be the"
         ):
             read_recording(path, radius="flat")
+
+
+class TestTestsOfUnknownNames:
+    """Side by side stand tests whose columns have the same names, which are no words for a force or a deflection."""
+
+    @pytest.fixture
+    def unknown(self, side_by_side: Path) -> Path:
+        text = side_by_side.read_text(encoding="utf-8")
+        side_by_side.write_text(text.replace("Weg [mm]", "Capteur A").replace("Kraft [N]", "Capteur B"))
+        return side_by_side
+
+    def test_the_unknown_ones_are_asked_for_as_of_one_test(self, unknown: Path) -> None:
+        with pytest.raises(RecordingError) as caught:
+            read_recording(unknown, radius="flat")
+        said = str(caught.value)
+        assert (
+            "no column for deflection, force; its columns are 'Zeit [s]', 'Capteur A', 'Capteur B'; " in said
+        )
+        assert "--columns deflection=#2,force=#3 and --units deflection=mm,force=N" in said
+
+    @pytest.mark.parametrize(
+        "columns",
+        [
+            {"deflection": "Capteur A", "force": "Capteur B"},
+            {"deflection": "+#2", "force": "+#3"},
+        ],
+    )
+    def test_they_are_named_as_in_one_test(self, unknown: Path, columns: dict[str, str]) -> None:
+        units = {"deflection": "mm", "force": "N"}
+        files, _ = recording_files([unknown], columns)
+        assert [file.name for file in files] == ["both.csv@trial1", "both.csv@trial2"]
+        first, second = (read_recording(f, radius="flat", columns=columns, units=units) for f in files)
+        assert (len(first), len(second)) == (101, 67)
+        np.testing.assert_allclose(second.force, first.force[:67] / 2, atol=2e-3)
+
+    def test_numbers_may_count_the_columns_of_all_tests(self, unknown: Path) -> None:
+        whole = {"time": "#4", "deflection": "#5", "force": "#6"}
+        units = {"deflection": "mm", "force": "N"}
+        without_name = read_recording(unknown, radius="flat", columns=whole, units=units)
+        named = read_recording(f"{unknown}@trial2", radius="flat", columns=whole, units=units)
+        np.testing.assert_array_equal(without_name.force, named.force)

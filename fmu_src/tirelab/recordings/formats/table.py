@@ -74,6 +74,25 @@ class Table(Protocol):
         """The numbers of the columns wanted, in that order."""
 
 
+class SomeColumns:
+    """The columns of a table from one on, so many, as a table of their own."""
+
+    time_axis: int | None = None
+
+    def __init__(self, table: Table, first: int, width: int) -> None:
+        self.table = table
+        self.first = first
+        self.headers: Sequence[Header] = table.headers[first : first + width]
+
+    def bytes_needed(self, columns: int) -> int:
+        """What the whole table needs for so many."""
+        return self.table.bytes_needed(columns)
+
+    def read(self, wanted: Sequence[Wanted]) -> Columns:
+        """The numbers of the columns wanted."""
+        return self.table.read([Wanted(self.first + want.index, want.channel) for want in wanted])
+
+
 def is_comment(cell: str) -> bool:
     """Whether a row that starts with this cell is a comment, and not with #N/A or another Excel error."""
     start = cell.lstrip().lower()
