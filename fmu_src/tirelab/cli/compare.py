@@ -4,54 +4,56 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 from radialtire import TireModel, read_tire
 
-from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, reading_options
+from .options import FILE, SentenceCommand, fmu_options, reading_options, simulation_of
 from .output import Output, example, output_options
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..fmu.foreign import Simulation
+    from ..recordings.recording import Recording
 
 
 @click.command(
     "compare", cls=SentenceCommand, epilog=example("tirelab compare ride.csv --fmu dist/BicycleTire.fmu")
 )
 @click.argument("recording", type=FILE)
-@click.option("--fmu", type=FILE, help="The tire as an FMU: native code, use only one that you trust.")
+@click.option(
+    "--fmu", type=FILE, help="The simulation as an FMU, whoever made it: native code, use one that you trust."
+)
 @click.option(
     "--tire", type=FILE, help="The tire as a tire file, instead of an FMU.  [default: the article's tire]"
 )
+@fmu_options
 @output_options("out")
 @reading_options
-def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output, reading: Reading) -> None:
+def command(recording: Path, output: Output, reading: Reading, **named: Any) -> None:
     """Replay a tire's FMU on RECORDING and say how far the forces differ, and where most."""
     from ..computing.staging import staged
-    from ..fmu.foreign import tire_inside
-    from ..fmu.replay import description_of, replay
+    from ..fmu.foreign import Simulation, tire_inside
     from ..recordings.zero import refuse_far_zeros
     from ..report.comparison import compare, plot
 
-    if fmu is not None and tire is not None:
-        raise TirelabError("--fmu and --tire both name a tire; give one of them")
-    believed = fmu or (TireModel() if tire is None else read_tire(tire))
-    part = isinstance(believed, TireModel) and believed.is_part
+    asked = simulation_of(**named)
+    simulation = (
+        asked if isinstance(asked, Simulation) else TireModel() if asked is None else read_tire(asked)
+    )
+    tire = tire_inside(simulation.fmu) if isinstance(simulation, Simulation) else simulation
+    part = tire is simulation and tire.is_part
     recorded = (reading.of_part() if part else reading)(recording)
-    if recorded.far_zero:
-        inside = believed if isinstance(believed, TireModel) else tire_inside(believed)
-        if inside is not None and not inside.is_part:
-            refuse_far_zeros([recorded])
+    if tire is not None and not tire.is_part:
+        refuse_far_zeros([recorded])
     for note in recorded.notes:
         output.note(note)
-    with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
-        if isinstance(believed, TireModel):
-            file, against = _packed(believed, Path(folder)), believed.name
-        else:
-            file, against = believed, str(believed)
-            description_of(file)  # a file that is no FMU is refused before anything is said to run
-            output.stage(f"{file} is native code: it now runs with your rights")
-        output.stage(f"replaying {against} on {recorded.name}")
-        result = compare(recorded, replay(file, recorded))
+    against, force = _replayed(simulation, recorded, output)
+    result = compare(recorded, force)
     picture = f"{recorded.name}.compare.png"
     with staged(output.out) as folder:
         plot(result, folder / picture)
@@ -69,6 +71,33 @@ def command(recording: Path, fmu: Path | None, tire: Path | None, output: Output
         "plot": str(output.out / picture),
     }
     output.result(lines, content)
+
+
+def _replayed(
+    simulation: Simulation | TireModel, recorded: Recording, output: Output
+) -> tuple[str, NDArray[np.float64]]:
+    """Return what a simulation is called, and its force [N] at every sample of a recording."""
+    from ..fmu.foreign import read_foreign, tire_inside
+    from ..fmu.foreign_replay import native_code, replay_foreign
+    from ..fmu.replay import description_of, replay
+
+    if isinstance(simulation, TireModel):
+        output.stage(f"replaying {simulation.name} on {recorded.name}")
+        with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
+            return simulation.name, replay(_packed(simulation, Path(folder)), recorded)
+    file = simulation.fmu
+    if tire_inside(file) is not None:
+        description_of(file)  # a file that is no FMU is refused before anything is said to run
+        output.stage(f"{file} is native code: it now runs with your rights")
+        output.stage(f"replaying {file} on {recorded.name}")
+        return str(file), replay(file, recorded)
+    model = read_foreign(simulation)
+    for note in model.notes:
+        output.note(note)
+    output.stage(native_code(model))
+    whole = recorded.whole
+    force = replay_foreign(model, whole, recorded.name, simulation.timeout, output.stage)
+    return str(file), force[len(whole) - len(recorded) :]
 
 
 def _packed(tire: TireModel, folder: Path) -> Path:

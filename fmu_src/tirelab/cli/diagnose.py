@@ -15,12 +15,11 @@ import click
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, check_files, reading_options
+from .options import FILE, SentenceCommand, check_files, fmu_options, reading_options, simulation_of
 from .output import Output, echo, example, output_options, printable, progress
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnosis_run import DiagnosisRun
-    from ..fmu.foreign import Simulation
 
 COLUMNS = 100
 """Width of the report where the output is no terminal."""
@@ -72,14 +71,7 @@ STAGES = MappingProxyType(
     type=FILE,
     help="Look for effects beside a simulation: its FMU, whoever made it. Native code: use one that you trust.",
 )
-@click.option(
-    "--variables",
-    metavar="NAME=VARIABLE,...",
-    help="Which of its variables is the deflection, the force (and the radius), with the unit where it has another.",
-)
-@click.option(
-    "--fmu-timeout", type=float, metavar="SECONDS", help="End the FMU after this time.  [default: 300]"
-)
+@fmu_options
 @click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")
 @click.option(
     "--each",
@@ -90,7 +82,9 @@ STAGES = MappingProxyType(
 @click.option("--dask", metavar="ADDRESS", help="With --each: address of the scheduler of a Dask cluster.")
 def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
     """Find the physics that a tire model lacks to reproduce RECORDING... (files or folders), and correct it."""
-    options["tire"] = _simulation(options)
+    options["tire"] = simulation_of(
+        *(options.pop(name) for name in ("tire", "fmu", "variables", "fmu_timeout"))
+    )
     believed = options.pop("believed_force")
     if believed is not None:
         reading: Reading = options["reading"]
@@ -104,26 +98,6 @@ def command(recordings: tuple[Path, ...], each: bool, **options: Any) -> None:
         _batch(recordings, options)
     else:
         _single(recordings, options)
-
-
-def _simulation(options: dict[str, Any]) -> Path | Simulation | None:
-    """Return the tire file or the FMU that the options name, and take the latter's options out."""
-    fmu, variables, timeout = (options.pop(name) for name in ("fmu", "variables", "fmu_timeout"))
-    tire: Path | None = options["tire"]
-    if fmu is None:
-        if variables is not None or timeout is not None:
-            raise TirelabError(
-                "--variables and --fmu-timeout are those of --fmu; name the FMU, or leave them out"
-            )
-        return tire
-    if tire is not None:
-        raise TirelabError("--fmu and --tire both name a simulation; give one of them")
-    check_files([fmu])
-    from ..fmu.foreign import TIMEOUT, Simulation, parse_variables
-
-    if timeout is not None and not timeout > 0.0:
-        raise TirelabError(f"--fmu-timeout {timeout:g} is not allowed; give seconds, more than 0")
-    return Simulation(fmu, parse_variables(variables or ""), TIMEOUT if timeout is None else timeout)
 
 
 def _ranged(recordings: tuple[Path, ...], given: Path, option: str = "--held-out") -> Path:

@@ -6,13 +6,16 @@ import shlex
 from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from radialtire import InputError, ParameterError, TireFileError
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
+
+if TYPE_CHECKING:
+    from ..fmu.foreign import Simulation
 
 FILE = click.Path(path_type=Path)
 
@@ -139,3 +142,40 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in reversed(_READING):
         with_options = option(with_options)
     return with_options
+
+
+def fmu_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command with --fmu the options of an FMU that anyone made: see `simulation_of`."""
+    variables = click.option(
+        "--variables",
+        metavar="NAME=VARIABLE,...",
+        help="Which of its variables is the deflection, the force (and the radius), with the unit where it has "
+        "another.",
+    )
+    timeout = click.option(
+        "--fmu-timeout", type=float, metavar="SECONDS", help="End the FMU after this time.  [default: 300]"
+    )
+    return variables(timeout(command))
+
+
+def simulation_of(
+    tire: Path | None, fmu: Path | None, variables: str | None, fmu_timeout: float | None
+) -> Path | Simulation | None:
+    """Return the tire file or the FMU that the options name; None for the article's tire.
+
+    Raises TirelabError where they contradict each other, or the FMU does not exist.
+    """
+    if fmu is None:
+        if variables is not None or fmu_timeout is not None:
+            raise TirelabError(
+                "--variables and --fmu-timeout are those of --fmu; name the FMU, or leave them out"
+            )
+        return tire
+    if tire is not None:
+        raise TirelabError("--fmu and --tire both name a simulation; give one of them")
+    check_files([fmu])
+    from ..fmu.foreign import TIMEOUT, Simulation, parse_variables
+
+    if fmu_timeout is not None and not fmu_timeout > 0.0:
+        raise TirelabError(f"--fmu-timeout {fmu_timeout:g} is not allowed; give seconds, more than 0")
+    return Simulation(fmu, parse_variables(variables or ""), TIMEOUT if fmu_timeout is None else fmu_timeout)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from foreign_models import spring_damper
 from tirelab.cli import main
-from tirelab.recordings.recording import Recording
+from tirelab.recordings.recording import Recording, read_recording
 from tirelab.report.comparison import compare, plot
 
 
@@ -65,13 +67,32 @@ def test_compare_with_a_tire_file_and_with_an_fmu_agree(repository: Path, tmp_pa
     assert with_tire[1].splitlines()[-4:] == with_fmu[1].splitlines()[-4:]
 
 
+def test_anyones_fmu_is_compared_and_ended_where_it_hangs(repository: Path, tmp_path: Path) -> None:
+    """A spring of 1e5 N/m with a damper, pressed slowly: the spring's force is what it leaves out."""
+    recorded = repository / "examples" / "recordings" / "press" / "slow.csv"
+    named = ("--variables", "force=wheel_load", "--out", tmp_path, "--json", "--quiet")
+    status, printed = run("compare", recorded, "--fmu", spring_damper(tmp_path), *named)
+    assert status == 0
+    r = read_recording(recorded)
+    assert json.loads(printed)["rmse"] == pytest.approx(
+        float(np.sqrt(np.mean((r.force - 1e5 * r.deflection) ** 2))), rel=0.05
+    )
+    (tmp_path / "hangs").mkdir()
+    hangs = spring_damper(tmp_path / "hangs", "print('solving', flush=True); time.sleep(60)")
+    status, printed = run("compare", recorded, "--fmu", hangs, "--fmu-timeout", "3", *named)
+    assert status == 2
+    assert "was ended after 3 s" in printed
+    assert "its last message: solving" in printed
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
         (["nothing.csv"], "nothing.csv"),
-        (["press/slow.csv", "--fmu", "nothing.fmu"], "nothing.fmu does not exist; build it"),
+        (["press/slow.csv", "--fmu", "nothing.fmu"], "nothing.fmu: there is no such file; check the path"),
         (["press/slow.csv", "--tire", "nothing.json"], "nothing.json: No such file"),
-        (["press/slow.csv", "--fmu", "a.fmu", "--tire", "b.json"], "--fmu and --tire both name a tire"),
+        (["press/slow.csv", "--fmu", "a.fmu", "--tire", "b.json"], "--fmu and --tire both name a simulation"),
+        (["press/slow.csv", "--fmu-timeout", "3"], "name the FMU, or leave them out"),
         (["press/slow.csv", "--out", "press/slow.csv"], "cannot be written"),
     ],
 )
