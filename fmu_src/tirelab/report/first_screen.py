@@ -132,12 +132,13 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
         return NextStep(given.use if verdict["effects"] else given.leave, " ".join(filter(None, said)))
     if test is not None:
         return NextStep(_drive(test), _decides(test, verdict), drive=True)
-    if verdict["unexplained"]:
+    found = actions(reasons) if verdict["alternatives"] else []
+    if verdict["unexplained"] and not (undecided(verdict) and found):
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
             f"If the same difference comes back, the rig causes it, not the {given.kind}.",
         )
-    if verdict["alternatives"] and (found := actions(reasons)):
+    if found:
         return NextStep(
             f"{_capital(found[0])}.",
             "No other motion of this rig on these surfaces decides between the alternatives.",

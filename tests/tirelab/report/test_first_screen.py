@@ -312,6 +312,17 @@ def test_what_is_unknown_is_not_called_nothing() -> None:
     assert "on a concave surface of radius 60 cm, at" in step.action
 
 
+@pytest.mark.parametrize(
+    ("sure", "action"), [(0.4, "Hold 10 s at 15 mm."), (0.9, "Repeat one recording with ")]
+)
+def test_beside_alternatives_that_a_recording_tells_apart_the_unknown_asks_for_it(
+    sure: float, action: str
+) -> None:
+    given = diagnosis({}, sure, unexplained=True, alternatives=[["viscoelastic_relaxation"]])
+    step = first_screen.next_step(given, ["no hold: hold 10 s at 15 mm"])
+    assert step.action.startswith(action)
+
+
 def test_two_effects_are_told_in_two_sentences() -> None:
     said = first_screen.lead(diagnosis({"deflection_offset": 9.0, "viscous_damping": 8.0}))
     assert said == "The deflection's zero is shifted. The force grows with the speed of compression."
