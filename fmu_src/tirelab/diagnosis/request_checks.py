@@ -34,7 +34,7 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
     for i, (file, one) in enumerate(read):
         for other_file, other in read[:i]:
             same = one.source is not None and other.source is not None and one.source.samefile(other.source)
-            if not same or split_piece(file)[1].trial != split_piece(other_file)[1].trial:
+            if not same or split_piece(file)[1].part != split_piece(other_file)[1].part:
                 continue
             if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
                 raise TirelabError(

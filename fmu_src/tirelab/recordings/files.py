@@ -79,8 +79,8 @@ def _trials_of(file: Path, columns: Mapping[str, str] | None) -> tuple[Path, ...
     if piece.trial is not None or not path.is_file():
         return (file,)
     try:
-        sidecar = read_sidecar(path)
-        table = open_table(path, sidecar.skip_rows)
+        sidecar = read_sidecar(path, sheet=piece.sheet)
+        table = open_table(path, sidecar.skip_rows, piece.sheet)
         match_channels(
             Origin(path.name), table.headers, table.time_axis, {**sidecar.columns, **(columns or {})}
         )

@@ -59,8 +59,8 @@ class ChannelFound:
 class Inspection:
     """What was understood of one recording: facts as pairs of a name and a text, channels, doubts, notes, provenance.
 
-    key: the name of the file as `recording.toml` calls it, with @trial2 where that is one; settings: what is written
-    there so that the file is read the same again
+    key: the name of the file as `recording.toml` calls it, with @trial2 or @SHEET where that is one; settings: what is
+    written there so that the file is read the same again
     """
 
     key: str
@@ -92,7 +92,7 @@ class Inspection:
 def inspect_recording(path: Path | str, how: Choices) -> Inspection:
     """Return what is understood of a file, or a piece of one. Errors: as `read_recording`."""
     found = understand(path, how)
-    key = found.path.name + (f"@trial{found.piece.trial}" if found.piece.trial else "")
+    key = found.path.name + found.piece.part
     return Inspection(
         key,
         found.path,

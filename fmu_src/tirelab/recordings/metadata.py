@@ -12,6 +12,7 @@ from radialtire import CHANNELS
 
 from .channels import known_channel
 from .formats import RecordingError
+from .pieces import Piece
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -115,7 +116,7 @@ class Settings:
     zero: Mapping[str, str] = field(default_factory=dict)
 
 
-def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None) -> Sidecar:
+def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None, sheet: str = "") -> Sidecar:
     """The sidecar of a recording: `recording.toml` in its folder, and over it one named like the recording.
 
     For `flat.csv` that is `flat.toml`. Keys: `radius = "25.4 cm"` (or "flat"), `sampling = "10 Hz"`, `from`, `to`,
@@ -124,8 +125,8 @@ def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None
     `[columns]`, `[units]` and `[zero]`, which say per channel what `--columns`, `--units` and `--zero` say.
     The same keys below `[files."flat.csv"]` hold for that file alone. Without a sidecar, an empty one.
 
-    named: a file of settings that is read instead of those beside the recording; trial: of tests side by side, each of
-    which may have a table of its own, `[files."flat.csv@trial2"]`
+    named: a file of settings that is read instead of those beside the recording; trial, sheet: of tests side by side
+    and of a workbook, each of which may have a table of its own, `[files."flat.csv@trial2"]`
     Errors: RecordingError for TOML that does not parse, an unknown key, or a value that is not text.
     """
     if named is not None and not named.is_file():
@@ -139,15 +140,15 @@ def read_sidecar(path: Path, named: Path | None = None, trial: int | None = None
                 raise RecordingError(
                     f'{file.name}: a name is of one recording; write it below [files."{path.name}"]'
                 )
-            for part in _parts(content, path.name, trial):
+            for part in _parts(content, path.name, Piece(trial, sheet=sheet).part):
                 found = found.below(_sidecar(part, file.name))
     return found
 
 
-def _parts(content: Mapping[str, Any], name: str, trial: int | None) -> list[Mapping[str, Any]]:
+def _parts(content: Mapping[str, Any], name: str, part: str) -> list[Mapping[str, Any]]:
     """Return what a file of settings says of every recording, and of one of them: nothing where that is all others."""
     files = content.get("files", {})
-    own = [files[key] for key in (name, f"{name}@trial{trial}") if key in files]
+    own = [files[key] for key in dict.fromkeys((name, name + part)) if key in files]
     common = {key: value for key, value in content.items() if key != "files"}
     return [*([common] if common else []), *own]
 

@@ -1,4 +1,7 @@
-"""Parts of a file: one of several tests side by side, and a range of time or rows, as FILE@trial2@10s:20s."""
+"""Parts of a file: one of several tests side by side, a sheet of a workbook, and a range of time or rows.
+
+They are named behind the file: FILE@trial2@10s:20s, FILE@SHEET.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .formats import RecordingError
+from .formats import WORKBOOK_SUFFIXES, RecordingError
 from .formats.table import quoted
 from .units import UnitError, conversion
 
@@ -24,11 +27,13 @@ class Piece:
 
     trial: of tests side by side, from 1; start, stop: times such as "10s" or "2 min" (from the one up to the other,
     without it), or numbers of rows (both among those read), "" where there is no bound
+    sheet: of a workbook, "" where that with the recording is found
     """
 
     trial: int | None = None
     start: str = ""
     stop: str = ""
+    sheet: str = ""
 
     def within(self, start: str, stop: str) -> Piece:
         """Return this piece with bounds where it has none itself."""
@@ -43,11 +48,16 @@ class Piece:
         return int(self.start or 1), int(self.stop or sys.maxsize)
 
     @property
+    def part(self) -> str:
+        """What follows the file's name in the settings of one test: "@trial2", "@SHEET"; "" of a whole file."""
+        sheet = f"@{self.sheet}" if self.sheet else ""
+        return sheet + ("" if self.trial is None else f"@trial{self.trial}")
+
+    @property
     def suffix(self) -> str:
         """What the name of its recording ends in: "@trial2", "@10s-20s"."""
-        trial = "" if self.trial is None else f"@trial{self.trial}"
         bounds = "".join(f"{self.start}-{self.stop}".split()) if self.start or self.stop else ""
-        return trial + (f"@{bounds}" if bounds else "")
+        return re.sub(r"[/\\]", "-", self.part) + (f"@{bounds}" if bounds else "")
 
 
 def split_piece(path: Path | str) -> tuple[Path, Piece]:
@@ -62,13 +72,13 @@ def split_piece(path: Path | str) -> tuple[Path, Piece]:
     file = whole.with_name(name) if name else whole
     if not name or not file.exists():
         return whole, Piece()
-    return file, parse_piece("@".join(parts), str(path))
+    return file, parse_piece("@".join(parts), str(path), file.suffix.lower() in WORKBOOK_SUFFIXES)
 
 
-def parse_piece(text: str, where: str) -> Piece:
+def parse_piece(text: str, where: str, sheets: bool = False) -> Piece:
     """Return the piece that a text names: `trial2`, `10s:20s`, `100:2000`, `trial1@:30s`.
 
-    Errors: RecordingError for anything else.
+    sheets: whether anything else is the name of a sheet. Errors: RecordingError where it is not.
     """
     piece = Piece()
     for part in text.split("@"):
@@ -81,6 +91,9 @@ def parse_piece(text: str, where: str) -> Piece:
             or not all(not bit or _BOUND.fullmatch(bit) for bit in (start, stop))
             or not (start or stop)
         ):
+            if sheets and part.strip():
+                piece = replace(piece, sheet=f"{piece.sheet}@{part}" if piece.sheet else part.strip())
+                continue
             raise RecordingError(
                 f"{where}: {quoted(part)} is no part of a file; write 10s:20s (time), 100:2000 (rows) or trial2"
             )

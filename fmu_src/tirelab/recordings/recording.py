@@ -292,9 +292,9 @@ def understand(path: Path | str, how: Choices) -> Understood:
     """Return the recording in a file, or in a piece of it, and how it was understood. Errors: as `read_recording`."""
     said = (str(path), *replace(how, zero={}).words())
     path, piece = split_piece(path)
-    sidecar = read_sidecar(path, how.settings, piece.trial)
+    sidecar = read_sidecar(path, how.settings, piece.trial, piece.sheet)
     skip_rows = sidecar.skip_rows if how.skip_rows is None else how.skip_rows
-    table = open_table(path, skip_rows)
+    table = open_table(path, skip_rows, piece.sheet)
     settings = sidecar.overruled(how.columns, how.units, how.radius, how.sampling, how.zero)
     settings = replace(settings, part=settings.part or how.part)
     own = {f"columns.{name}" for name in how.columns} | {f"units.{name}" for name in how.units}

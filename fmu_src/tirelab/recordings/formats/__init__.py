@@ -13,7 +13,17 @@ from .parquet import ParquetTable
 from .table import Columns, Header, RecordingError, Table, Wanted, quoted
 from .tdms import TdmsTable
 
-__all__ = ["LOADERS", "TEXT_SUFFIXES", "Columns", "Header", "RecordingError", "Table", "Wanted", "open_table"]
+__all__ = [
+    "LOADERS",
+    "TEXT_SUFFIXES",
+    "WORKBOOK_SUFFIXES",
+    "Columns",
+    "Header",
+    "RecordingError",
+    "Table",
+    "Wanted",
+    "open_table",
+]
 
 LOADERS: dict[str, Callable[[Path], Table]] = {
     ".csv": DelimitedTable,
@@ -44,6 +54,9 @@ LOADERS: dict[str, Callable[[Path], Table]] = {
 TEXT_SUFFIXES = tuple(suffix for suffix, loader in LOADERS.items() if loader is DelimitedTable)
 """Those of them that are text."""
 
+WORKBOOK_SUFFIXES = tuple(suffix for suffix, loader in LOADERS.items() if loader is ExcelTable)
+"""Those of them that are workbooks, of which a sheet can be named."""
+
 SNIFFED = 4096
 """So much of a file [B] is looked at for what it is."""
 
@@ -68,10 +81,11 @@ _SIGNATURES = (
 _CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 
 
-def open_table(path: Path, skip_rows: int | None = None) -> Table:
+def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Table:
     """The table in a file, its loader chosen by the suffix; where that is not known, by what the file holds.
 
     skip_rows: rows above the table of a text file; None: it is found
+    sheet: of a workbook, "" where that with the recording is to be found
     Errors: RecordingError when there is no such file, it is empty, its suffix is not known and it holds no table of
     text, its content is of another kind than its suffix says, or the library for it is not installed.
     """
@@ -99,6 +113,8 @@ def open_table(path: Path, skip_rows: int | None = None) -> Table:
         suffix = ".txt"
     if skip_rows is not None and suffix not in TEXT_SUFFIXES:
         raise RecordingError(f"{path.name}: rows can be skipped in text files alone; leave out --skip-rows")
+    if suffix in WORKBOOK_SUFFIXES:
+        return ExcelTable(path, sheet)
     if suffix not in TEXT_SUFFIXES:
         return LOADERS[suffix](path)
     try:

@@ -6,6 +6,7 @@ same columns, as testing machines write one for each specimen, are tests side by
 
 import datetime
 import re
+import shlex
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,7 +24,7 @@ from .cell_units import lines_without_units, row_without_units, taken_from_cells
 from .layout import below_names, column_counted
 from .libraries import load_library, reading_with
 from .number_style import NumberStyle, style_of, with_plain_minus
-from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, not_a_number, quoted
+from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, listed, not_a_number, quoted
 from .table_search import SEARCHED, find_table, is_value
 from .text_rows import TextRows
 
@@ -72,12 +73,16 @@ class Sheet:
 
 
 class ExcelTable:
-    """The columns of the first sheet that holds a recording, and beside them those of the sheets that are like it."""
+    """The columns of the first sheet that holds a recording, and beside them those of the sheets that are like it.
+
+    Where a sheet is named, its columns alone.
+    """
 
     time_axis: int | None = None
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, sheet: str = "") -> None:
         self.path = path
+        self.one = sheet
         other = path.suffix.lower() in OTHERS
         self.library = (
             load_library(path, "python_calamine", "python-calamine")
@@ -86,12 +91,16 @@ class ExcelTable:
         )
         found: list[Sheet] = []
         with reading_with(path, "a workbook"), _opened(path, self.library) as book:
-            for title in book.titles[:MOST_SHEETS]:
+            titles = [_titled(path, book.titles, sheet)] if sheet else book.titles[:MOST_SHEETS]
+            for title in titles:
                 head = [list(row) for row in islice(book.rows(title), SEARCHED)]
                 if any(map(_holds_any, head)):
                     found.append(_sheet(path, title, head))
         if not found:
-            raise RecordingError(f"{path.name}: holds no header and no numbers; export the workbook anew")
+            what = f", sheet {quoted(sheet)}" if sheet else ""
+            raise RecordingError(
+                f"{path.name}{what}: holds no header and no numbers; export the workbook anew"
+            )
         # of sheets with the same channels the longest: one of results has a row for each specimen
         chosen = max(found, key=lambda sheet: (_channels(sheet.headers), sheet.rows))
         if not chosen.header_row:
@@ -102,7 +111,7 @@ class ExcelTable:
         names = [header.text for header in chosen.headers]
         self.sheets = [sheet for sheet in found if [header.text for header in sheet.headers] == names]
         self.headers: Sequence[Header] = [header for sheet in self.sheets for header in sheet.headers]
-        self.others = len(found) > len(self.sheets)
+        self.others = tuple(sheet.title for sheet in found if sheet not in self.sheets)
 
     def sheet_of(self, index: int) -> Sheet:
         """The sheet on which a column stands."""
@@ -137,11 +146,12 @@ class ExcelTable:
                     )
                 if line < sheet.first_row:
                     continue
+                row = row[:width]
                 if not _holds_any(row):
                     empty.append(line)
                     continue
                 texts = row_without_units(
-                    [_text(cell) for cell in (*row, *[None] * width)[: max(width, len(row))]],
+                    [_text(cell) for cell in (*row, *[None] * width)[:width]],
                     sheet.cell_units,
                 )
                 try:
@@ -164,10 +174,17 @@ class ExcelTable:
             if self.headers[want.index].dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
         notes = [*sheet.notes]
-        if self.others or len(self.sheets) > 1:
-            others = "; the workbook has others" if self.others else ""
-            notes.append(f"read from sheet {quoted(sheet.title)}{others}")
+        if self.one or self.others or len(self.sheets) > 1:
+            notes.append(f"read from sheet {quoted(sheet.title)}{self._others_text()}")
         return Columns(tuple(values), lambda i: f"row {lines[i]}", (*notes, *text_rows.notes()))
+
+    def _others_text(self) -> str:
+        """Return which sheets have other columns, and how one of them is read."""
+        if not self.others:
+            return ""
+        how = shlex.quote(f"{self.path.name}@{self.others[0]}")
+        others = listed(list(map(quoted, self.others)))
+        return f"; sheets of other columns: {others}; one is read by its name, as {how}"
 
     def _number(self, cell: object, line: int, want: Wanted) -> float:
         header = self.headers[want.index]
@@ -239,6 +256,21 @@ def _opened(path: Path, library: ModuleType) -> Iterator[_OfOpenpyxl | _OfCalami
             book.close()
 
 
+def _titled(path: Path, titles: Sequence[str], name: str) -> str:
+    """Return the title of the sheet that is named, whatever its case. Errors: RecordingError where there is none."""
+    for same in (
+        [title for title in titles if title.strip() == name],
+        [title for title in titles if title.strip().casefold() == name.casefold()],
+    ):
+        if same:
+            return same[0]
+    sheets = listed(list(map(quoted, titles)))
+    raise RecordingError(
+        f"{path.name}: has no sheet {quoted(name)}; its sheets are {sheets}, and a part of one is written 10s:20s "
+        "(time), 100:2000 (rows) or trial2"
+    )
+
+
 def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     """Return the table of a sheet that holds anything, from its first rows."""
     width = max(len(_trimmed(row)) for row in head)
@@ -251,6 +283,10 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     place = find_table(lines, first, "\t")
     start = first if place is None else place.line
     names = [*head[start], *[None] * width][:width]
+    width = _named_width(names)
+    if width < len(names):
+        names, head = names[:width], [row[:width] for row in head]
+        lines = ["\t".join(line.rstrip("\n").split("\t")[:width]) + "\n" for line in lines]
     if not any(isinstance(cell, str) and cell.strip() for cell in names):
         return Sheet(title, 0, start + 1, (), ())
     headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
@@ -277,6 +313,13 @@ def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     counted = column_counted([[_text(cell) for cell in row] for row in body], "\t")
     above = tuple("; ".join(filter(None, map(_text, row))) for row in head[:start] if _holds_any(row))
     return Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted, above)
+
+
+def _named_width(names: Sequence[Any]) -> int:
+    """Return how many columns a row of names has: it ends before numbers, which are of a table beside it."""
+    texts = [n for n, cell in enumerate(names, 1) if isinstance(cell, str) and cell.strip()]
+    beside = texts and any(isinstance(cell, (int, float)) for cell in names[texts[-1] :])
+    return texts[-1] if beside else len(names)
 
 
 def _channels(headers: Sequence[Header]) -> int:

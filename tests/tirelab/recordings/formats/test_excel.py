@@ -112,7 +112,8 @@ class TestExcel:
             sheet.append(row)
         book.save(tmp_path / "a.xlsx")
         recording = read_recording(tmp_path / "a.xlsx", radius="flat")
-        assert_the_recording(recording, "read from sheet 'readings'; the workbook has others", digits=1e-15)
+        others = "sheets of other columns: 'Sheet'; one is read by its name, as a.xlsx@Sheet"
+        assert_the_recording(recording, f"read from sheet 'readings'; {others}", digits=1e-15)
 
     def test_sheets_of_the_same_columns_are_tests_side_by_side(self, tmp_path: Path) -> None:
         openpyxl = pytest.importorskip("openpyxl")
@@ -134,6 +135,47 @@ class TestExcel:
         assert (first.provenance, second.provenance) == (("Operator; B1",), ("Operator; B2",))
         facts = dict(inspect_recording(files[1], Choices(radius="flat")).facts)
         assert facts["table"] == "xlsx, sheet 'Specimen 2', names in row 2"
+
+    def test_a_sheet_is_named_behind_the_file(self, tmp_path: Path) -> None:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        book.active.title = "notes"
+        for title, factor, samples in (("RDG1 1", 1.0, 40), ("mean curve", 2.0, 60)):
+            sheet = book.create_sheet(title)
+            sheet.append(["time [s]", "stroke [mm]", "load [N]", *(["work [J]"] if factor == 1.0 else [])])
+            for i in range(samples):
+                sheet.append([0.1 * i, 0.2 * i, 10.0 * factor * i])
+        path = tmp_path / "a.xlsx"
+        book.save(path)
+        longest = read_recording(path, radius="flat")
+        assert longest.force.max() == pytest.approx(1180.0)
+        how = "sheets of other columns: 'RDG1 1'; one is read by its name, as 'a.xlsx@RDG1 1'"
+        assert f"read from sheet 'mean curve'; {how}" in longest.notes
+        one = read_recording(f"{path}@rdg1 1", radius="flat")
+        assert one.force.max() == pytest.approx(390.0)
+        assert one.name == "a@rdg1 1"
+        assert "read from sheet 'RDG1 1'" in one.notes
+        assert len(read_recording(f"{path}@RDG1 1@1s:2s", radius="flat")) == 10
+        assert inspect_recording(f"{path}@RDG1 1", Choices(radius="flat")).key == "a.xlsx@RDG1 1"
+        (tmp_path / "recording.toml").write_text(
+            '[files."a.xlsx@RDG1 1"]\nname = "the first"\nradius = "flat"\n'
+        )
+        assert read_recording(f"{path}@RDG1 1").name == "the first@RDG1 1"
+        said = refusal(tmp_path / "a.xlsx@RDG2")
+        assert (
+            "has no sheet 'RDG2'; its sheets are 'notes', 'RDG1 1', 'mean curve', and a part of one" in said
+        )
+        assert "sheet 'notes': holds no header and no numbers" in refusal(tmp_path / "a.xlsx@notes")
+
+    def test_numbers_beside_the_names_are_of_another_table(self, tmp_path: Path) -> None:
+        beside = [
+            [None, None, 20.0, 80.0],
+            [None, None, 3.2, 77.1],
+            *[[None] * 4 for _ in range(SAMPLES - 1)],
+        ]
+        rows = [row + more for row, more in zip(self.rows(), beside, strict=True)]
+        path = self.save(tmp_path / "a.xlsx", [*rows, [None] * 5 + [1.0, 2.0]])
+        assert_the_recording(read_recording(path, radius="flat"), digits=1e-15)
 
 
 OFFICE = """<?xml version="1.0" encoding="UTF-8"?>
