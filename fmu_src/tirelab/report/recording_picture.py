@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from ..recordings.samples import find_gaps
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 60, 12
 """Of a picture in the terminal, in characters."""
 
+MOST_LABELS = (5, 4)
+"""So many steps between labels of the picture in the terminal, along it and up."""
+
 DRAWN = 4000
 """So many samples of a recording are drawn, evenly spaced."""
 
@@ -26,15 +30,55 @@ def terminal_picture(recording: Recording, width: int = WIDTH, height: int = HEI
     from uniplot import plot_to_string
 
     step = max(1, len(recording) // DRAWN)
+    x, y = 1e3 * recording.deflection[::step], recording.force[::step]
+    (left, right), (low, high) = _limits(x), _limits(y)
     text: str = plot_to_string(
-        xs=1e3 * recording.deflection[::step],
-        ys=recording.force[::step],
+        xs=x,
+        ys=y,
+        x_min=left,
+        x_max=right,
+        y_min=low,
+        y_max=high,
         width=width,
         height=height,
         character_set="braille",
         title="force [N] over deflection [mm]",
     )
-    return text
+    # uniplot rounds its labels to what tells them apart: they are replaced
+    lines = [line[: line.rfind("│") + 1] or line for line in text.splitlines()[: height + 3]]
+    for label, share in _ticks(low, high, MOST_LABELS[1]):
+        row = -2 - min(int(share * height), height - 1)
+        lines[row] += f" {label}" if lines[row].endswith("│") else ""
+    below = ""
+    for label, share in _ticks(left, right, MOST_LABELS[0]):
+        begin = max(0, 1 + min(int(share * width), width - 1) - len(label) // 2)
+        below += " " * (begin - len(below)) + label if begin > len(below) or not below else ""
+    return "\n".join([*lines, below])
+
+
+def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the least and the greatest value, some way apart where all are equal."""
+    low, high = float(values.min()), float(values.max())
+    beside = 0.0 if high > low else max(abs(low), 1.0)
+    return low - beside, high + beside
+
+
+def _ticks(low: float, high: float, most: int) -> list[tuple[str, float]]:
+    """Return round numbers of an axis as texts with all their digits, each with its share of the way along the axis."""
+    values = np.asarray(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+    step = values[1] - values[0]
+    values = np.round(values / step) * step + 0.0
+    values = values[(values >= low) & (values <= high)]
+    digits = (
+        [f"{v:,.{n}f}" for v in values] for n in range(7) if step >= 1e-6 and np.abs(values).max() < 1e9
+    )
+    scientific = ([f"{v:.{n}g}" for v in values] for n in range(1, 18))
+    texts = next(
+        texts
+        for texts in (*digits, *scientific)
+        if np.allclose([float(t.replace(",", "")) for t in texts], values, rtol=0.0, atol=1e-6 * step)
+    )
+    return [(text, (v - low) / (high - low)) for text, v in zip(texts, values, strict=True)]
 
 
 def broken(values: NDArray[np.float64], time: NDArray[np.float64]) -> NDArray[np.float64]:
