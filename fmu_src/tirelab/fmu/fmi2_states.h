@@ -5,6 +5,8 @@
  * Its states stepInProgress, stepFailed and stepCanceled do not occur here: a step is made or refused at once. After an
  * error the standard leaves only a reset or a saved state; a host that sets a good value instead may go on all the same.
  * In Continuous-Time Mode the standard lets a host set inputs alone; CasADi sets parameters there too, and they are taken.
+ * There alone it lets a host set continuous states; OpenModelica sets them in Event Mode too, with the values that it has
+ * just read, before it goes there for the first time.
  */
 #ifndef FMI2_STATES_H
 #define FMI2_STATES_H
@@ -46,7 +48,7 @@ enum {
     MAY_EnterContinuousTimeMode = EVENT,
     MAY_CompletedIntegratorStep = CONTINUOUS,
     MAY_SetTime = EVENT | CONTINUOUS,
-    MAY_SetContinuousStates = CONTINUOUS,
+    MAY_SetContinuousStates = EVENT | CONTINUOUS,
     MAY_GetContinuous = OF_EXCHANGE | INITIALIZATION | EVENT | CONTINUOUS | TERMINATED,
     MAY_GetNominalsOfContinuousStates = INSTANTIATED | MAY_GetContinuous
 };

@@ -64,7 +64,6 @@ EXPORT Status fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, 
     }
 CHANGE(EnterInitializationMode, INITIALIZATION)
 CHANGE(Terminate, TERMINATED)
-CHANGE(EnterEventMode, EVENT)
 CHANGE(EnterContinuousTimeMode, CONTINUOUS)
 
 EXPORT Status fmi2ExitInitializationMode(void *c)
@@ -212,6 +211,12 @@ GET_STATUS(Real, double, LAST_SUCCESSFUL_TIME, self->tire.m.reached)
 GET_STATUS(Boolean, int, HAS_TERMINATED, 0)
 
 /* Model Exchange. */
+
+EXPORT Status fmi2EnterEventMode(void *c)
+{
+    ENTER(MAY_EnterEventMode, "fmi2EnterEventMode")
+    return instance_enter_event(self);
+}
 
 EXPORT Status fmi2NewDiscreteStates(void *c, EventInfo *info)
 {

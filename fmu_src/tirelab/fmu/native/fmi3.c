@@ -117,7 +117,6 @@ EXPORT Status fmi3ExitInitializationMode(void *c)
         return OK; \
     }
 CHANGE(Terminate, RUNNING, TERMINATED)
-CHANGE(EnterEventMode, CONTINUOUS, EVENT)
 CHANGE(EnterContinuousTimeMode, EVENT, CONTINUOUS)
 
 EXPORT Status fmi3Reset(void *c)
@@ -316,6 +315,12 @@ EXPORT Status fmi3CompletedIntegratorStep(void *c, bool no_rewind, bool *event, 
         return fail(self, "the place for the answer is NULL");
     *event = *terminate = false;
     return instance_accept(self);
+}
+
+EXPORT Status fmi3EnterEventMode(void *c)
+{
+    ENTER(CONTINUOUS, "fmi3EnterEventMode")
+    return instance_enter_event(self);
 }
 
 EXPORT Status fmi3SetTime(void *c, double time)

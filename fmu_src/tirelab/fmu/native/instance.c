@@ -343,3 +343,11 @@ Status instance_accept(Instance *self)
     self->tire.current = false;
     return OK;
 }
+
+/* An event's change of the inputs comes after the step that the solver has completed at its time. */
+Status instance_enter_event(Instance *self)
+{
+    tire_settle(&self->tire);
+    self->tire.m.stage = EVENT;
+    return OK;
+}

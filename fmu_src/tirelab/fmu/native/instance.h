@@ -113,5 +113,6 @@ Status instance_get_rates(Instance *, double x[], size_t n);
 Status instance_get_nominals(Instance *, double x[], size_t n);
 Status instance_get_indicators(Instance *, double x[], size_t n); /* the tire's own deflection [m] */
 Status instance_accept(Instance *);
+Status instance_enter_event(Instance *);
 
 #endif

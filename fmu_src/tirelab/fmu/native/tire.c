@@ -382,6 +382,20 @@ static bool channels_fit(const Tire *tire, char trouble[TROUBLE])
     return true;
 }
 
+/*
+ * What was kept before a time. A step of a solver that ends no later than the last one takes its place: OpenModelica
+ * completes one whenever it evaluates its model, in a solver's iterations too and, for its results, at times gone by.
+ */
+static double *kept(Tire *tire, double time)
+{
+    Memory *const m = &tire->m;
+    if (!tire->exchange || time > m->reached)
+        return m->s;
+    for (int i = 0; i < tire->continuous_count; i++)
+        m->earlier[tire->continuous[i]] = m->s[tire->continuous[i]];
+    return m->earlier;
+}
+
 bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
 {
     const Inputs *const u = &tire->m.inputs; /* a copy would wait for both inputs to be written */
@@ -417,7 +431,7 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
         }
         tire->p[P_TRACKED] = tire->moves && !given;
         tire->p[P_CONTINUOUS] = tire->exchange;
-        const Vector2 answer = tire_step(tire->coefficients, moving(tire, time), tire->p, tire->m.s, tire->n);
+        const Vector2 answer = tire_step(tire->coefficients, moving(tire, time), tire->p, kept(tire, time), tire->n);
         force = answer.v[0];
         compression = answer.v[1];
     }
@@ -437,9 +451,12 @@ bool tire_accept(Tire *tire, double time, char trouble[TROUBLE])
         tire->current = false;
         return false;
     }
+    const bool later = time > tire->m.reached;
     tire->m.time = tire->m.reached = time;
     if (tire->bare)
         return true;
+    if (tire->exchange && later)
+        memcpy(tire->m.earlier, tire->m.s, sizeof tire->m.s);
     double states[MOST_CONTINUOUS];
     const bool first = tire->m.s[S_STARTED] == 0;
     for (int i = 0; i < tire->continuous_count; i++) /* a solver's are not ours to change, but at the start */
@@ -454,8 +471,13 @@ bool tire_begin(Tire *tire, double start, char trouble[TROUBLE])
 {
     memcpy(tire->m.s, REST, sizeof tire->m.s);
     memcpy(tire->n, REST, sizeof tire->n);
-    return tire_accept(tire, start, trouble);
+    tire_settle(tire);
+    const bool fits = tire_accept(tire, start, trouble);
+    tire_settle(tire);
+    return fits;
 }
+
+void tire_settle(Tire *tire) { memcpy(tire->m.earlier, tire->m.s, sizeof tire->m.s); }
 
 void tire_reset(Tire *tire)
 {
@@ -464,6 +486,7 @@ void tire_reset(Tire *tire)
     memset(&tire->m, 0, sizeof tire->m);
     memcpy(tire->m.s, REST, sizeof tire->m.s);
     memcpy(tire->n, REST, sizeof tire->n);
+    tire_settle(tire);
     tire->m.inputs.radius = FLAT;
     for (int i = 0; i < tire->channel_count; i++)
         tire->m.inputs.channels[i] = tire->channels[i].start;
@@ -485,7 +508,7 @@ void tire_flow(Tire *tire, double states[], double rates[])
 {
     const bool first = tire->m.s[S_STARTED] == 0; /* the try has found the states to begin with */
     double s[STATES], n[STATES];
-    memcpy(s, first ? tire->n : tire->m.s, sizeof s);
+    memcpy(s, first ? tire->n : kept(tire, tire->m.time), sizeof s);
     for (int i = 0; i < tire->continuous_count; i++) {
         const int at = tire->continuous[i];
         if (complements(tire, i))
@@ -508,7 +531,7 @@ double tire_tangent(Tire *tire)
     if (tire->bare)
         return tire_elastic_tangent(u.deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
     double scratch[STATES];
-    return tire_stiffness(tire->coefficients, moving(tire, tire->m.time), tire->p, tire->m.s, scratch);
+    return tire_stiffness(tire->coefficients, moving(tire, tire->m.time), tire->p, kept(tire, tire->m.time), scratch);
 }
 
 /* The number of the channel that a reference is, or -1. */

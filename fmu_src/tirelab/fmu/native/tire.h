@@ -50,6 +50,7 @@ typedef struct {
     int given;        /* whether rate and acceleration are inputs */
     int stage;        /* the state of the standard */
     double s[STATES];
+    double earlier[STATES]; /* in Model Exchange: before the step that a solver completed last */
 } Memory;
 
 typedef struct {
@@ -93,6 +94,9 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE]);
 
 /* The same, and take the state after it. */
 bool tire_accept(Tire *tire, double time, char trouble[TROUBLE]);
+
+/* Let nothing come before what is kept: another value of the inputs at the same time is a change from it. */
+void tire_settle(Tire *tire);
 
 /* Begin the history with the inputs of the start. */
 bool tire_begin(Tire *tire, double start, char trouble[TROUBLE]);
