@@ -16,6 +16,7 @@ from radialtire.model import DEFLECTION_HIGHEST
 from ..errors import TirelabError
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
+from ..recordings.zero import quantity_text
 
 
 def check_once(files: Sequence[Path]) -> None:
@@ -48,10 +49,12 @@ def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
     radius.
     """
     if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
+        least = float(f"{min(float(recording.deflection.min()) for recording in fitted):.3g}")
+        zero = f", such as --zero deflection={quantity_text('deflection', least)}" if least < 0.0 else ""
         raise TirelabError(
             f"{', '.join(r.name for r in fitted)}: no deflection is above 0, and only what happens above it can be "
-            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give the "
-            "gauge's zero, --zero 'deflection=-80 mm' say"
+            "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give "
+            f"what the gauge reads when nothing is loaded{zero}"
         )
     for recording in (r.whole for r in (*fitted, *kept)):
         deepest = int(np.argmax(recording.deflection))

@@ -45,7 +45,8 @@ def count_from_zero(
 ) -> Counted:
     """Subtract the zeros that are given from channels [SI], and turn those that count the other way round, in place.
 
-    A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are.
+    A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are,
+    but for both being negative under load, as of a part that is loaded the other way and then relaxes or breaks.
     Errors: RecordingError for a zero that is no quantity of its channel.
     """
     zeros = {name: zero_in_si(name, text, f"{origin}, zero") for name, text in settings.zero.items()}
@@ -62,9 +63,10 @@ def count_from_zero(
     signs = compressive_signs(values["deflection"], values["force"])
     given = {name for name in ZEROED if matches[name].sign}
     turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
-    if len(given) == 2 or (settings.part and signs.doubt and not signs.falls):
+    of_part = settings.part and bool(signs.doubt) and not signs.falls
+    if len(given) == 2 or (of_part and not (signs.negative and not given)):
         return Counted(gauges, tuple(notes))
-    if signs.doubt or turned & given:
+    if (signs.doubt and not of_part) or turned & given:
         why = signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned"
         return Counted(gauges, tuple(notes), _asked(values, gauges, signs, why, settings))
     for name in sorted(turned):

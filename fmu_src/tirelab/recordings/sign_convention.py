@@ -17,13 +17,14 @@ class Signs:
     """The factors, 1 or -1, that make deflection and force positive in compression, and why they are in doubt.
 
     In doubt they are the likely ones: a tire pushes, and more the more it is pressed.
-    falls: whether the force falls where the deflection rises
+    falls: whether the force falls where the deflection rises; negative: whether both are negative under load
     """
 
     deflection: int = 1
     force: int = 1
     doubt: str = ""
     falls: bool = False
+    negative: bool = False
 
 
 def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> Signs:
@@ -55,6 +56,7 @@ def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64
         force_sign,
         doubt=f"force {falls} deflection; under load force is {side[pushing]}, deflection {side[compressed]}",
         falls=together < 0,
+        negative=pushing < 0 and compressed < 0,
     )
 
 

@@ -8,7 +8,8 @@ import pytest
 from click.testing import CliRunner
 from house_form import loading, refusal, write_rows
 from tirelab.cli import main
-from tirelab.recordings.recording import read_recording
+from tirelab.recordings.reading import Reading
+from tirelab.recordings.recording import RecordingError, read_recording
 from tirelab.recordings.sign_convention import compressive_signs, work_share
 
 
@@ -71,6 +72,29 @@ class TestSigns:
         np.testing.assert_allclose(recording.deflection, deflection / 100.0, atol=1e-7)
         np.testing.assert_allclose(recording.force, force, rtol=1e-5)
         assert recording.doubts == ()
+
+    def test_a_part_that_is_loaded_the_other_way_and_breaks_is_turned(self, tmp_path: Path) -> None:
+        """After the break the force says nothing of the deflection, which goes on; under load both are negative."""
+        time = np.arange(400) / 10.0
+        force = np.where(time < 10.0, 4.0 * time, 20.0)
+        header = "time [s],Displacement [mm],Force [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, -0.05 * time, -force)
+        with pytest.raises(RecordingError, match="which way the rig counts cannot be determined"):
+            read_recording(path, radius="flat")
+        read = Reading(part=True)(path)
+        np.testing.assert_allclose(read.force, force, rtol=1e-5)
+        np.testing.assert_allclose(read.deflection, 5e-5 * time, rtol=1e-5)
+        assert "the rig counts compression negative: deflection and force turned in sign" in read.notes
+        columns = {"deflection": "+Displacement", "force": "+Force"}
+        np.testing.assert_allclose(Reading(part=True, columns=columns)(path).force, -force, rtol=1e-5)
+
+    def test_a_part_whose_force_has_both_signs_is_left_as_it_is(self, tmp_path: Path) -> None:
+        time = np.arange(400) / 10.0
+        header = "time [s],Displacement [mm],Force [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, -1.0 - 0.5 * np.sin(time), -5.0 * np.cos(time))
+        read = Reading(part=True)(path)
+        assert read.deflection.max() < 0.0
+        assert read.force[0] == -5.0
 
     def test_a_sign_that_the_user_settles_is_taken(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
