@@ -37,7 +37,7 @@ def test_parts_of_a_file_may_touch_nothing_of_each_other(tmp_path: Path) -> None
 
 def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
     check_depth([part(0.0, 1.0, 0.3)], [])
-    with pytest.raises(TirelabError, match="no deflection is above 0.*--zero deflection=-10mm$"):
+    with pytest.raises(TirelabError, match=r"no deflection is above 0.*--zero deflection=-10mm$"):
         check_depth([part(0.0, 1.0, -0.01)], [])
     with pytest.raises(
         TirelabError, match=r"the deflection is 0\.4 m at 1 s, and a tire takes 0\.33 m at most"
