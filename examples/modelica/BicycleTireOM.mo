@@ -59,16 +59,16 @@ block BicycleTireOM "Radial force of an off-road bicycle tire on curved ground: 
     annotation (Placement(transformation(extent={{100,-70},{120,-50}})));
 protected
   BicycleTire_me_FMU fmu(
-    law_flat_coefficient=flat_coefficient,
-    law_convex_coefficient_drop=convex_coefficient_drop,
-    law_convex_coefficient_decay=convex_coefficient_decay,
-    law_concave_coefficient_rise=concave_coefficient_rise,
-    law_concave_coefficient_decay=concave_coefficient_decay,
-    law_flat_exponent=flat_exponent,
-    law_convex_exponent_drop=convex_exponent_drop,
-    law_convex_exponent_decay=convex_exponent_decay,
-    law_concave_exponent_rise=concave_exponent_rise,
-    law_concave_exponent_decay=concave_exponent_decay)
+    law_flat_coefficient(fixed=true)=flat_coefficient,
+    law_convex_coefficient_drop(fixed=true)=convex_coefficient_drop,
+    law_convex_coefficient_decay(fixed=true)=convex_coefficient_decay,
+    law_concave_coefficient_rise(fixed=true)=concave_coefficient_rise,
+    law_concave_coefficient_decay(fixed=true)=concave_coefficient_decay,
+    law_flat_exponent(fixed=true)=flat_exponent,
+    law_convex_exponent_drop(fixed=true)=convex_exponent_drop,
+    law_convex_exponent_decay(fixed=true)=convex_exponent_decay,
+    law_concave_exponent_rise(fixed=true)=concave_exponent_rise,
+    law_concave_exponent_decay(fixed=true)=concave_exponent_decay)
     "The class that importFMU made of BicycleTire.fmu"
     annotation (Placement(transformation(extent={{-30,-30},{30,30}})));
 equation
@@ -93,7 +93,8 @@ Exchange beside Co-Simulation; OpenModelica's compiler imports the first).</li>
 <li>In <code>omc</code> or in a script for it, <code>importFMU(\"dist/BicycleTire.fmu\")</code> writes the class
 <code>BicycleTire_me_FMU</code>; then <code>loadFile(\"BicycleTire_me_FMU.mo\")</code> and
 <code>loadFile(\"BicycleTireOM.mo\")</code>. In OMEdit: File, FMU, Import FMU. This block declares <code>fmu</code> with the
-names that this import gives: those of the FMU with <code>_</code> for each dot.</li>
+names that this import gives: those of the FMU with <code>_</code> for each dot. <code>openmodelica.mos</code> beside this
+block does all that.</li>
 </ol>
 <h4>Connect</h4>
 <p><code>deflection</code> is the wheel's unloaded radius (0.33 m for the tire measured) less the distance from the hub to
@@ -101,9 +102,12 @@ the ground; <code>surface_radius</code> is the inverse of the ground's mean curv
 flat ground. Apply <code>radial_force</code> to the hub along the line from the ground, and its opposite to the ground.
 A tire that is not pressed gives no force.</p>
 <h4>Limits</h4>
-<p>This block is for the article's tire. The force of a tire with effects (damping, mass, an offset of the load cell) can be
-negative: take <code>min=0</code> from <code>radial_force</code> and <code>radial_stiffness</code> then; its effects' own
-parameters <code>EFFECT.*</code>, here <code>EFFECT_*</code>, are set in the same way as <code>law.*</code>.</p>
+<p>This block is for the article's tire. One with effects (damping, mass, an offset of the load cell) has parameters
+<code>EFFECT.*</code> too, here <code>EFFECT_*</code>, and its force can be negative. A block that extends this one sets both:
+<code>extends BicycleTireOM(radial_force(min=-Modelica.Constants.inf), fmu(force_offset_offset(fixed=true)=5))</code>. With
+damping, mass or a lag of the deflection the FMU needs two more inputs: extend <code>BicycleTireMotionOM</code>. A tire that
+relaxes or has a force lag has continuous states, and what <code>importFMU</code> writes for them needs
+<code>setCommandLineOptions(\"--allowNonStandardModelica=reinitInAlgorithms\")</code> first.</p>
 <p>Sharp edges, ground whose radius jumps or changes quickly within the contact, concave ground near the wheel's own
 radius, and several contacts at once are outside of what was measured; <code>in_tested_range</code> tells of curvature,
 deflection and force. The ten constants of the law are the FMU's parameters <code>law.*</code>.</p>

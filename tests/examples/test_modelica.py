@@ -129,7 +129,12 @@ def test_the_parameters_are_the_fmus(wrapper: Any, tmp_path: Path) -> None:
     if "law" in given:
         handed = {str(a.value.component): str(a.value.modifications[0]) for a in given["law"].arguments}
     else:
-        handed = {name.removeprefix("law_"): str(value) for name, value in given.items()}
+        handed = {}  # importFMU declares them with fixed=false, which the value given here would contradict
+        for argument in wrapper.symbols["fmu"].class_modification.arguments:
+            attributes, value = argument.value.modifications
+            (fixed,) = attributes.arguments
+            assert (str(fixed.value.component), fixed.value.modifications[0].value) == ("fixed", True)
+            handed[str(argument.value.component).removeprefix("law_")] = str(value)
     described = [
         v for v in fmpy.read_model_description(str(fmu)).modelVariables if v.causality == "parameter"
     ]
