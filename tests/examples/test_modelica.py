@@ -8,7 +8,7 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 from scipy.integrate import solve_ivp
 from tirelab.fmu.build import build_fmu
 from tirelab.fmu.native.pack import build_native_fmu
@@ -148,6 +148,23 @@ def test_the_parameters_are_the_fmus(wrapper: Any, tmp_path: Path) -> None:
         assert given["value"].value == float(variable.start)
         assert (given["min"].value, given["max"].value) == (float(variable.min), float(variable.max))
         assert ("unit" in given) == (variable.unit is not None)
+
+
+def test_the_inputs_of_a_tire_that_needs_its_motion(repository: Path, tmp_path: Path) -> None:
+    """Those that the other block has not, with the FMU's units, connected; a force may be negative there."""
+    damping = CATALOGUE["viscous_damping"]
+    fmu = build_native_fmu(TireModel(effects=((damping, damping.nominal),)), tmp_path).path
+    motion = parser.parse(text_of(repository, "BicycleTireMotionOM")).classes["BicycleTireMotionOM"]
+    known = parser.parse(text_of(repository, "BicycleTireOM")).classes["BicycleTireOM"].symbols
+    units = {
+        variable.name: variable.unit
+        for variable in fmpy.read_model_description(str(fmu)).modelVariables
+        if variable.causality == "input" and variable.name not in known
+    }
+    assert {name: _modified(symbol)["unit"].value for name, symbol in motion.symbols.items()} == units
+    connected = {(str(e.left), str(e.right)) for e in motion.equations}
+    assert connected == {(name, f"fmu.{name}") for name in units}
+    assert [str(clause.component) for clause in motion.extends] == ["BicycleTireOM"]
 
 
 def test_the_article_s_force_is_never_negative(wrapper: Any, tmp_path: Path) -> None:
