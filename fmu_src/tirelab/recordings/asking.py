@@ -148,7 +148,7 @@ def _parts(
                 (
                     f"{origin}: has no header row{below}",
                     "put one above the numbers, such as time [s],deflection [mm],force [N], or name columns by number: "
-                    f"{origin.columns(**columns)} {origin.units(**units)}",
+                    f"{origin.columns(**columns)}{f' {origin.units(**units)}' if units else ''}",
                 )
             )
         else:

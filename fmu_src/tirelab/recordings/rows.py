@@ -18,6 +18,9 @@ FloatArray = NDArray[np.float64]
 MOST_BLANK = 0.1
 """The share of rows that may lack a value; with more, the columns were not recorded together."""
 
+NOT_MEASURED = 1.79e308
+"""A number from here on, the largest of its kind but for its last digits, says that nothing was measured."""
+
 MOST_NAMED = 12
 """How many rows a note names one by one."""
 
@@ -63,6 +66,10 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     samples = len(columns.values[0])
     if samples == 0:
         raise RecordingError(f"{origin}: has a header and no rows below it; record again, or export it anew")
+    # Some programs write the largest number there is where nothing was measured.
+    for name, column in values.items():
+        if NOT_MEASURED <= column.max() < np.inf:
+            values[name] = np.where(column >= NOT_MEASURED, np.nan, column)
     # The greatest value is NaN as soon as one is: one pass, and no array of flags for a clean column.
     blank = {name: np.isnan(column) for name, column in values.items() if np.isnan(column.max())}
     notes: list[str] = []

@@ -123,6 +123,8 @@ class RowReader:
             cell = row[index] if index < len(row) else ""
             if index in self.layout.cell_units:
                 cell = without_unit(cell, self.layout.cell_units[index])
+            if self.layout.headers[index].unit_beside:
+                self._refuse_another_unit(line, row, index)
             if index not in self.clocks:
                 cells.append(self.cells.number(cell, line, header, flat))
             elif is_clock(cell) or cell.strip().lower() in BLANK_WORDS:
@@ -130,6 +132,16 @@ class RowReader:
             else:
                 raise not_a_time(self.path.name, line, header, cell)
         return cells
+
+    def _refuse_another_unit(self, line: int, row: Sequence[str], index: int) -> None:
+        """Refuse a number whose unit, in the column behind it, is not that of the first rows."""
+        header = self.layout.headers[index]
+        unit = row[index + 1].strip() if index + 1 < len(row) else ""
+        if unit and unit != header.unit:
+            raise RecordingError(
+                f"{self.path.name}, row {line}, column {quoted(header.text)}: the unit is {quoted(unit)} here and "
+                f"{quoted(header.unit)} above; read the rows of one unit, such as {self.path.name}@1:{line - 1}"
+            )
 
     def _seconds(self, texts: Sequence[str], want: Wanted, lines: Sequence[int]) -> FloatArray:
         """The seconds that clock times say; RecordingError with the row of one that is none."""

@@ -18,6 +18,9 @@ _ZONE = r"\s*(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)$"
 _DATES = ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y")
 _TIMES = ("%H:%M:%S%.f", "%H:%M", "%I:%M:%S%.f %p", "%I:%M %p")
 _STAMPS = tuple(f"{date} {time}" for date in _DATES for time in _TIMES)
+_OF_DAY = ("%I:%M:%S%.f %p", "%I:%M %p")
+"""Times of day without a date; those that count to 24 are read as durations."""
+
 _DURATION = r"^(?:(\d+):)?(\d{1,3}):(\d{1,2}(?:\.\d+)?)$"
 
 
@@ -82,7 +85,7 @@ class Clock:
     def _form_of(self, plain: pl.Series) -> str:
         """Return the form that reads the most texts, and of those that do the one of the shortest recording."""
         found: list[tuple[int, int, str]] = []
-        for form in (*_STAMPS, "duration"):
+        for form in (*_STAMPS, *_OF_DAY, "duration"):
             instants = _instants(plain, form)
             read = len(instants) - instants.null_count()
             if read:
@@ -113,6 +116,8 @@ def _instants(plain: pl.Series, form: str) -> pl.Series:
         nanoseconds = (total * 1e9).round().cast(pl.Int64)
         found: pl.Series = pl.select(pl.when(certain).then(nanoseconds).otherwise(None)).to_series()
         return found
+    if form in _OF_DAY:
+        plain, form = "2000-01-01 " + plain, f"%Y-%m-%d {form}"
     try:
         instants: pl.Series = plain.str.to_datetime(form, strict=False, time_unit="ns").cast(pl.Int64)
     except pl.exceptions.PolarsError:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from ..units import split_header
+from ..units import is_unit, split_header
 from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
@@ -114,9 +114,14 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         before += below
         headers, above = above_names(lines[first:start], headers, separator)
         said = (*said, *more, *above)
+    else:
+        headers, above = above_names(lines[first:start], headers, separator)
+        said = (*said, *above)
     if start > first:
         said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
     clocks = _clock_columns(body)
+    headers, beside = units_beside(headers, body)
+    said = (*said, *beside)
     headers = tuple(
         replace(h, unit=cell_units[i], cell_unit=cell_units[i]) if i in cell_units else h
         for i, h in enumerate(headers)
@@ -131,7 +136,9 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         start + before,
         style_of((cell for row in (header, *body) for cell in row), separator),
         len(raw) / max(len(lines) - start, 1),
-        header_lines == 1 and not cell_units and all(line.endswith("\n") for line in lines[: start + 1]),
+        header_lines == 1
+        and not (cell_units or beside)
+        and all(line.endswith("\n") for line in lines[: start + 1]),
         (*notes, *said),
         start + 1,
         _provenance(lines[:start], separator, declared),
@@ -141,12 +148,16 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
 
 
 def column_counted(body: Sequence[Sequence[str]], separator: str) -> bool:
-    """Return whether the cells of the first column are numbers, times or blank, but for some rows about the table."""
-    cells = [row[0] for row in body if sum(map(bool, map(str.strip, row))) > 1]
-    texts = sum(
-        bool(c.strip()) and c.strip().lower() not in BLANK_WORDS and not is_value(c, separator) for c in cells
-    )
-    return bool(cells) and texts <= max(BELOW_NAMES, 0.1 * len(cells))
+    """Return whether the cells of the first column are numbers, times or blank, but for some rows about the table.
+
+    Where it holds no number, texts beside rows full of numbers name the steps of a test: these rows are of the table.
+    """
+    rows = [row for row in body if sum(map(bool, map(str.strip, row))) > 1]
+    filled = [row for row in rows if row[0].strip().lower() not in BLANK_WORDS]
+    texts = [row for row in filled if not is_value(row[0], separator)]
+    if texts and len(texts) == len(filled) and all(is_value(c, separator) for row in texts for c in row[1:]):
+        return False
+    return bool(rows) and len(texts) <= max(BELOW_NAMES, 0.1 * len(rows))
 
 
 def _refuse_serial_monitor(path: Path, lines: Sequence[str]) -> None:
@@ -211,7 +222,8 @@ def above_names(
 ) -> tuple[tuple[Header, ...], tuple[str, ...]]:
     """Return the headers with the units of the last row above them that calls itself one of units, and a note.
 
-    Such a row begins with a word for units, Y_Unit_Label or Einheit, and holds a unit for each of the other columns.
+    Such a row begins with a word for units, Y_Unit_Label or Einheit, and holds a unit for each of the other columns; or
+    it sets it to the units of all: UNIT = gf,mm.
     """
     if any(header.unit for header in headers):
         return headers, ()
@@ -219,12 +231,33 @@ def above_names(
         if _UNITS_CALLED.match(line) is None:
             continue
         row = next(csv.reader([line], delimiter=separator), [])
-        cells = ["", *row[1:]]
+        label, _, first = row[0].partition("=")
+        cells = [first.strip(), *row[1:]]
         if is_units(cells) and sum(map(bool, map(str.strip, cells))) > 1:
             units = [*cells, *[""] * len(headers)]
             named = tuple(_with_unit(h, cell) for h, cell in zip(headers, units, strict=False))
-            return named, (f"units taken from the row above the names that begins with {quoted(row[0])}",)
+            return named, (
+                f"units taken from the row above the names that begins with {quoted(label.strip())}",
+            )
     return headers, ()
+
+
+def units_beside(
+    headers: tuple[Header, ...], body: Sequence[Sequence[str]]
+) -> tuple[tuple[Header, ...], tuple[str, ...]]:
+    """Return the headers with the units that stand in the columns behind theirs, in every row, and a note."""
+    found = {}
+    for index in range(1, len(headers)):
+        cells = [row[index].strip() for row in body if index < len(row) and row[index].strip()]
+        called = _UNITS_CALLED.match(headers[index].name) is not None
+        if called and headers[index - 1].unit is None and cells and all(map(is_unit, set(cells))):
+            found[index - 1] = cells[0]
+    if not found:
+        return headers, ()
+    with_units = tuple(
+        replace(h, unit=found[i], unit_beside=True) if i in found else h for i, h in enumerate(headers)
+    )
+    return with_units, (f"units taken from the columns beside: {', '.join(found.values())}",)
 
 
 def _rows_of_text(

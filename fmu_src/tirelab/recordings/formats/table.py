@@ -30,6 +30,7 @@ class Header:
 
     dated: whether it holds dates, clock times or durations, which become seconds
     cell_unit: what stands behind every number of it, "" for nothing
+    unit_beside: whether the next column holds its unit, row by row
     """
 
     name: str
@@ -37,6 +38,7 @@ class Header:
     text: str
     dated: bool = False
     cell_unit: str = ""
+    unit_beside: bool = False
 
 
 @dataclass(frozen=True)

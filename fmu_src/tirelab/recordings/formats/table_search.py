@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -22,6 +23,9 @@ LONGEST_ROW = 8
 
 CONFIRMED = 3
 """So many rows of numbers in a row make a table; one above them is a line of text with numbers in it."""
+
+_SETTING = re.compile(r"[^=(\[]+=")
+"""How a row begins that sets something, UNIT = gf, and names no columns."""
 
 _KNOWN = frozenset(
     {"time", "deflection", "displacement", "stroke", "force", "load", "radius", "travel", "pressure"}
@@ -62,6 +66,7 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     length, rows, first, found = best
     width = len(rows[first].cells)
     texts = [row for row in rows[:first] if not row.numeric and any(row.cells) and not is_units(row.cells)]
+    texts = [row for row in texts if _SETTING.match(row.cells[0]) is None]
     above = [row for row in texts if len(row.cells) == width]
     header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
     if header is None or not _named(header.cells):
@@ -156,10 +161,15 @@ def _row(lines: Sequence[str], line: int, separator: str) -> tuple[list[str], in
 
 
 def _is_numeric(cells: Sequence[str], separator: str) -> bool:
-    """Whether half of the cells that hold something hold numbers, two at least."""
+    """Whether half of the cells that hold something hold numbers, two at least; units behind numbers do not count."""
     filled = [cell for cell in cells if cell.strip().lower() not in BLANK_WORDS]
-    values = sum(is_value(cell, separator) for cell in filled)
-    return values > 1 and 2 * values >= len(filled)
+    numbers = [is_value(cell, separator) for cell in filled]
+    values = sum(numbers)
+    if values < 2 or 2 * values >= len(filled):
+        return values > 1
+    behind = (text for before, text in zip(numbers, filled[1:], strict=False) if before)
+    units = sum(any(measures(text.strip(), si) for si in QUANTITIES) for text in behind)
+    return 2 * values >= len(filled) - units
 
 
 def _longest_run(rows: Sequence[_Row]) -> tuple[int, int]:

@@ -177,6 +177,18 @@ class TestExcel:
         path = self.save(tmp_path / "a.xlsx", [*rows, [None] * 5 + [1.0, 2.0]])
         assert_the_recording(read_recording(path, radius="flat"), digits=1e-15)
 
+    def test_a_column_that_names_the_steps_and_numbers_that_were_not_measured(self, tmp_path: Path) -> None:
+        nothing = 1.797693134862315e308
+        rows: list[list[Any]] = [["Segment", *row, "Hardness"] for row in self.rows()[:1]]
+        rows += [[None, *row, nothing] for row in self.rows()[1:]]
+        rows[1][0], rows[120][0] = "Load", "Unload"
+        path = self.save(tmp_path / "a.xlsx", [*rows, ["END", None, None, None, None]])
+        said = "skipped as empty: row 202"
+        assert_the_recording(read_recording(path, radius="flat"), said, digits=1e-15)
+        rows[9][3] = nothing
+        recording = read_recording(self.save(tmp_path / "b.xlsx", rows), radius="flat")
+        assert "skipped for want of force: row 10" in recording.notes
+
 
 OFFICE = """<?xml version="1.0" encoding="UTF-8"?>
 <office:document-content xmlns:office="urn:oasis:names:tc:opendocument:xmlns:office:1.0"

@@ -176,6 +176,45 @@ class TestNumbers:
             read_recording(path, radius="flat")
 
 
+class TestGauges:
+    """Hand-held gauges put a unit behind every number, in a column of its own, and settings above the table."""
+
+    def text(self, unit: str = "gf") -> str:
+        lines = [
+            f"{i},{f:.1f},{'gf' if i < 60 else unit},{x:.3f},mm,OK,--,9:59:{i // 10:02d} AM,7/3/2025,"
+            for i, (x, f) in enumerate(zip(X, F, strict=True))
+        ]
+        above = "Maximum,191.4,@,No.60,,,,,,\nData Quantity,81,,,,,,,,\n"
+        return (
+            above + "No.,Force,Unit,Displacement,Unit,Judge,Position,Time,Date,\n" + "\n".join(lines) + "\n"
+        )
+
+    def test_units_in_columns_of_their_own(self, path: Path) -> None:
+        recording = read(path, self.text(), columns={"time": ""})
+        np.testing.assert_allclose(recording.force, np.round(F, 1) * 9.80665e-3, rtol=1e-12)
+        np.testing.assert_allclose(recording.deflection, np.round(X, 3) / 1e3, rtol=1e-12)
+        assert "units taken from the columns beside: gf, mm" in recording.notes
+        assert recording.provenance[0] == "Maximum,191.4,@,No.60"
+
+    def test_another_unit_further_down_is_refused(self, path: Path) -> None:
+        path.write_text(self.text("kgf"), encoding="utf-8")
+        with pytest.raises(
+            RecordingError, match=r"row 64, column 'Force': the unit is 'kgf' here and 'gf' above"
+        ):
+            read_recording(path, radius="flat", columns={"time": ""})
+
+    def test_settings_above_numbers_without_names(self, path: Path) -> None:
+        above = "MAX FORCE = 194.1,4.230\nUNIT = gf,mm\nRECORDING RATE = 0.0005,\n1ST PEAK = ---,---\n"
+        text = above + "".join(f"{f:.1f},{x:.3f}\n" for x, f in zip(X, F, strict=True))
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(RecordingError) as caught:
+            read_recording(path, radius="flat")
+        assert str(caught.value).endswith("by number: --columns deflection=#2,force=#1")
+        recording = read(path, text, columns={"deflection": "#2", "force": "#1"})
+        np.testing.assert_allclose(recording.force, np.round(F, 1) * 9.80665e-3, rtol=1e-12)
+        assert len(recording) == len(F)
+
+
 class TestThousandsBeyondTheHeadOfTheFile:
     """A machine marks thousands from the row on where the force, or the time, exceeds 1,000."""
 
@@ -231,6 +270,8 @@ class TestClocks:
             (["6/3/2025 11:59:59.5 PM", "6/4/2025 12:00:00.5 AM"], 1.0),
             (["31/05/2025 23:59:59", "01/06/2025 00:00:01"], 2.0),
             (["23:59:59.25", "24:00:00.25"], 1.0),
+            (["9:59:59 AM", "10:00:01 AM"], 2.0),
+            (["11:59:59.5 am", "12:00:01 pm"], 1.5),
             (["00:01.5", "01:02.0"], 60.5),
             (["2025-06-03 14:05:00Z", "2025-06-03 14:05:00.000000001Z"], 1e-9),
         ],
