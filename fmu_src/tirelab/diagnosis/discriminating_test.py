@@ -28,6 +28,10 @@ DECISIVE = 5.7
 and deviation S; from here S^2/2 - 1.645 S > ln 1000, odds of 1000 to 1 in nineteen of twenty such tests."""
 
 
+FAINT = 0.01
+"""Distance of a sample, in units of the noise, below which no number is told."""
+
+
 @dataclass(frozen=True)
 class Test:
     """A motion to drive: arrays of one length; measured: channels that are held at a value, by their names."""
@@ -72,10 +76,10 @@ class DiscriminatingTest:
         if self.missed > 0.0:
             differ += f", {self.typical / self.missed:.2g} times what the forms of the effects may miss"
         if not self.sufficient:
-            return (
-                f"No motion within the rig's limits decides {asked}: the forces would differ by at most {differ} "
-                f"({self.test.name}{place})."
-            )
+            none = f"No motion within the rig's limits decides {asked}: the forces would differ by"
+            if self.typical < FAINT:
+                return f"{none} less than a hundredth of the noise."
+            return f"{none} at most {differ} ({self.test.name}{place})."
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
         return (
             f"Drive {self.test.name} to {1e3 * path.max():.1f} mm{place}, at up to {rate:.0f} mm/s, for "

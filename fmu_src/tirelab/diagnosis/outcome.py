@@ -62,7 +62,9 @@ def files_read(recordings: Sequence[Path], settings: Path | None, beside: Sequen
         found.append(settings)
     else:
         for file, piece in parts:
-            found += [file.parent / name for name in read_sidecar(file, None, piece.trial, piece.sheet).sources]
+            found += [
+                file.parent / name for name in read_sidecar(file, None, piece.trial, piece.sheet).sources
+            ]
     return list(dict.fromkeys([*found, *beside]))
 
 

@@ -87,8 +87,12 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     """Friction against friction and no offset: whatever is driven, the refit takes up all of the difference."""
     found = discriminate(friction(), model_of({**SLIPPING, "force_offset": {}}), 6.0, Limits())
     assert not found.sufficient
-    assert found.sentence.startswith(
-        "No motion within the rig's limits decides whether the force offset acts: the forces would differ by at most "
+    none = (
+        "No motion within the rig's limits decides whether the force offset acts: the forces would differ by "
+    )
+    assert found.sentence == f"{none}less than a hundredth of the noise."
+    assert replace(found, typical=0.02, missed=0.1).sentence.startswith(
+        f"{none}at most 0.02 times the noise in a typical sample, 0.2 times what the forms of the effects may miss ("
     )
     assert fitted(6.0).sufficient
 
