@@ -181,14 +181,14 @@ def of_all(probability: float, named: Sequence[float], doubted: Sequence[float] 
 def confidence_of(grounds: Grounds, named: Sequence[float], doubted: Sequence[float]) -> float:
     """Return the confidence of a verdict with these grounds; named, doubted: probabilities of effects (`of_all`).
 
-    One that something unknown acts, and no known effect, is no surer than its posterior: it denies what all other sets
-    name. Calibration alone would not lower it: drawn unknown effects are far from every known one, real ones are often
-    known ones in other forms.
+    One that something unknown acts, and no known effect, is no surer than its posterior, for it denies what all other
+    sets name; where held-out data refuted likelier ones, it is as likely as not. Calibration alone would not lower it:
+    drawn unknown effects are far from every known one, real ones are often known ones in other forms.
     """
     alike = round(math.expm1(grounds["alike"]))
     own = shared(probability("verdict", grounds), alike)
     if grounds["nothing"] and grounds["unknown"]:
-        own = min(own, 1.0 / (1.0 + math.exp(-grounds["odds"])))
+        own = min(own, 1.0 / (1.0 + math.exp(-max(grounds["odds"], 0.0))))
     return of_all(own, named, doubted)
 
 

@@ -172,11 +172,11 @@ def test_a_verdict_is_no_surer_than_that_what_it_leaves_out_is_not_there() -> No
 
 @pytest.mark.parametrize("odds", [-15.0, -3.0, 0.0, 2.0, 15.0])
 def test_that_no_known_effect_acts_is_no_surer_than_the_evidence_against_all_of_them(odds: float) -> None:
-    """Odds of e^x to 1 are a probability of e^x / (1 + e^x)."""
+    """Odds of e^x to 1 are a probability of e^x / (1 + e^x); less than even are those of sets that were refuted."""
     grounds = ZERO["verdict"] | {"nothing": 1.0, "significance": 1.0, "odds": odds}
     free = confidence_of(grounds | {"unknown": 0.0}, [], [])
     unknown = grounds | {"unknown": 1.0, "unknown_size": 4.0, "remainder_size": 4.0, "loudness": 4.0}
-    posterior = np.exp(odds) / (1.0 + np.exp(odds))
+    posterior = np.exp(odds) / (1.0 + np.exp(odds)) if odds > 0.0 else 0.5
     assert confidence_of(unknown, [], []) == pytest.approx(min(probability("verdict", unknown), posterior))
     assert free == probability("verdict", grounds | {"unknown": 0.0})
 
