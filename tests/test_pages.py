@@ -50,6 +50,8 @@ ELSEWHERE = {
     "mkdir -p dist/openmodelica && cd dist/openmodelica && omc ../../examples/modelica/openmodelica.mos": (
         "tests/tirelab/fmu/test_openmodelica.py::test_the_script_beside_the_blocks"
     ),
+    "python -m tirelab.validation.restate DIR": "tests/tirelab/validation/test_restate.py::"
+    "test_the_verdicts_of_a_folder_are_restated_and_scored",
     "python -m tirelab.fmu.native.make": "tests/tirelab/fmu/native/test_make.py::"
     "test_the_other_binaries_are_those_of_the_sources",
     **{
