@@ -52,7 +52,7 @@ def command(recording: Path, output: Output, reading: Reading, **named: Any) -> 
         refuse_far_zeros([recorded])
     for note in recorded.notes:
         output.note(note)
-    against, force = _replayed(simulation, recorded, output)
+    against, force = _replayed(simulation, recorded, output, ours=tire is not None)
     result = compare(recorded, force)
     picture = f"{recorded.name}.compare.png"
     with staged(output.out) as folder:
@@ -74,10 +74,10 @@ def command(recording: Path, output: Output, reading: Reading, **named: Any) -> 
 
 
 def _replayed(
-    simulation: Simulation | TireModel, recorded: Recording, output: Output
+    simulation: Simulation | TireModel, recorded: Recording, output: Output, *, ours: bool
 ) -> tuple[str, NDArray[np.float64]]:
-    """Return what a simulation is called, and its force [N] at every sample of a recording."""
-    from ..fmu.foreign import read_foreign, tire_inside
+    """Return what a simulation is called, and its force [N] at every sample; ours: whether its FMU holds a tire."""
+    from ..fmu.foreign import read_foreign
     from ..fmu.foreign_replay import native_code, replay_foreign
     from ..fmu.replay import description_of, replay
 
@@ -86,7 +86,7 @@ def _replayed(
         with tempfile.TemporaryDirectory(prefix="tirelab_") as folder:
             return simulation.name, replay(_packed(simulation, Path(folder)), recorded)
     file = simulation.fmu
-    if tire_inside(file) is not None:
+    if ours:
         description_of(file)  # a file that is no FMU is refused before anything is said to run
         output.stage(f"{file} is native code: it now runs with your rights")
         output.stage(f"replaying {file} on {recorded.name}")

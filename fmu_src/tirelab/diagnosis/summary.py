@@ -11,6 +11,7 @@ from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import DECIDED, SURE, confidence_word, told
+from .acceptance import NO_WORSE
 from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -57,9 +58,6 @@ def summarise(
     return " ".join(said)
 
 
-NEARER = 0.9
-"""Part of the error that an alternative leaves at most to be told where nothing is named."""
-
 AMPLIFIED = 1.1
 """The noise of the deflection is mentioned where it raises the held-out error by more than this factor."""
 
@@ -70,7 +68,7 @@ def _errors(corrected: bool, unexplained: bool, fit: Fit, alternatives: Sequence
     if not corrected:
         stays = ", and no known effect reduces it" if unexplained else ""
         nearest = min(alternatives, key=lambda a: a.left if a.left >= 0.0 else math.inf, default=None)
-        if unexplained and nearest is not None and nearest.left < NEARER * fit.before:
+        if unexplained and nearest is not None and nearest.left < NO_WORSE * fit.before:
             stays = (
                 f", and no known effect is likely enough to be named; {set_title(nearest.names)} would leave "
                 f"{newtons(nearest.left)}"

@@ -191,8 +191,8 @@ class Store:
 
     def _apart(self, upload: Upload) -> str:
         """Return what an upload is called in reports, told apart from others of the same name by its number."""
-        stem = upload.name.rpartition(".")[0] or upload.name
-        earlier = {u.name.rpartition(".")[0] or u.name for u in self.uploads() if u.number < upload.number}
+        earlier = {_stem(u.name) for u in self.uploads() if u.number < upload.number}
+        stem = _stem(upload.name)
         return f"{stem} ({upload.number})" if stem in earlier else stem
 
     def _tell(self, upload: Upload) -> None:
@@ -228,6 +228,10 @@ def clean_texts(values: Any, known: tuple[str, ...]) -> dict[str, str]:
 def clean_text(text: object) -> bool:
     """Whether something is a short printable text."""
     return isinstance(text, str) and len(text) <= LONGEST_TEXT and text.isprintable()
+
+
+def _stem(name: str) -> str:
+    return name.rpartition(".")[0] or name
 
 
 def _toml(text: str) -> str:
