@@ -16,8 +16,9 @@ the power -(n + 1) of their innovations: on smooth motions the errors then fall 
 On a ride to 8 Hz and 5 mm, sampled at 400 Hz with 8e-6 m of noise, the errors are 3.0 mm/s and 0.8 m/s^2; plain
 differences have 9 mm/s, most of it their delay of half an interval, and 3.2 m/s^2.
 
-Times are scaled by the last interval d: a filter holds x, d x', d^2 x''/2, d^3 x'''/6 and their covariance
-over s^2.
+Times are scaled by d, the last interval or, where that was far shorter, FADES times the scale before it: a reading that
+comes soon after another one does not make what is known before it forgotten. A filter holds x, d x', d^2 x''/2,
+d^3 x'''/6 and their covariance over s^2.
 
 References: H. A. P. Blom, Y. Bar-Shalom, "The interacting multiple model algorithm for systems with Markovian switching
 coefficients", IEEE Trans. Automatic Control 33 (1988) 780-783; P. R. Belanger, P. Dobrovolny, A. Helmy, X. Zhang,
@@ -35,7 +36,7 @@ Moving = tuple[
 """x, d x', d^2 x''/2, d^3 x'''/6 and their covariance P00 P01 P02 P03 P11 P12 P13 P22 P23 P33 over s^2."""
 
 Track = tuple[tuple[Moving, Moving, Moving, Moving], tuple[float, float, float, float], float]
-"""The motion in each mode, the mode probabilities, and the last interval d [s]."""
+"""The motion in each mode, the mode probabilities, and the scale d [s] of the times."""
 
 PRESS, RIDE = 1e-4, 10.0
 """Intensities [m^2/s^5] of the white noise that is the jerk."""
@@ -62,10 +63,16 @@ APART = 1e6
 """Largest squared difference over s^2 between two modes that counts when they are mixed: more is lost in rounding."""
 
 PAUSE = 10.0
-"""After an interval this many times the last one the earlier motion is no guide: the track restarts."""
+"""After an interval this many times the scale d the earlier motion is no guide: the track restarts."""
+
+FADES = 0.5
+"""Smallest scale d over the one before it: with finer samples it reaches their interval within a few of them."""
+
+SOONEST = 1e-30
+"""Least interval over d that is told from none, so that no power of it underflows."""
 
 JERK_MAX, SNAP_MAX = 32.0, 128.0
-"""Largest scaled intensities: a memory (s^2/q)^(1/5 or 1/7) below d/2 counts as d/2. Shorter, it would overshoot."""
+"""Largest intensities, scaled by d: a memory (s^2/q)^(1/5 or 1/7) below d/2 counts as d/2. Shorter, it overshoots."""
 
 
 def begin(deflection: float) -> Track:
@@ -83,12 +90,16 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
     # The difference, taken as free of acceleration until there are more samples.
     if last <= 0.0 or interval > PAUSE * last:
         return _second(deflection, deflection - modes[0][0]), probability, interval
-    ratio = interval / last
+    ratio = max(interval / last, SOONEST)
+    scale = max(interval, FADES * last)
+    part = 1.0 if ratio >= FADES else ratio / FADES
     if noise < FINEST:
-        return _exactly(modes, probability, ratio, deflection, interval)
+        return _exactly(modes, probability, ratio, part, deflection, scale)
     certainty = 1.0 / (noise * noise)
     fifth = interval * interval * interval * interval * interval * certainty
     seventh = fifth * interval * interval
+    jerk_max = _jerk_max(part)
+    snap_max = _snap_max(part)
     whole = _mean(modes, probability, certainty)
     other = SWITCH / 3.0
     same = 1.0 - SWITCH - other
@@ -98,10 +109,14 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
         other + same * probability[2],
         other + same * probability[3],
     )
-    press = _jerked(_predicted(_mixed(modes[0], whole, other / c0, certainty), ratio), PRESS * fifth)
-    ride = _jerked(_predicted(_mixed(modes[1], whole, other / c1, certainty), ratio), RIDE * fifth)
-    smooth = _snapped(_predicted(_mixed(modes[2], whole, other / c2, certainty), ratio), SMOOTH * seventh)
-    sharp = _snapped(_predicted(_mixed(modes[3], whole, other / c3, certainty), ratio), SHARP * seventh)
+    press = _predicted(_mixed(modes[0], whole, other / c0, certainty), ratio)
+    ride = _predicted(_mixed(modes[1], whole, other / c1, certainty), ratio)
+    smooth = _predicted(_mixed(modes[2], whole, other / c2, certainty), ratio)
+    sharp = _predicted(_mixed(modes[3], whole, other / c3, certainty), ratio)
+    press = _jerked(press, min(PRESS * fifth, jerk_max))
+    ride = _jerked(ride, min(RIDE * fifth, jerk_max))
+    smooth = _snapped(smooth, min(SMOOTH * seventh, snap_max))
+    sharp = _snapped(sharp, min(SHARP * seventh, snap_max))
     l0 = math.log(c0) + _log_likelihood(press, deflection, certainty)
     l1 = math.log(c1) + _log_likelihood(ride, deflection, certainty)
     l2 = math.log(c2) + _log_likelihood(smooth, deflection, certainty)
@@ -111,13 +126,13 @@ def follow(track: Track, interval: float, deflection: float, noise: float) -> Tr
     total = w0 + w1 + w2 + w3
     return (
         (
-            _updated(press, deflection),
-            _updated(ride, deflection),
-            _updated(smooth, deflection),
-            _updated(sharp, deflection),
+            _scaled(_updated(press, deflection), 1.0 / part),
+            _scaled(_updated(ride, deflection), 1.0 / part),
+            _scaled(_updated(smooth, deflection), 1.0 / part),
+            _scaled(_updated(sharp, deflection), 1.0 / part),
         ),
         (w0 / total, w1 / total, w2 / total, w3 / total),
-        interval,
+        scale,
     )
 
 
@@ -147,17 +162,32 @@ def _exactly(
     modes: tuple[Moving, Moving, Moving, Moving],
     probability: tuple[float, float, float, float],
     ratio: float,
+    part: float,
     deflection: float,
-    interval: float,
+    scale: float,
 ) -> Track:
-    """Return the track after an exact measurement: two filters of the shortest memory, each for itself."""
-    ride = _jerked(_predicted(modes[1], ratio), JERK_MAX)
-    sharp = _snapped(_predicted(modes[3], ratio), SNAP_MAX)
+    """Return the track after an exact measurement: two filters of the shortest memory, each for itself.
+
+    ratio, part: the interval over the scale before and over the scale now, which is `scale` [s].
+    """
+    ride = _jerked(_predicted(modes[1], ratio), _jerk_max(part))
+    sharp = _snapped(_predicted(modes[3], ratio), _snap_max(part))
     before = SWITCH + (1.0 - 2.0 * SWITCH) * probability[3] / (probability[1] + probability[3])
     w1 = (1.0 - before) * _exact_likelihood(ride, deflection)
     w3 = before * _exact_likelihood(sharp, deflection)
-    ride, sharp = _updated(ride, deflection), _updated(sharp, deflection)
-    return (ride, ride, sharp, sharp), (0.0, w1 / (w1 + w3), 0.0, w3 / (w1 + w3)), interval
+    ride = _scaled(_updated(ride, deflection), 1.0 / part)
+    sharp = _scaled(_updated(sharp, deflection), 1.0 / part)
+    return (ride, ride, sharp, sharp), (0.0, w1 / (w1 + w3), 0.0, w3 / (w1 + w3)), scale
+
+
+def _jerk_max(part: float) -> float:
+    """Return the largest intensity of the jerk, scaled by an interval that is `part` of the scale d."""
+    return JERK_MAX * part * part * part * part * part
+
+
+def _snap_max(part: float) -> float:
+    """Return the largest intensity of the jerk's rate, scaled by an interval that is `part` of the scale d."""
+    return SNAP_MAX * part * part * part * part * part * part * part
 
 
 def _second(x: float, v: float) -> tuple[Moving, Moving, Moving, Moving]:
@@ -205,16 +235,34 @@ def _mixed(a: Moving, b: Moving, share: float, certainty: float) -> Moving:
     )
 
 
-def _predicted(moving: Moving, r: float) -> Moving:
-    """Return the motion predicted one interval ahead, which is r times the last one."""
+def _scaled(moving: Moving, r: float) -> Moving:
+    """Return the motion with its times scaled by r times the scale before."""
+    if r == 1.0:
+        return moving
     x, v, a, j, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33 = moving
-    if r != 1.0:
-        rr = r * r
-        rrr = rr * r
-        v, a, j = v * r, a * rr, j * rrr
-        p01, p02, p03 = p01 * r, p02 * rr, p03 * rrr
-        p11, p12, p13 = p11 * rr, p12 * rrr, p13 * rr * rr
-        p22, p23, p33 = p22 * rr * rr, p23 * rr * rrr, p33 * rrr * rrr
+    rr = r * r
+    rrr = rr * r
+    return (
+        x,
+        v * r,
+        a * rr,
+        j * rrr,
+        p00,
+        p01 * r,
+        p02 * rr,
+        p03 * rrr,
+        p11 * rr,
+        p12 * rrr,
+        p13 * rr * rr,
+        p22 * rr * rr,
+        p23 * rr * rrr,
+        p33 * rrr * rrr,
+    )
+
+
+def _predicted(moving: Moving, r: float) -> Moving:
+    """Return the motion predicted one interval ahead, which is r times the scale before and the scale now."""
+    x, v, a, j, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33 = _scaled(moving, r)
     # x + v + a + j, v + 2 a + 3 j, a + 3 j, j: the rows of the covariance, then its columns
     q00, q01, q02, q03 = (
         p00 + p01 + p02 + p03,
@@ -242,10 +290,9 @@ def _predicted(moving: Moving, r: float) -> Moving:
     )
 
 
-def _jerked(moving: Moving, intensity: float) -> Moving:
-    """Return the motion after an interval of white jerk of a scaled intensity; the jerk itself is not estimated."""
+def _jerked(moving: Moving, q: float) -> Moving:
+    """Return the motion after an interval of white jerk of scaled intensity q; the jerk itself is not estimated."""
     x, v, a, _, p00, p01, p02, _, p11, p12, _, p22, _, _ = moving
-    q = min(intensity, JERK_MAX)
     return (
         x,
         v,
@@ -264,10 +311,9 @@ def _jerked(moving: Moving, intensity: float) -> Moving:
     )
 
 
-def _snapped(moving: Moving, intensity: float) -> Moving:
-    """Return the motion after an interval in which the jerk's rate was white, of a scaled intensity."""
+def _snapped(moving: Moving, q: float) -> Moving:
+    """Return the motion after an interval in which the jerk's rate was white, of scaled intensity q."""
     x, v, a, j, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33 = moving
-    q = min(intensity, SNAP_MAX)
     return (
         x,
         v,

@@ -51,7 +51,7 @@ def estimator(time: np.ndarray, deflection: np.ndarray, noise: float) -> tuple[n
     switch = np.where(np.eye(4) > 0.0, 1.0 - tracking.SWITCH, tracking.SWITCH / 3.0)
     n, s2, u = tracking.TAIL, noise**2, tracking.UNKNOWN
 
-    d = time[1] - time[0]
+    d = scale = time[1] - time[0]
     size = factorial / d ** np.arange(4)
     four = np.array([[1, 1, 0, 0], [1, 2 + 2 * u, u, -u], [0, u, u, 0], [0, -u, 0, u]], dtype=float)
     three = np.array([[1, 1, 0, 0], [1, 2 + u, u, 0], [0, u, u, 0], [0, 0, 0, 0]], dtype=float)
@@ -61,6 +61,7 @@ def estimator(time: np.ndarray, deflection: np.ndarray, noise: float) -> tuple[n
     rate, acceleration = [0.0, means[0][1]], [0.0, 0.0]
     for i in range(2, time.size):
         d = time[i] - time[i - 1]
+        scale = max(d, tracking.FADES * scale)
         before = likely @ switch
         share = switch * likely[:, None] / before
         mixed = share.T @ np.array(means)
@@ -81,7 +82,7 @@ def estimator(time: np.ndarray, deflection: np.ndarray, noise: float) -> tuple[n
                 kicked += weight * d / 2.0 * np.outer(kick, kick)
             known = np.diag([1.0, 1.0, 1.0, float(order == 4)])
             mean = known @ move @ mixed[j]
-            most = largest[order] * s2 / d ** (2 * order - 1)
+            most = largest[order] * s2 / scale ** (2 * order - 1)
             spread = known @ move @ about[j] @ move.T @ known + min(q, most) * kicked
             read = spread[0, 0] + s2
             off = deflection[i] - mean[0]
@@ -104,6 +105,43 @@ def test_it_is_the_estimator_of_the_definition() -> None:
     expected_rate, expected_acceleration = estimator(time, deflection, 1e-5)
     np.testing.assert_allclose(rate, expected_rate, rtol=1e-6, atol=1e-7)
     np.testing.assert_allclose(acceleration, expected_acceleration, rtol=1e-6, atol=1e-4)
+
+
+@pytest.mark.parametrize("noise", [2e-6, 1e-5])
+def test_it_is_the_estimator_of_the_definition_with_readings_soon_after_others(noise: float) -> None:
+    random = np.random.default_rng(4)
+    time = np.cumsum(10.0 ** random.uniform(-3.5, -2.6, 120))
+    deflection = 0.014 + 0.005 * np.sin(30.0 * time) + noise * random.standard_normal(120)
+    assert np.any(np.diff(time)[1:] < tracking.FADES**2 * np.diff(time)[:-1])
+    expected_rate, expected_acceleration = estimator(time, deflection, noise)
+    rate, acceleration = follow(time, deflection, noise)
+    np.testing.assert_allclose(rate, expected_rate, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(acceleration, expected_acceleration, rtol=1e-6, atol=1e-3)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-5])
+@pytest.mark.parametrize("soon", [1e-12, 1e-7, 1e-4, 3e-4])
+def test_a_reading_soon_after_another_one_changes_next_to_nothing(noise: float, soon: float) -> None:
+    # A second reading of the same moment halves the variance of one reading, so that errors can only become smaller.
+    time = np.arange(0.0, 4.0, 5e-3)
+    twice = np.sort(np.concatenate([time, time[50::50] + soon]))
+
+    def largest_errors(at: np.ndarray) -> np.ndarray:
+        read = 0.01 + 0.004 * np.sin(20.0 * at) + noise * np.random.default_rng(1).standard_normal(at.size)
+        rate, acceleration = follow(at, read, noise)
+        off = np.array([rate - 0.08 * np.cos(20.0 * at), acceleration + 1.6 * np.sin(20.0 * at)])
+        return np.abs(off[:, at > 0.4]).max(axis=1)
+
+    assert np.all(largest_errors(twice) < 1.2 * largest_errors(time))
+
+
+def test_finer_samples_are_followed_after_a_few_of_them() -> None:
+    coarse, fine = np.arange(0.0, 1.0, 1e-2), 1.0 + np.arange(1e-4, 0.1, 1e-4)
+    time = np.concatenate([coarse, fine])
+    deflection = np.where(time < 1.0, 0.01, 0.01 + 0.5 * (time - 1.0))
+    rate, _ = follow(time, deflection, 0.0)
+    halvings = math.ceil(math.log2(1e-2 / 1e-4))
+    np.testing.assert_allclose(rate[coarse.size + 3 * halvings :], 0.5, rtol=1e-3)
 
 
 def test_a_reading_finer_than_a_gauge_can_be_is_exact() -> None:

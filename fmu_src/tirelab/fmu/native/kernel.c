@@ -10,6 +10,7 @@ static const double CM_PER_M = 100.0;
 static const double DEAD_ZONE = 0.0001;
 static const double DEPTH = 0.01;
 static const double EXACT = 1e-12;
+static const double FADES = 0.5;
 static const double FAR = 40.0;
 static const double FINEST = 1e-06;
 static const double FLAT_COEFFICIENT = 550.9;
@@ -31,6 +32,7 @@ static const double RIDE = 10.0;
 static const double SHARP = 10000000.0;
 static const double SMOOTH = 100.0;
 static const double SNAP_MAX = 128.0;
+static const double SOONEST = 1e-30;
 static const double SPEED = 0.1;
 static const double SWITCH = 0.02;
 static const double TAIL = 4.0;
@@ -109,30 +111,28 @@ static inline Vector14x4 tracking_second(double x, double v)
     return (Vector14x4){{jerked, jerked, snapped, snapped}};
 }
 
-/* tracking.py: Return the motion predicted one interval ahead, which is r times the last one. */
-static inline Vector14 tracking_predicted(Vector14 moving, double r)
+/* tracking.py: Return the motion with its times scaled by r times the scale before. */
+static inline Vector14 tracking_scaled(Vector14 moving, double r)
 {
-    double rr;
-    double rrr;
+    if (r == 1.0) {
+        return moving;
+    }
     double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
         p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
         moving.v[11], p23 = moving.v[12], p33 = moving.v[13];
-    if (r != 1.0) {
-        rr = r * r;
-        rrr = rr * r;
-        v = v * r;
-        a = a * rr;
-        j = j * rrr;
-        p01 = p01 * r;
-        p02 = p02 * rr;
-        p03 = p03 * rrr;
-        p11 = p11 * rr;
-        p12 = p12 * rrr;
-        p13 = p13 * rr * rr;
-        p22 = p22 * rr * rr;
-        p23 = p23 * rr * rrr;
-        p33 = p33 * rrr * rrr;
-    }
+    double rr = r * r;
+    double rrr = rr * r;
+    return (Vector14){{x, v * r, a * rr, j * rrr, p00, p01 * r, p02 * rr, p03 * rrr, p11 * rr, p12 * rrr, p13 * rr *
+        rr, p22 * rr * rr, p23 * rr * rrr, p33 * rrr * rrr}};
+}
+
+/* tracking.py: Return the motion predicted one interval ahead, which is r times the scale before and the scale now.
+   */
+static inline Vector14 tracking_predicted(Vector14 moving, double r)
+{
+    const Vector14 t1 = tracking_scaled(moving, r);
+    double x = t1.v[0], v = t1.v[1], a = t1.v[2], j = t1.v[3], p00 = t1.v[4], p01 = t1.v[5], p02 = t1.v[6], p03 =
+        t1.v[7], p11 = t1.v[8], p12 = t1.v[9], p13 = t1.v[10], p22 = t1.v[11], p23 = t1.v[12], p33 = t1.v[13];
     double q00 = p00 + p01 + p02 + p03;
     double q01 = p01 + p11 + p12 + p13;
     double q02 = p02 + p12 + p22 + p23;
@@ -147,24 +147,35 @@ static inline Vector14 tracking_predicted(Vector14 moving, double r)
         p33}};
 }
 
-/* tracking.py: Return the motion after an interval of white jerk of a scaled intensity; the jerk itself is not
+/* tracking.py: Return the largest intensity of the jerk, scaled by an interval that is `part` of the scale d. */
+static inline double tracking_jerk_max(double part)
+{
+    return JERK_MAX * part * part * part * part * part;
+}
+
+/* tracking.py: Return the motion after an interval of white jerk of scaled intensity q; the jerk itself is not
    estimated. */
-static inline Vector14 tracking_jerked(Vector14 moving, double intensity)
+static inline Vector14 tracking_jerked(Vector14 moving, double q)
 {
     double x = moving.v[0], v = moving.v[1], a = moving.v[2], p00 = moving.v[4], p01 = moving.v[5], p02 =
         moving.v[6], p11 = moving.v[8], p12 = moving.v[9], p22 = moving.v[11];
-    double q = lesser(intensity, JERK_MAX);
     return (Vector14){{x, v, a, 0.0, p00 + q / 20.0, p01 + q / 8.0, p02 + q / 12.0, 0.0, p11 + q / 3.0, p12 + q /
         4.0, 0.0, p22 + q / 4.0, 0.0, 0.0}};
 }
 
-/* tracking.py: Return the motion after an interval in which the jerk's rate was white, of a scaled intensity. */
-static inline Vector14 tracking_snapped(Vector14 moving, double intensity)
+/* tracking.py: Return the largest intensity of the jerk's rate, scaled by an interval that is `part` of the scale
+   d. */
+static inline double tracking_snap_max(double part)
+{
+    return SNAP_MAX * part * part * part * part * part * part * part;
+}
+
+/* tracking.py: Return the motion after an interval in which the jerk's rate was white, of scaled intensity q. */
+static inline Vector14 tracking_snapped(Vector14 moving, double q)
 {
     double x = moving.v[0], v = moving.v[1], a = moving.v[2], j = moving.v[3], p00 = moving.v[4], p01 = moving.v[5],
         p02 = moving.v[6], p03 = moving.v[7], p11 = moving.v[8], p12 = moving.v[9], p13 = moving.v[10], p22 =
         moving.v[11], p23 = moving.v[12], p33 = moving.v[13];
-    double q = lesser(intensity, SNAP_MAX);
     return (Vector14){{x, v, a, j, p00 + q / 252.0, p01 + q / 72.0, p02 + q / 60.0, p03 + q / 144.0, p11 + q / 20.0,
         p12 + q / 16.0, p13 + q / 36.0, p22 + q / 12.0, p23 + q / 24.0, p33 + q / 36.0}};
 }
@@ -194,18 +205,18 @@ static inline Vector14 tracking_updated(Vector14 moving, double deflection)
 }
 
 /* tracking.py: Return the track after an exact measurement: two filters of the shortest memory, each for itself. */
-static inline Tuple3 tracking_exactly(Vector14x4 modes, Vector4 probability, double ratio, double deflection, double
-    interval)
+static inline Tuple3 tracking_exactly(Vector14x4 modes, Vector4 probability, double ratio, double part, double
+    deflection, double scale)
 {
-    Vector14 ride = tracking_jerked(tracking_predicted(modes.v[1], ratio), JERK_MAX);
-    Vector14 sharp = tracking_snapped(tracking_predicted(modes.v[3], ratio), SNAP_MAX);
+    Vector14 ride = tracking_jerked(tracking_predicted(modes.v[1], ratio), tracking_jerk_max(part));
+    Vector14 sharp = tracking_snapped(tracking_predicted(modes.v[3], ratio), tracking_snap_max(part));
     double before = SWITCH + (1.0 - 2.0 * SWITCH) * probability.v[3] / (probability.v[1] + probability.v[3]);
     double w1 = (1.0 - before) * tracking_exact_likelihood(ride, deflection);
     double w3 = before * tracking_exact_likelihood(sharp, deflection);
-    ride = tracking_updated(ride, deflection);
-    sharp = tracking_updated(sharp, deflection);
+    ride = tracking_scaled(tracking_updated(ride, deflection), 1.0 / part);
+    sharp = tracking_scaled(tracking_updated(sharp, deflection), 1.0 / part);
     return (Tuple3){(Vector14x4){{ride, ride, sharp, sharp}}, (Vector4){{0.0, w1 / (w1 + w3), 0.0, w3 / (w1 + w3)}},
-        interval};
+        scale};
 }
 
 /* tracking.py: Return mean and covariance of a motion that is b with the probability `share`, and a otherwise. */
@@ -256,13 +267,17 @@ static inline Tuple3 tracking_follow(Tuple3 track, double interval, double defle
     if (last <= 0.0 || interval > PAUSE * last) {
         return (Tuple3){tracking_second(deflection, deflection - modes.v[0].v[0]), probability, interval};
     }
-    double ratio = interval / last;
+    double ratio = greater(interval / last, SOONEST);
+    double scale = greater(interval, FADES * last);
+    double part = ratio >= FADES ? 1.0 : ratio / FADES;
     if (noise < FINEST) {
-        return tracking_exactly(modes, probability, ratio, deflection, interval);
+        return tracking_exactly(modes, probability, ratio, part, deflection, scale);
     }
     double certainty = 1.0 / (noise * noise);
     double fifth = interval * interval * interval * interval * interval * certainty;
     double seventh = fifth * interval * interval;
+    double jerk_max = tracking_jerk_max(part);
+    double snap_max = tracking_snap_max(part);
     Vector14 whole = tracking_mean(modes, probability, certainty);
     double other = SWITCH / 3.0;
     double same = 1.0 - SWITCH - other;
@@ -270,14 +285,14 @@ static inline Tuple3 tracking_follow(Tuple3 track, double interval, double defle
     double c1 = other + same * probability.v[1];
     double c2 = other + same * probability.v[2];
     double c3 = other + same * probability.v[3];
-    Vector14 press = tracking_jerked(tracking_predicted(tracking_mixed(modes.v[0], whole, other / c0, certainty),
-        ratio), PRESS * fifth);
-    Vector14 ride = tracking_jerked(tracking_predicted(tracking_mixed(modes.v[1], whole, other / c1, certainty),
-        ratio), RIDE * fifth);
-    Vector14 smooth = tracking_snapped(tracking_predicted(tracking_mixed(modes.v[2], whole, other / c2, certainty),
-        ratio), SMOOTH * seventh);
-    Vector14 sharp = tracking_snapped(tracking_predicted(tracking_mixed(modes.v[3], whole, other / c3, certainty),
-        ratio), SHARP * seventh);
+    Vector14 press = tracking_predicted(tracking_mixed(modes.v[0], whole, other / c0, certainty), ratio);
+    Vector14 ride = tracking_predicted(tracking_mixed(modes.v[1], whole, other / c1, certainty), ratio);
+    Vector14 smooth = tracking_predicted(tracking_mixed(modes.v[2], whole, other / c2, certainty), ratio);
+    Vector14 sharp = tracking_predicted(tracking_mixed(modes.v[3], whole, other / c3, certainty), ratio);
+    press = tracking_jerked(press, lesser(PRESS * fifth, jerk_max));
+    ride = tracking_jerked(ride, lesser(RIDE * fifth, jerk_max));
+    smooth = tracking_snapped(smooth, lesser(SMOOTH * seventh, snap_max));
+    sharp = tracking_snapped(sharp, lesser(SHARP * seventh, snap_max));
     double l0 = log(c0) + tracking_log_likelihood(press, deflection, certainty);
     double l1 = log(c1) + tracking_log_likelihood(ride, deflection, certainty);
     double l2 = log(c2) + tracking_log_likelihood(smooth, deflection, certainty);
@@ -288,9 +303,10 @@ static inline Tuple3 tracking_follow(Tuple3 track, double interval, double defle
     double w2 = exp(l2 - best);
     double w3 = exp(l3 - best);
     double total = w0 + w1 + w2 + w3;
-    return (Tuple3){(Vector14x4){{tracking_updated(press, deflection), tracking_updated(ride, deflection),
-        tracking_updated(smooth, deflection), tracking_updated(sharp, deflection)}}, (Vector4){{w0 / total, w1 /
-        total, w2 / total, w3 / total}}, interval};
+    return (Tuple3){(Vector14x4){{tracking_scaled(tracking_updated(press, deflection), 1.0 / part),
+        tracking_scaled(tracking_updated(ride, deflection), 1.0 / part), tracking_scaled(tracking_updated(smooth,
+        deflection), 1.0 / part), tracking_scaled(tracking_updated(sharp, deflection), 1.0 / part)}}, (Vector4){{w0
+        / total, w1 / total, w2 / total, w3 / total}}, scale};
 }
 
 /* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
