@@ -9,7 +9,8 @@ is an effect that is less likely than not, where the others leave as little with
 Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
 part, simulated from its true history: a recording, the last one first, or of each recording the end that holds the last
 part of the misfit. Such a part has to be driven as what stays fitted, or its error is one of extrapolation and refutes
-nothing: on the surfaces, at depths and speeds within a factor of two, and where the set explains at least half as much.
+nothing: on the surfaces, at depths, speeds and after rests within a factor of two, and where the set explains at least
+half as much.
 The set has to act in it, too, or it proves nothing. Where no part is so, the end of each way of driving is held out,
 surface by surface. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
 """
@@ -154,20 +155,30 @@ def split(
 
 def _ways(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
     """Return a number of the way in which the tire is driven, for each sample: the same on one surface, at depths and
-    speeds within one factor of two.
+    speeds within one factor of two and, where it rests, after rests within one factor of two.
     """
     deepest = max(float(np.abs(m.deflection).max()) for m in motions)
     fastest = max(float(np.abs(m.rate).max()) for m in motions)
     radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
     told_apart = radii.size <= MOST_SURFACES
+    timed = is_timed(recordings)
+    speeds = [_halvings(m.rate, fastest) for m in motions]
+    rested = [_rested(r.time, s == HALVINGS - 1) for r, s in zip(recordings, speeds, strict=True)]
+    longest = max(float(r.max()) for r in rested)
     found = []
-    for recording, motion in zip(recordings, motions, strict=True):
-        surface = np.searchsorted(radii, recording.surface_radius) if told_apart else 0
-        speed = _halvings(motion.rate, fastest) if is_timed([recording]) else 0
-        found.append(
-            np.asarray((surface * HALVINGS + speed) * HALVINGS + _halvings(motion.deflection, deepest))
-        )
+    for recording, motion, speed, rest in zip(recordings, motions, speeds, rested, strict=True):
+        way = np.searchsorted(radii, recording.surface_radius) if told_apart else np.zeros_like(speed)
+        for part in (speed, _halvings(rest, longest)) if timed else ():
+            way = way * HALVINGS + part
+        found.append(np.asarray(way * HALVINGS + _halvings(motion.deflection, deepest)))
     return found
+
+
+def _rested(time: FloatArray, rests: BoolArray) -> FloatArray:
+    """Return how long the tire has rested at each sample [s]; time (n,) [s], rests (n,): where it does."""
+    moved = np.where(rests, -np.inf, time)
+    moved[0] = time[0]
+    return np.asarray(time - np.maximum.accumulate(moved))
 
 
 def _halvings(values: FloatArray, largest: float) -> IndexArray:

@@ -155,6 +155,35 @@ def test_what_is_driven_much_faster_is_not_held_out_as_a_whole():
     assert split(alike, raw_dataset_of(alike, TireModel()), before, again).by == "recording fast again"
 
 
+def held(times: int, seconds: float) -> Recording:
+    """Presses to 20 mm within a second, each held for so many seconds: the force falls quickly, then slowly to below the law."""
+    one = np.arange(0.0, seconds + 4.0, 0.02)
+    rest = np.clip(one - 1.0, 0.0, seconds)
+    deflection = 0.02 * np.minimum(np.minimum(one, 1.0), np.maximum(seconds + 2.0 - one, 0.0))
+    fall = 1.0 + 0.8 * np.exp(-rest / 4.0) + 0.2 * (np.exp(-rest / 100.0) - 0.3)
+    time = np.concatenate([one + i * one[-1] + i * 0.02 for i in range(times)])
+    return read(
+        "held", time, np.tile(deflection, times), np.tile(flat_force(deflection) * fall, times), seed=4
+    )
+
+
+@pytest.mark.parametrize(
+    ("times", "seconds", "by"), [(1, 300.0, "the end of each motion"), (8, 20.0, "time")]
+)
+def test_rests_longer_than_those_that_stay_fitted_are_not_held_out(times, seconds, by):
+    """What a force does after minutes of rest cannot be known from its first minute; of equal rests the last ones are
+    like the first.
+    """
+    recordings = [held(times, seconds)]
+    found = explain_misfit(recordings, TireModel(), ["viscoelastic_relaxation"], lambda stage: None).of(
+        ("viscoelastic_relaxation",)
+    )
+    before = [r.force - flat_force(r.deflection) for r in recordings]
+    held_out = split(recordings, raw_dataset_of(recordings, TireModel()), before, found)
+    assert held_out.by.startswith(by)
+    assert held_out.after < 0.5 * held_out.before
+
+
 def above_and_onto_a_rim(noise: float) -> list[Recording]:
     """Return a ride that ends above a rim and one that hits it, beside so much noise [N]."""
     above, onto = (read(n, *ride(s, samples=3000)[:2], 0.0, s) for n, s in (("above", 4), ("onto", 5)))
