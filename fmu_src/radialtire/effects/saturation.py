@@ -45,7 +45,7 @@ SATURATION = Effect(
             nominal=1e3,
             role="limit",
             prior=Prior(
-                "log", 0.85, math.log(1.2), "force", "a ceiling that shows lies below the largest force"
+                "log", 1.02, math.log(1.1), "force", "no reading passes a ceiling; a round knee stays below it"
             ),
         ),
         Parameter(

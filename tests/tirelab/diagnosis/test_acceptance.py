@@ -156,7 +156,7 @@ def test_what_is_driven_much_faster_is_not_held_out_as_a_whole():
 
 
 def held(times: int, seconds: float) -> Recording:
-    """Presses to 20 mm within a second, each held for so many seconds: the force falls quickly, then slowly to below the law."""
+    """Presses to 20 mm within a second, held so many seconds: the force falls quickly, then slowly below the law."""
     one = np.arange(0.0, seconds + 4.0, 0.02)
     rest = np.clip(one - 1.0, 0.0, seconds)
     deflection = 0.02 * np.minimum(np.minimum(one, 1.0), np.maximum(seconds + 2.0 - one, 0.0))
