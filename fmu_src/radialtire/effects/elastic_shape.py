@@ -1,6 +1,8 @@
 """An elastic law that is not a power of the deflection: ln F is a curved function of ln x.
 
-    F = A x^B exp(c2 l^2 + c3 l^3 + h(x)),   l = ln(x / x_ref), held below x_ref / 100
+    F = A x^B exp(c2 l^2 + c3 l^3 + h(x)),   l = ln(x / x_ref)
+
+l is held below x_ref / 100 and above 100 x_ref.
 
 h: straight lines between h_i at x = 0.4, 0.8, 1.2, 1.6 and 2 x_ref, constant beyond them; for laws with a knee.
 
@@ -26,7 +28,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         return signal, state
     exponent = 0.0
     if bend != 0.0 or twist != 0.0:
-        log_ratio = math.log(max(x / reference, 0.01))
+        log_ratio = math.log(min(max(x / reference, 0.01), 100.0))
         exponent = log_ratio * log_ratio * (bend + twist * log_ratio)
     place = 2.5 * x / reference
     if place <= 1.0:
@@ -93,8 +95,8 @@ ELASTIC_SHAPE = Effect(
             "xr",
             "m",
             0.0125,
-            1e-4,
-            0.2,
+            1e-8,
+            10.0,
             "deflection at which the power law holds",
             optional=True,
             role="reading",

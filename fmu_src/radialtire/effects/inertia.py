@@ -30,12 +30,14 @@ INERTIA = Effect(
             "kg",
             0.0,
             0.0,
-            100.0,
+            1e6,
             "moved with the deflection",
             neutral=0.0,
             nominal=2.0,
             role="strength",
-            prior=Prior("log", 2.0, math.log(6), "1", "fixtures of a few kg"),
+            prior=Prior(
+                "log", 1e-3, math.log(6), "force", "fixtures of a few kg beside 2 kN, others in proportion"
+            ),
         ),
     ),
     initial_state=(),

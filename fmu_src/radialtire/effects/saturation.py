@@ -38,14 +38,18 @@ SATURATION = Effect(
             "L",
             "N",
             NO_LIMIT,
-            1.0,
+            1e-12,
             NO_LIMIT,
             "largest force read",
             neutral=NO_LIMIT,
             nominal=1e3,
             role="limit",
             prior=Prior(
-                "log", 1.02, math.log(1.1), "force", "no reading passes a ceiling; a round knee stays below it"
+                "log",
+                1.02,
+                math.log(1.1),
+                "force",
+                "no reading passes a ceiling; a round knee stays below it",
             ),
         ),
         Parameter(

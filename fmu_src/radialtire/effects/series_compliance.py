@@ -98,7 +98,7 @@ SERIES_COMPLIANCE = Effect(
             "m/N",
             0.0,
             0.0,
-            0.1,
+            1e9,
             "deflection of wheel and machine for each N; 1/k is their stiffness",
             neutral=0.0,
             nominal=5e-7,

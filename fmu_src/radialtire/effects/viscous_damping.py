@@ -56,7 +56,7 @@ VISCOUS_DAMPING = Effect(
             "N.s/m",
             0.0,
             0.0,
-            1e8,
+            1e12,
             "force for each m/s of compression",
             neutral=0.0,
             nominal=300.0,

@@ -22,12 +22,10 @@ from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
 from ..regressors.excitation import AS_GOOD, Excitation, excitation_of
 from ..regressors.signature import (
     LAW,
-    SHAPE,
     Signature,
     candidates,
     in_other_noise,
     law_signature,
-    out_of_size,
     signatures_of,
     size_of,
 )
@@ -182,7 +180,7 @@ def explain_misfit(
     if not baseline.inflated:
         impossible |= {name for name, effect in CATALOGUE.items() if "air" in effect.traits}
     allowed = [name for name in candidates() if name in catalogue and name not in impossible]
-    hidden = excitation.reasons(allowed) | out_of_size((*allowed, SHAPE), dataset.scales)
+    hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)

@@ -3,8 +3,7 @@
 Parameters are drawn from their priors, the response of the baseline tire with the effect is simulated along the motion,
 and the baseline is taken off. Mean and covariance of these curves, of one size, are a Gaussian law of forms: the mean
 and the leading vectors of a singular value decomposition, each scaled by its standard deviation. The priors are
-multiples of the recording's own force and travel; the bounds of the parameters are not. Where hardly any of a prior
-lies within them, the effect could only be fitted with a value that is out of proportion, and is not tried.
+multiples of the recording's own force and travel.
 
 The elastic law has a signature of its own: how a refitted law, or one of another shape, would differ.
 
@@ -28,7 +27,6 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from ..names import REFITTED_LAW
-from ..preprocessing.noise import NEGLIGIBLE
 from .dataset import Dataset, Scales, arranged
 
 FloatArray = NDArray[np.float64]
@@ -150,40 +148,6 @@ def law_signature(dataset: Dataset) -> Signature:
     basis = np.column_stack(columns) / max(size_of(FACTOR * force), 1e-300)
     none = np.zeros((0, force.size))
     return Signature(LAW, np.zeros(force.size), basis, False, none, (), np.zeros(0))
-
-
-SIZES = frozenset({"force", "travel"})
-"""The scales by which a recording is small or large; how long or fast it is says nothing of its size."""
-
-
-def out_of_size(names: Sequence[str], scales: Scales) -> dict[str, str]:
-    """Return which of the effects `names` cannot be fitted to recordings of these scales, and why."""
-    return {name: why for name in names if (why := _why(name, scales))}
-
-
-def _why(name: str, scales: Scales) -> str:
-    for p in CATALOGUE[name].parameters:
-        needed = not p.optional or name == SHAPE
-        if needed and p.prior is not None and p.prior.shape == "log" and _within(p, scales) < NEGLIGIBLE:
-            size = math.exp(centre_and_spread(p, scales)[0])
-            bound = (
-                f"at least {p.minimum:g} {p.unit}" if size < p.minimum else f"at most {p.maximum:g} {p.unit}"
-            )
-            return (
-                f"its {p.name.replace('_', ' ')} is {bound}, a tire's, and these recordings, of {scales.travel:.2g} m "
-                f"and {scales.force:.2g} N, would need about {size:.1g} {p.unit}"
-            )
-    return ""
-
-
-def _within(p: Parameter, scales: Scales) -> float:
-    """Return the part of a prior of the logarithm that lies within the bounds; 1 of one that has no size."""
-    assert p.prior is not None
-    if not set(p.prior.scale.split("/")) <= SIZES:
-        return 1.0
-    centre, spread, _ = centre_and_spread(p, scales)
-    low = -math.inf if p.minimum <= 0.0 else (math.log(p.minimum) - centre) / spread
-    return float(ndtr((math.log(p.maximum) - centre) / spread) - ndtr(low))
 
 
 DRAWS = 32

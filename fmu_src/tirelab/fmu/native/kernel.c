@@ -566,7 +566,7 @@ static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothi
     }
     double exponent = 0.0;
     if (bend != 0.0 || twist != 0.0) {
-        log_ratio = log(greater(x / reference, 0.01));
+        log_ratio = log(lesser(greater(x / reference, 0.01), 100.0));
         exponent = log_ratio * log_ratio * (bend + twist * log_ratio);
     }
     double place = 2.5 * x / reference;
