@@ -1,9 +1,10 @@
-"""The one way through a diagnosis: recordings and a baseline tire in, a verdict out."""
+"""The stages of a diagnosis in their order: recordings and a baseline tire in, a verdict out."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from radialtire import TireModel
@@ -17,7 +18,15 @@ from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_timed, raw_dataset_of
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
-from .acceptance import HeldOut, accept, noise_free_residual, rmse, validation_on, without_unlikely
+from .acceptance import (
+    HeldOut,
+    Validate,
+    accept,
+    noise_free_residual,
+    rmse,
+    validation_on,
+    without_unlikely,
+)
 from .confidence import (
     REACHED,
     Alternative,
@@ -37,7 +46,7 @@ QUICK = (
     "Most of it lies in sharp turns of the motion or in changes quicker than what is compared: drive round corners, "
     "sample faster, or look for what disturbs the force."
 )
-"""Said of a remainder that is not where one set is compared with another."""
+"""Added to the summary where most of the remainder lies in samples by which the sets are not compared."""
 
 MOST_TESTED = 3
 """Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
@@ -69,67 +78,54 @@ def diagnose(
     _check_names(allowed)
     refuse_far_zeros(fitted)
     check_recordings(fitted, two_sided=baseline.two_sided)
-    dataset = raw_dataset_of(fitted, baseline)
-    timed = is_timed(fitted)
-    explanation = explain_misfit(fitted, baseline, allowed, report, timed=timed)
-    levels = [floor.level for floor in explanation.floors]
-    beside = any(getattr(r, "believed_force", None) is not None for r in fitted)
-    check_signal(dataset, [r.name for r in fitted], levels, beside=beside)
+    data = _Data(fitted, raw_dataset_of(fitted, baseline), [r.force - simulate(baseline, r) for r in fitted])
+    candidates = explain_misfit(fitted, baseline, allowed, report, timed=data.timed)
+    levels = [floor.level for floor in candidates.floors]
+    with_simulation = any(getattr(r, "believed_force", None) is not None for r in fitted)
+    check_signal(data.samples, [r.name for r in fitted], levels, beside=with_simulation)
+
     report("validating the correction on held-out data")
-    before = [r.force - simulate(baseline, r) for r in fitted]
-    validate = validation_on(fitted, kept, dataset, before)
-    explanation, validation = accept(explanation, validate)
-    considered = [_calibrated(e, explanation, validation) for e in explanation.effects]
-    likely = {e.name: e.probability for e in considered}
-    explanation, validation = without_unlikely(explanation, validation, likely, validate)
-    effects, doubted = _named_and_doubted(explanation, considered)
-    residuals = _not_of_the_reading(explanation, dataset, fitted)
-    fit = _figures(before, residuals, explanation, validation)
-    written = of_the_written_tire(
-        explanation.remainder,
-        [values[seen] for values, seen in zip(before, explanation.compared, strict=True)],
-        [values[seen] for values, seen in zip(residuals, explanation.compared, strict=True)],
-        fit.noise,
+    accepted = _accepted(candidates, validation_on(fitted, kept, data.samples, data.before))
+    explanation, validation = accepted.explanation, accepted.validation
+    residuals = _residuals(explanation, data)
+    fit = _errors(data, residuals, explanation, validation)
+    remainder = _remainder(data, residuals, explanation, fit.noise)
+    unexplained = _unexplained(data, residuals, remainder, levels)
+    models = residual_models(unexplained, data.samples, explanation.residuals, validation)
+
+    grounds = grounds_of_verdict(explanation, validation, remainder, unexplained=bool(unexplained))
+    confidence = confidence_of(
+        grounds, [e.probability for e in accepted.effects], [e.probability for e in accepted.doubted]
     )
-    left = _remainder_told(written, timed)
-    shown = _places_told(localize(fitted, dataset, residuals, levels, residuals), timed)
-    unexplained = tuple(by for by in unexplained_by(left, shown) if timed or by not in OF_TIME)
-    grounds = grounds_of_verdict(explanation, validation, left, unexplained=bool(unexplained))
-    confidence = confidence_of(grounds, [e.probability for e in effects], [e.probability for e in doubted])
-    alternatives = alternatives_of(explanation, dataset, confidence, limits)
-    if not effects:
+    alternatives = alternatives_of(explanation, data.samples, confidence, limits)
+    if not accepted.effects:
         alternatives = tuple(_with_error(a, explanation) for a in alternatives)
-    remainder = residual_models(unexplained, dataset, explanation.residuals, validation)
-    places = localize(
-        fitted,
-        dataset,
-        law_corrected(fitted, before, explanation.model.baseline, explanation.model.tire),
-        levels,
-        None if unexplained else explanation.residuals,
-    )
+    located = law_corrected(fitted, data.before, explanation.model.baseline, explanation.model.tire)
+    noise = None if unexplained else explanation.residuals
+    where = data.shown(localize(fitted, data.samples, located, levels, noise))
+
     contradiction = contradiction_of(explanation, fitted)
     missing = not_compared(fitted)
+
     report("searching for a test that separates the alternatives")
-    test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(dataset, timed))
+    test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
+    sentences = [summarise(accepted.effects, alternatives, models, confidence, fit, test)]
+    sentences += [QUICK] if unexplained and remainder.uncompared > 0.5 else []
+    sentences += [] if contradiction is None else [contradiction.sentence]
     return Verdict(
-        effects=effects,
-        doubted=doubted,
+        effects=accepted.effects,
+        doubted=accepted.doubted,
         confidence=confidence,
         grounds=grounds,
         alternatives=alternatives,
-        remainder=left,
+        remainder=remainder,
         unexplained_by=unexplained,
-        residual_models=remainder,
-        summary=_said(
-            summarise(effects, alternatives, remainder, confidence, fit, test),
-            QUICK if unexplained and left.uncompared > 0.5 else "",
-            "" if contradiction is None else contradiction.sentence,
-            *missing,
-        ),
+        residual_models=models,
+        summary=" ".join([*sentences, *missing]),
         not_compared=missing,
-        where=_places_told(places, timed),
+        where=where,
         fit=fit,
-        tire=_named(explanation.model.tire, baseline, fitted),
+        tire=_renamed(explanation.model.tire, baseline, fitted),
         evidence=explanation.evidence,
         test=test if test is not None and test.sufficient else None,
         compared=len(explanation.evidence),
@@ -140,29 +136,46 @@ def diagnose(
     )
 
 
-def _said(*sentences: str) -> str:
-    return " ".join(sentence for sentence in sentences if sentence)
+@dataclass(frozen=True)
+class _Data:
+    """The fitted recordings, their samples, and the residuals [N] of the baseline in each of them."""
+
+    recordings: Sequence[Recorded]
+    samples: RawDataset
+    before: Sequence[FloatArray]
+
+    @cached_property
+    def timed(self) -> bool:
+        """Whether the times of all samples were measured."""
+        return is_timed(self.recordings)
+
+    def shown(self, places: Sequence[Span]) -> tuple[Span, ...]:
+        """Return the places without those over coordinates that need the times, where these were not measured."""
+        return tuple(place for place in places if self.timed or place.by not in OF_TIME)
 
 
-def _not_of_the_reading(
-    explanation: Explanation, dataset: RawDataset, fitted: Sequence[Recorded]
-) -> list[FloatArray]:
-    """Return what the written tire leaves of each recording [N], as read or with the noise-free deflection.
+@dataclass(frozen=True)
+class _Accepted:
+    """The accepted set, its errors on held-out data, its effects, and those of the likeliest set that it lacks."""
 
-    Whichever is less: what goes with the noise of the reading is no physics.
-    """
-    tire, found = explanation.model.tire, []
-    for recording, e, read in zip(fitted, dataset.experiments, explanation.residuals, strict=True):
-        noise_free = noise_free_residual(tire, recording, e.motion)
-        found.append(min(read, noise_free, key=lambda left: float(left @ left)))
-    return found
+    explanation: Explanation
+    validation: HeldOut
+    effects: tuple[NamedEffect, ...]
+    doubted: tuple[NamedEffect, ...]
 
 
-def _with_error(alternative: Alternative, explanation: Explanation) -> Alternative:
-    """Return an alternative with what its tire leaves [N], where it was fitted."""
-    if not explanation.was_fitted(alternative.names):
-        return alternative
-    return replace(alternative, left=explanation.of(alternative.names).error)
+def _accepted(candidates: Explanation, validate: Validate) -> _Accepted:
+    """Return the set to deliver; every effect has its calibrated probability in the set that was accepted first."""
+    explanation, validation = accept(candidates, validate)
+    considered = {e.name: _calibrated(e, explanation, validation) for e in explanation.effects}
+    probabilities = {name: e.probability for name, e in considered.items()}
+    explanation, validation = without_unlikely(explanation, validation, probabilities, validate)
+    effects = tuple(
+        replace(e, probability=considered[e.name].probability, grounds=considered[e.name].grounds)
+        for e in explanation.effects
+    )
+    doubted = tuple(e for name, e in considered.items() if name not in explanation.model.names)
+    return _Accepted(explanation, validation, effects, doubted)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
@@ -170,19 +183,70 @@ def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldO
     return replace(effect, probability=probability("effect", grounds), grounds=grounds)
 
 
-def _named_and_doubted(
-    explanation: Explanation, considered: Sequence[NamedEffect]
-) -> tuple[tuple[NamedEffect, ...], tuple[NamedEffect, ...]]:
-    """Return the effects of the set with their calibrated probabilities, and those considered that it is without."""
-    judged = {e.name: e for e in considered}
-    effects = tuple(
-        replace(e, probability=judged[e.name].probability, grounds=judged[e.name].grounds)
-        for e in explanation.effects
+def _residuals(explanation: Explanation, data: _Data) -> list[FloatArray]:
+    """Return the residuals [N] of the written tire in each recording.
+
+    The tire is given the deflection as read or the noise-free one, whichever leaves less: a residual that follows the
+    noise of the reading is not physics.
+    """
+    tire, found = explanation.model.tire, []
+    for recording, e, as_read in zip(
+        data.recordings, data.samples.experiments, explanation.residuals, strict=True
+    ):
+        noise_free = noise_free_residual(tire, recording, e.motion)
+        found.append(min(as_read, noise_free, key=lambda residual: float(residual @ residual)))
+    return found
+
+
+def _errors(
+    data: _Data, residuals: Sequence[FloatArray], explanation: Explanation, validation: HeldOut
+) -> Fit:
+    """Return the noise floor and the errors [N] before and after the correction, over the compared samples."""
+    sizes = np.array([b.size for b in data.before], dtype=float)
+    levels = np.array([f.level for f in explanation.floors])
+    return Fit(
+        float(np.sqrt(np.sum(sizes * levels**2) / sizes.sum())),
+        rmse(_compared(data.before, explanation)),
+        explanation.error,
+        validation.before,
+        validation.after,
+        validation.by,
+        validation.noise_free,
+        rmse(_compared(residuals, explanation)),
     )
-    return effects, tuple(e for e in considered if e.name not in explanation.model.names)
 
 
-def _named(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:
+def _compared(residuals: Sequence[FloatArray], explanation: Explanation) -> list[FloatArray]:
+    return [r[seen] for r, seen in zip(residuals, explanation.compared, strict=True)]
+
+
+def _remainder(
+    data: _Data, residuals: Sequence[FloatArray], explanation: Explanation, noise: float
+) -> Remainder:
+    """Return the remainder of the written tire, without a dependence on times that were not measured."""
+    before, after = _compared(data.before, explanation), _compared(residuals, explanation)
+    remainder = of_the_written_tire(explanation.remainder, before, after, noise)
+    if data.timed:
+        return remainder
+    return replace(remainder, depends=tuple(d for d in remainder.depends if d.coordinate not in OF_TIME))
+
+
+def _unexplained(
+    data: _Data, residuals: Sequence[FloatArray], remainder: Remainder, levels: Sequence[float]
+) -> tuple[str, ...]:
+    """Return the coordinates on which an unexplained remainder depends; none where nothing is unexplained."""
+    places = data.shown(localize(data.recordings, data.samples, residuals, levels, residuals))
+    return tuple(by for by in unexplained_by(remainder, places) if data.timed or by not in OF_TIME)
+
+
+def _with_error(alternative: Alternative, explanation: Explanation) -> Alternative:
+    """Return an alternative with the error [N] of its tire, where it was fitted."""
+    if not explanation.was_fitted(alternative.names):
+        return alternative
+    return replace(alternative, left=explanation.of(alternative.names).error)
+
+
+def _renamed(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:
     """Return the corrected tire under a name of its own, unless it is the baseline."""
     if corrected.law == baseline.law and corrected.effects == baseline.effects:
         return corrected
@@ -205,29 +269,6 @@ def _check_names(catalogue: Sequence[str]) -> None:
         )
 
 
-def _figures(
-    before: Sequence[FloatArray],
-    noise_free: Sequence[FloatArray],
-    explanation: Explanation,
-    validation: HeldOut,
-) -> Fit:
-    def error(residuals: Sequence[FloatArray]) -> float:
-        return rmse([r[seen] for r, seen in zip(residuals, explanation.compared, strict=True)])
-
-    sizes = np.array([b.size for b in before], dtype=float)
-    levels = np.array([f.level for f in explanation.floors])
-    return Fit(
-        float(np.sqrt(np.sum(sizes * levels**2) / sizes.sum())),
-        error(before),
-        explanation.error,
-        validation.before,
-        validation.after,
-        validation.by,
-        validation.noise_free,
-        error(noise_free),
-    )
-
-
 def _recommend(
     explanation: Explanation, alternatives: Sequence[Alternative], noise: float, limits: Limits
 ) -> DiscriminatingTest | None:
@@ -245,24 +286,13 @@ def _recommend(
     return nearest
 
 
-def _limits_of(dataset: RawDataset, timed: bool) -> Limits:
-    """Return the limits of a rig that did what was recorded, and may drive twice as fast."""
-    if not timed:
-        return Limits(deepest=dataset.max_deflection, fastest=REACHED)
-    fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in dataset.experiments)
-    return Limits(deepest=dataset.max_deflection, fastest=max(REACHED, fastest))
+def _limits_of(data: _Data) -> Limits:
+    """Return the limits of a rig that drove these recordings, and can drive twice as fast."""
+    deepest = data.samples.max_deflection
+    if not data.timed:
+        return Limits(deepest=deepest, fastest=REACHED)
+    fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in data.samples.experiments)
+    return Limits(deepest=deepest, fastest=max(REACHED, fastest))
 
 
 __all__ = ["PoorRecording", "Recorded", "catalogue_names", "diagnose"]
-
-
-def _places_told(places: Sequence[Span], timed: bool) -> tuple[Span, ...]:
-    """Return the places that can be told."""
-    return tuple(place for place in places if timed or place.by not in OF_TIME)
-
-
-def _remainder_told(remainder: Remainder, timed: bool) -> Remainder:
-    """Return a remainder without what it depends on in time."""
-    if timed:
-        return remainder
-    return replace(remainder, depends=tuple(d for d in remainder.depends if d.coordinate not in OF_TIME))
