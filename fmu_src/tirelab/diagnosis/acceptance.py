@@ -1,18 +1,19 @@
 """Which fitted set is delivered: judged by its written tire, on the recordings as they were read and on held-out data.
 
-Fits are made on the smoothed motion; the written tire reads the deflection as it comes, so it may leave more. What is
-ranked is what is delivered: a set gives way to another of no more effects whose written tire leaves clearly less, and
-is refused where it is worse than the baseline on held-out data. No effect at all is always accepted. An effect
-of the deflection alone is not named beside a refitted law on one surface, where that law is nearly as likely alone; nor
-is an effect that is less likely than not, where the others leave as little without it.
+Fits are made on the smoothed motion, but the written tire is given the deflection as it is read, so it may leave more.
+What is judged here is therefore what is delivered. A set is replaced by another one with no more effects whose written
+tire leaves clearly less. It is refused where it is worse than the baseline on held-out data. The baseline without any
+effect is always acceptable. Two kinds of effects are not named: on one surface, an effect of the deflection alone
+beside a refitted law, where that law without it is nearly as likely; and an effect with a probability below one half,
+where the others leave as little without it.
 
-Held-out recordings are used where there are any. Without any, the accepted effects are fitted once more without one
-part, simulated from its true history: a recording, the last one first, or of each recording the end that holds the last
-part of the misfit. Such a part has to be driven as what stays fitted, or its error is one of extrapolation and refutes
-nothing: on the surfaces, at depths, speeds and after rests within a factor of two, and where the set explains at least
-half as much.
-The set has to act in it, too, or it proves nothing. Where no part is so, the end of each way of driving is held out,
-surface by surface. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
+Recordings given as held-out are used where there are any. Without any, the accepted effects are fitted once more
+without one part of the data, which is then simulated from its true history: a whole recording, the last one first, or
+the end of each recording that holds the last part of the misfit. The part has to be driven like the data that stay
+fitted: on the same surfaces, at depths and speeds and after rests within a factor of two, and where the set explains at
+least half as much; otherwise its error is one of extrapolation and refutes nothing. The set also has to change the
+force in it, or it proves nothing. Where no part fulfils this, the end of each kind of driving is held out, surface by
+surface. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -35,13 +36,13 @@ from ..simulation.channels import begun
 from ..simulation.simulate import simulate, smoothed_motion
 
 FITTED = 0.7
-"""Part of the baseline's squared misfit that is fitted where the end of a recording is held out: by time, one side
-could lack what is to be explained. It is also the part of what is explained of the held-out data that has to be driven
-as what is fitted."""
+"""Part of the baseline's squared misfit that stays fitted where the end of a recording is held out (split by time, one
+side could lack the misfit to be explained). It is also the part of the explained misfit in the held-out data that has
+to be driven like the fitted data."""
 
 HALVINGS = int(np.ceil(-np.log2(STILL)))
-"""Depths, speeds and misfits are told apart by the halvings of the largest. Depths and speeds below a sixty-fourth of
-it are one: there the tire rests."""
+"""Depths and speeds are classed by how often the largest one is halved to reach them. Those below a sixty-fourth of it
+are one class: there the tire rests."""
 
 
 @dataclass(frozen=True)
@@ -154,8 +155,8 @@ def split(
 
 
 def _ways(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
-    """Return a number of the way in which the tire is driven, for each sample: the same on one surface, at depths and
-    speeds within one factor of two and, where it rests, after rests within one factor of two.
+    """Return a number for the kind of driving at each sample: the same on one surface, at depths and speeds within one
+    factor of two and, at rest, after rests within one factor of two.
     """
     deepest = max(float(np.abs(m.deflection).max()) for m in motions)
     fastest = max(float(np.abs(m.rate).max()) for m in motions)
@@ -219,9 +220,11 @@ def _shows_as_much(
     after: Sequence[FloatArray],
     ways: Sequence[IndexArray],
 ) -> bool:
-    """Return whether the held-out part can refute a set: the set changes the force in it, and most of what the set
-    explains there belongs to ways of driving that stay fitted, of which it explains at least half as much: what shows
-    in the held-out part alone cannot be fitted without it.
+    """Return whether the held-out part can refute a set.
+
+    It can if the set changes the force in it, and if most of what the set explains there belongs to kinds of driving
+    that are also fitted, in which it explains at least half as much. What shows only in the held-out part cannot be
+    fitted without it.
     """
     fits, way = np.concatenate(kept), np.concatenate(ways)
     missed, left = np.concatenate(before), np.concatenate(after)
@@ -240,8 +243,9 @@ def _shows_as_much(
 
 
 def _beginning(before: FloatArray, way: IndexArray) -> BoolArray:
-    """Return the samples that stay fitted of a recording; before [N] (n,): what the baseline leaves of it; way (n,): a
-    number, of each of which the beginning is fitted.
+    """Return the samples of a recording that stay fitted, the beginning of each kind of driving.
+
+    before [N] (n,): residual of the baseline; way (n,): number of the kind of driving
     """
     kept = np.ones(before.size, dtype=bool)
     for one in np.unique(way):
@@ -252,26 +256,26 @@ def _beginning(before: FloatArray, way: IndexArray) -> BoolArray:
 
 
 CONSIDERED = 6
-"""Sets, the likeliest first, whose written tires are compared."""
+"""Number of the likeliest sets whose written tires are compared."""
 
 WORSE = 1.01
-"""A correction whose held-out error is more than this times the baseline's is refused; less is an effect that the
-held-out data do not show."""
+"""A correction whose held-out error is more than this times that of the baseline is refused. Below it the held-out data
+just do not show the effect."""
 
 NO_WORSE = 0.9
-"""A set gives way to one of no more effects that leaves less than this part of what it leaves."""
+"""A set is replaced by one with no more effects whose error is less than this part of its own."""
 
 LIKELY = 0.5
-"""An effect of at least this probability is likelier there than not."""
+"""Least probability of an effect that is kept in any case."""
 
 Validate = Callable[[Explanation], HeldOut]
 
 
 def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, HeldOut]:
-    """Return the first of the sets in their order that is not refused, and what it does on held-out data. A set gives
-    way to one of no more effects that leaves clearly less.
+    """Return the first set, in the order of the ranking, that is not refused, and its errors on held-out data.
 
-    validate: what a set does there (see `validation_on`)
+    Each set is replaced before by one with no more effects that leaves clearly less, if there is one.
+    validate: returns the errors of a set on held-out data (see `validation_on`)
     """
     order = explanation.in_order(CONSIDERED)
     likely = [_plainer(explanation, names) for names in (order if () in order else (*order, ()))]
@@ -283,8 +287,8 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
 
 
 def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explanation:
-    """Return a set, or the likeliest of no more effects in its place whose written tire leaves clearly less, until
-    there is none.
+    """Return a set, or in its place the likeliest one with no more effects whose tire leaves clearly less,
+    repeatedly.
     """
     for other in likely:
         if len(other.effects) <= len(chosen.effects) and other.error < NO_WORSE * chosen.error:
@@ -295,10 +299,10 @@ def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explan
 def without_unlikely(
     accepted: Explanation, validation: HeldOut, probabilities: Mapping[str, float], validate: Validate
 ) -> tuple[Explanation, HeldOut]:
-    """Return the smallest fitted part of a set that holds all its effects which are likelier there than not, leaves as
-    little as the set, and is no worse than the baseline on held-out data.
+    """Return the smallest fitted part of a set that keeps its likely effects (LIKELY), leaves as little as the set, and
+    is no worse than the baseline on held-out data.
 
-    probabilities: that each of its effects is there
+    probabilities: of each effect of the set, by its name
     """
     likely = [n for n, p in probabilities.items() if p >= LIKELY]
     unlikely = sorted((n for n in probabilities if n not in likely), key=lambda n: -probabilities[n])
@@ -315,9 +319,7 @@ def without_unlikely(
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
-    """Return a set without effects that the refitted law beside them could be, if that is nearly as likely; else the
-    set.
-    """
+    """Return a set without the effects that its refitted law can imitate, if that is nearly as likely; else the set."""
     chosen, static = explanation.of(names), explanation.excitation.within_law
     less = [n for n in names if n == REFITTED_LAW or not static(n)]
     if REFITTED_LAW not in names or len(less) == len(names):
@@ -336,9 +338,9 @@ def validation_on(
     dataset: RawDataset,
     before: Sequence[FloatArray],
 ) -> Validate:
-    """Return how a set is validated: on recordings kept from the fit, else on a part of `recordings`.
+    """Return the function that validates a set: on recordings kept from the fit, else on a part of `recordings`.
 
-    before [N]: what the baseline leaves of each recording
+    before [N]: residuals of the baseline in each recording
     """
     if held_out:
         return lambda chosen: given(held_out, recordings, dataset, before, chosen)

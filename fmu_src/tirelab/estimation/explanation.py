@@ -1,8 +1,8 @@
-"""The engine's one entry: which effects explain the misfit of a baseline tire on recordings.
+"""The entry of the engine: which effects explain the misfit of a baseline tire in recordings.
 
-The signatures of all effects are compared with the misfit (`selection`), whose noise is judged by what a model with
-every freedom at once leaves; every set that can still win is fitted in the catalogue's own forms (`estimation`), and
-the sets are ranked by those fits.
+The signatures of all effects are compared with the misfit (`selection`). The noise of the misfit is estimated from the
+residual of the saturated model, which has the signatures of all effects at once. Every set that can still win is fitted
+with the effects' own equations (`estimation`), and the sets are ranked by those fits.
 """
 
 from __future__ import annotations
@@ -61,21 +61,21 @@ BoolArray = NDArray[np.bool_]
 Progress = Callable[[str], None]
 
 NEAR = 4.0
-"""Log posterior odds of a set over the median or a plainer one up to which the latter is preferred."""
+"""Log posterior odds of a set over the median set, or over a part of it, up to which the latter is preferred."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """What explains the misfit: the sets of effects that were fitted, and one of them, the likeliest if not said.
+    """What explains the misfit: all fitted sets of effects, and one of them that is chosen, by default the likeliest.
 
     effects: of the set, the largest share first; probability: of the set
     evidence: all sets, this one first, then the likeliest
-    confounded: sets that can still win in which an effect that this motion cannot tell from one of the set stands in
-    its place, or the refitted law in that of effects which a law of another shape could be
+    confounded: sets that can still win and differ from this one by an effect that this motion cannot distinguish from
+    the one it replaces, or by the refitted law in place of the effects that a law of another shape can imitate
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
-    within_law: names of effects that leave no trace beside the refitted law of the set
-    model: the set, fitted; residuals [N]: what it leaves of each recording; floors: noise floor of each recording
-    compared: samples of each recording at which its gauges follow
+    within_law: names of effects that the refitted law of the set follows entirely
+    model: the set, fitted; residuals [N]: of the set in each recording; floors: noise floor of each recording
+    compared: which samples of each recording are compared (see `data_checks.compared`)
     """
 
     effects: tuple[NamedEffect, ...]
@@ -101,7 +101,7 @@ class Explanation:
 
     @property
     def error(self) -> float:
-        """Root mean square [N] of what the set leaves of all compared samples."""
+        """Root mean square residual [N] of the set over all compared samples."""
         left = [r[c] for r, c in zip(self.residuals, self.compared, strict=True)]
         return float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
 
@@ -126,7 +126,8 @@ class Explanation:
         return _explanation(*own)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
-        """Return the likeliest sets; before them that of all effects that are likelier there than not, if it is near.
+        """Return the likeliest sets; before them the median set, of all effects above one half, if it is nearly as
+        likely.
 
         M. M. Barbieri, J. O. Berger, "Optimal predictive model selection", Ann. Stat. 32 (2004) 870-897.
         """
@@ -138,7 +139,7 @@ class Explanation:
         return tuple(likely)
 
     def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
-        """Return the set fitted to the samples `kept` of each recording alone; their whole motion is known."""
+        """Return the set fitted to the samples `kept` of each recording only; the motion of the others stays known."""
         fit = self.model.fit
         chosen = [i for i, k in enumerate(kept) if k.any()]
         samples = self._samples.only(chosen)
@@ -199,7 +200,9 @@ def explain_misfit(
 def _signatures(
     dataset: Dataset, recordings: Sequence[Recorded], shown: Sequence[str], catalogue: Sequence[str]
 ) -> tuple[Dataset, tuple[Signature, ...], Dataset]:
-    """Return the dataset in blocks as long as its noise remembers, its signatures, and it with its noise."""
+    """Return the dataset in blocks at least as long as the noise is correlated, its signatures, and the dataset in
+    units of the noise that the saturated model leaves.
+    """
     raw = _raw(dataset, shown, catalogue)
     quiet = _with_saturated_noise(dataset, raw)
     if any(e.reading.memory > e.size for e in quiet.experiments):
@@ -280,9 +283,10 @@ def _explanation(
 
 
 def _like_law(signatures: Sequence[Signature], misfit: FloatArray, variance: float) -> tuple[str, ...]:
-    """Return the effects that a refitted law follows: one as large as the whole misfit would not be found beside it.
+    """Return the effects that a refitted law follows: even as large as the whole misfit, none would be found.
 
-    Beyond the law's columns it has the sum of squares s^2 and gains s^2 / 2V in log likelihood, less than a name needs.
+    With the sum of squares s^2 outside the law's columns, such an effect gains s^2 / 2V in log likelihood, less than
+    PRIOR_ODDS.
     """
     law = next((s for s in signatures if s.name == LAW), None)
     if law is None:
@@ -303,10 +307,10 @@ def _alike(excitation: Excitation, name: str) -> tuple[str, ...]:
 
 
 def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[tuple[str, ...], ...]:
-    """Return the sets with an effect that the motion cannot tell from one of the chosen ones in that one's place, and
-    the one in which the refitted law stands for all effects beside it that a law of another shape could be.
+    """Return the sets that the motion cannot distinguish from the chosen one: with another effect in place of one of
+    its own, or with the refitted law in place of all effects that a law of another shape can imitate.
 
-    Only sets that can still win beside the chosen one: recordings may tell what the motion alone would not.
+    Only sets that can still win count: the recorded forces may distinguish what the motion alone would not.
     """
     found = []
     for name in chosen.names:
@@ -325,7 +329,7 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
 
 
 def _quiet(dataset: Dataset) -> Dataset:
-    """Return a dataset in units of the noise that all signatures together leave."""
+    """Return a dataset in units of the noise that the saturated model leaves."""
     raw = (law_signature(dataset), *signatures_of(candidates(), dataset))
     return _with_saturated_noise(dataset, raw)
 
@@ -343,7 +347,7 @@ def _residuals(tire: TireModel, recordings: Sequence[Recorded]) -> tuple[FloatAr
 
 
 def _with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
-    """Return the dataset with the noise that all signatures together leave, block by block."""
+    """Return the dataset with the noise of the blocks that the saturated model leaves."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(dataset.misfit - _saturated(equations))
     found = []
@@ -354,7 +358,7 @@ def _with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> 
 
 
 def _saturated(equations: NormalEquations) -> np.ndarray:
-    """Return the misfit as all columns follow it, each with a weak prior of the misfit's own size."""
+    """Return the misfit predicted by the saturated model: all columns, each with a weak prior of the misfit's size."""
     size = equations.power / equations.columns.shape[0]
     gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
     return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))

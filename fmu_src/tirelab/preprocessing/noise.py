@@ -1,25 +1,27 @@
-"""The noise of readings and of a misfit: its bulk, a gauge's steps, and the floor that they set together.
+"""The noise of readings and of a misfit, the steps of a gauge, and the noise floor that follows from both.
 
 A gauge that reads in steps of q errs by up to q / 2 either way, with the standard deviation q / sqrt(12) (B. Widrow,
 I. Kollar, "Quantization Noise", Cambridge 2008, chapter 5). Random noise of variance s^2 gives fifth differences of
-variance 252 s^2, to which a smooth motion adds next to nothing; where the motion is slow they do not show the steps,
-because most readings repeat the last one, or nearly even, because most steps are alike.
+variance 252 s^2, to which a smooth motion adds next to nothing. They do not show the steps where the motion is slow,
+because most readings repeat the last one, or where it is nearly even, because most steps are alike.
 
-The floor is that of all sources together, counted on the recorded samples:
+The noise floor is the root mean square of all sources together over the recorded samples:
 
     amplifier: noise of the force's reading; one that steps by q errs by q / sqrt(12) at least, as a gauge does
     gauge:     noise of the deflection's reading times the stiffness
     steps:     a gauge that steps by q leaves stiffness x q / sqrt(12)
 
-A filter before the converter smooths the noise of a force: neighbours err alike. How many do so shows in differences
-over growing lags, which rise until the lag is the noise's memory and then stay, where a smooth misfit rises on
-(variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). They stay too
-where they have reached all that varies, which is what a short recording can show. A misfit is smooth where the motion
-is slow, so each lag is looked at there: a quick part of a recording does not hide the memory that a slow part shows.
-What comes again at the same deflection is no noise, however quick it is: a ripple of the tread. Nor is what comes again
-on the same way from a turn: the knee of a loop, which a linear model follows in part. So the lags are looked at once
-more in what differs between visits of one place (pure error of replicates: N. R. Draper, H. Smith, Applied Regression
-Analysis, 1998, 2.1), and the least of these levels is the noise's.
+A filter before the converter correlates the noise of neighbouring force samples. The correlation length, here the
+memory of the noise, shows in differences over growing lags: they rise up to the memory and then stay constant, while
+those of a smooth misfit keep rising (variogram: G. Matheron, Economic Geology 58 (1963) 1246-1266; third differences in
+place of first ones). They stay constant as well once they have reached the whole variation, which is all that a short
+recording can show. A misfit that follows the motion is smooth where the motion is slow, so the differences of each lag
+are taken there; a quick part of a recording then does not hide the memory that a slow part shows.
+
+What repeats at the same deflection is not noise, however quickly it changes: a ripple of the tread, for instance. Nor
+is what repeats at the same distance from a reversal: the knee of a loop, which a linear model follows only in part. So
+the differences are also taken between visits of the same place (pure error of replicates: N. R. Draper, H. Smith,
+Applied Regression Analysis, 1998, 2.1); the smallest of all these levels is that of the noise.
 """
 
 from __future__ import annotations
@@ -46,10 +48,11 @@ NEGLIGIBLE = 0.05
 """Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior."""
 
 STANDS_OUT = 8.0
-"""Noises by which a reading stands out by itself, whatever the motion does; within them a gauge stands still."""
+"""Noise standard deviations beyond which a single reading is an outlier; a gauge whose reading stays within so many
+stands still."""
 
 FEWEST_EVENTS = 10
-"""Events, samples of a stay or changes undone, that are no chance."""
+"""Fewest events (samples of a hold, changes that the next sample undoes) that are not taken for chance."""
 
 MEDIAN_TO_SIGMA = 1.4826
 """Standard deviation of a normal law over its median absolute deviation, 1 / 0.67449."""
@@ -64,17 +67,17 @@ def robust_sigma(values: NDArray[np.float64]) -> float:
 
 
 TRIMMED = 3.0
-"""Standard deviations beyond which values are left out: a normal law has 0.3 % there, which is made up for."""
+"""Standard deviations beyond which values are left out; the result is corrected for the 0.3 % of a normal law there."""
 
 FIRST_QUANTILE = 0.8
-"""Quantile of the sizes with which the trimming begins: of readings in coarse steps the median is often 0."""
+"""Quantile of the absolute values from which the trimming starts: the median of coarse steps is often 0."""
 
 
 def trimmed_sigma(values: NDArray[np.float64]) -> float:
     """Return the standard deviation of `values` about zero, from those within three of it; in their unit.
 
-    Its variance is about half of that by the median, and it is right for rounded values too, of which the median is a
-    step or none.
+    The variance of this estimate is about half of that from the median. It also holds for rounded values, whose median
+    is 0 or a whole step.
     """
     sizes = np.abs(values)
     sigma = float(np.quantile(sizes, FIRST_QUANTILE) / norm.ppf(0.5 + 0.5 * FIRST_QUANTILE))
@@ -90,11 +93,11 @@ def trimmed_sigma(values: NDArray[np.float64]) -> float:
 
 
 LEAST_NOISE, FINEST_STEP = 1e-9, 5e-7
-"""Smallest noise [m] that is returned, and smallest step [m] that is a gauge's: no gauge reads a tire's deflection to a
-nanometre, and finer steps are the digits of a file, rounded below every other noise."""
+"""Smallest noise [m] that is returned, and smallest step [m] of a gauge: no gauge reads a tire's deflection to a
+nanometre, and finer steps are the digits of a file, whose rounding is less than every other noise."""
 
 SMALL = 1e-3
-"""Span [m] below which both shrink with it: a smaller specimen has a finer gauge."""
+"""Span [m] of the readings below which both limits shrink in proportion to it: small specimens have finer gauges."""
 
 LEAST_LEVELS = 100
 """Steps from the smallest to the largest reading; fewer are a staircase that the rig was driven through."""
@@ -155,11 +158,12 @@ def _common_step(gaps: FloatArray, finest: float) -> float:
 
 
 STEPPING, LEVELS = 0.3, 5
-"""Part of neighbouring readings that are equal, and part of the changes that rest before or after, or number of
-different jumps, that a stepping gauge shows at least."""
+"""What a gauge that reads in steps shows at least: STEPPING is the part of neighbouring readings that are equal, and
+the part of the changes with no change before or after; LEVELS is the number of different jumps that may replace the
+latter."""
 
 CANDIDATES = (0.02, 0.1, 0.25, 0.5)
-"""Quantiles of the changes of the reading that may be its step: the first and last change are often parts of one."""
+"""Quantiles of the changes of the reading that are tried as its step: the smallest ones are often parts of it."""
 
 
 def staircase_step(deflection: FloatArray) -> float:
@@ -182,7 +186,8 @@ def staircase_step(deflection: FloatArray) -> float:
 def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArray:
     """Return the deflection [m] with straight lines between the middles of the stays on each level.
 
-    A line is followed for half a step only: a tire at rest between two levels does not wander.
+    A line is followed for half a step at most: a tire at rest between two levels does not move slowly from one to the
+    other.
     """
     edges = np.flatnonzero(np.abs(np.diff(deflection)) > 0.25 * step) + 1
     begin, end = np.append(0, edges), np.append(edges, deflection.size)
@@ -197,18 +202,18 @@ SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
 """Root mean square error of a reading that is rounded to steps, in steps."""
 
 STAYS = float(np.sqrt(2.0) ** 0.5)
-"""Growth of the differences for a doubled lag below which they stay: half the exponent of a random walk, the roughest
-noise that has a memory."""
+"""Factor of growth for a doubled lag below which differences count as constant: half the exponent of a random walk, the
+roughest noise that has a memory."""
 
 FEWEST_LAGS = 20
-"""Lags that a recording holds at least: noise that is independent a lag apart has its scale known to a sixth then."""
+"""Fewest lags in a recording: the level of noise that is independent a lag apart is then known to a sixth."""
 
 LONGEST_PHASE = float(2.0 * np.pi / 3.0)
-"""Phase p [rad] of the motion over the longest lag: third differences of a sine, (2 sin(p / 2))^3 of it, are five times
-those over half the lag there. A level that does not rise so far is a noise's."""
+"""Phase p [rad] of the motion over the longest lag. Third differences of a sine are (2 sin(p / 2))^3 times it, at this
+phase five times those over half the lag; a level that does not rise so much is that of noise."""
 
 OF_THIRD = float(np.sqrt(20.0))
-"""Standard deviation of third differences of white noise of one: 1 + 9 + 9 + 1 squared weights."""
+"""Standard deviation of third differences of white noise of standard deviation 1: the squared weights 1 + 9 + 9 + 1."""
 
 
 @dataclass(frozen=True)
@@ -222,20 +227,20 @@ class NoiseFloor:
 
     @property
     def level(self) -> float:
-        """All of it [N]."""
+        """The whole noise floor [N]: root of the sum of squares."""
         return float(np.sqrt(self.amplifier**2 + self.gauge**2 + self.steps**2))
 
 
 @dataclass(frozen=True)
 class Noise:
-    """level: standard deviation of a sample; memory: samples from one to the next that errs independently."""
+    """level: standard deviation of one sample; memory: number of samples after which errors are independent."""
 
     level: float
     memory: int
 
 
 def white_level(residual: FloatArray) -> float:
-    """Return the standard deviation of what differs from sample to sample, from third differences."""
+    """Return the standard deviation of the part of a residual (n,) that is white, from its third differences."""
     if residual.size < 8:
         return float(np.std(residual))
     return _level(_third_differences(residual, 1))
@@ -244,9 +249,9 @@ def white_level(residual: FloatArray) -> float:
 def noise_of(
     residual: FloatArray, interval: float, deflection: FloatArray, rate: FloatArray, acceleration: FloatArray
 ) -> Noise:
-    """Return the noise of a residual, white or with a memory.
+    """Return the noise of a residual (n,), white or with a memory.
 
-    interval [s] from sample to sample; deflection [m], rate [m/s] and acceleration [m/s^2]: the motion beside them
+    interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2]: motion at the samples, each (n,)
     """
     levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
     courses = deflection, rate, acceleration
@@ -256,7 +261,7 @@ def noise_of(
 
 @dataclass(frozen=True)
 class _Levels:
-    """Levels of a residual over doubled lags, `values`, where the motion is slow enough for all of these."""
+    """Levels of a residual over doubled lags, `values`, at the samples where the motion is slow enough for all lags."""
 
     residual: FloatArray
     lags: tuple[int, ...]
@@ -264,16 +269,16 @@ class _Levels:
     values: tuple[float, ...]
 
     def oscillates(self, noise: Noise) -> bool:
-        """Whether differences over the memory of a noise are larger than over longer lags, or than all that varies.
+        """Whether differences over the memory of a noise are larger than over longer lags, or than the whole variation.
 
-        Third differences of a sine have a level of up to 1.8 times its own, of other lags next to none.
+        The level of third differences of a sine is up to 1.8 times its own at one lag, and next to none at others.
         """
         level = _level_of(self.residual, noise.memory, self.slow)
         return level > STAYS**2 * min(noise.level, _varied(self.residual, noise.memory, self.slow))
 
 
 def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span: float) -> _Levels:
-    """Return the levels of a residual beside the motion that `_slow` tells of."""
+    """Return the levels of a residual; the other arguments are those of `_slow`."""
     lags, slow = [1], np.ones(residual.size, dtype=bool)
     while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
         slower = _slow(change, bend, span, 2 * lags[-1])
@@ -285,7 +290,7 @@ def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span:
 
 
 def _that_stays(levels: _Levels, deflection: FloatArray) -> Noise | None:
-    """Return the noise whose level is seen to stay over growing lags, without what comes again; None: it is not."""
+    """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
     last = _staying(levels.values)
     if last == 0:
         return None
@@ -300,8 +305,10 @@ def _that_stays(levels: _Levels, deflection: FloatArray) -> Noise | None:
 
 
 def _that_reaches_all(levels: _Levels, courses: tuple[FloatArray, FloatArray, FloatArray]) -> Noise | None:
-    """Return the noise whose level has reached all that varies within a few lags, where no course of the motion would
-    have; None: there is none. courses: deflection, rate and acceleration
+    """Return the noise whose level reaches the whole variation of the residual within a few lags; None without such.
+
+    courses: deflection, rate and acceleration; if one of them would reach its variation as well, the level may be that
+    of a misfit that follows it
     """
     residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
@@ -318,7 +325,7 @@ def _that_reaches_all(levels: _Levels, courses: tuple[FloatArray, FloatArray, Fl
 
 
 def _seen(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[IntArray, IntArray]]:
-    """Return the pairs of each kind of visit (`_visits`) of which both samples are `seen`, where they are enough."""
+    """Return the pairs of each kind of visit (`_visits`) with both samples `seen`; no kind with too few of them."""
     pairs = [
         (one[both], other[both])
         for one, other in _visits(deflection, memory)
@@ -330,10 +337,10 @@ def _seen(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[In
 def _follows(
     course: FloatArray, lag: int, seen: BoolArray, visits: Sequence[tuple[IntArray, IntArray]]
 ) -> bool:
-    """Return whether a misfit in proportion to a course of the motion could pass for noise that stays over a lag.
+    """Return whether a misfit in proportion to a course of the motion could be taken for noise with this memory.
 
-    With a part r of all that varies of it seen over the lag, beside white noise: to rise by STAYS, and to come within
-    STAYS of the whole, takes r^2 >= STAYS^2 - 1.
+    The lag shows the part r of the variation of the course, beside white noise. To rise by the factor STAYS, and to
+    come within that factor of the whole variation, it needs r^2 >= STAYS^2 - 1.
     """
     levels = [_level_of(course, lag, seen), *(_level_between(course, lag, *v) for v in visits)]
     return bool(min(levels) ** 2 >= (STAYS**2 - 1.0) * _varied(course, lag, seen) ** 2)
@@ -348,8 +355,8 @@ def _varied(values: FloatArray, lag: int, seen: BoolArray) -> float:
 def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolArray:
     """Return around which samples the motion is slow enough for the differences over a lag.
 
-    change [m], bend [m]: of the deflection, first and second, from sample to sample; span [m]: all of it. The
-    frequency of a sine is that of its bend over its change, that of a triangle follows from change and span.
+    change [m], bend [m]: first and second difference of the deflection; span [m] of the deflection. The frequency of a
+    sine follows from bend over change, that of a triangle from change over span.
     """
     local = (uniform_filter1d(v**2, 3 * lag + 1, mode="nearest") for v in (change, bend))
     change_there, bend_there = (np.sqrt(np.maximum(mean, 0.0)) for mean in local)
@@ -359,14 +366,14 @@ def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolAr
 
 
 def _staying(levels: Sequence[float]) -> int:
-    """Return the last of the levels over doubled lags from which on they are seen to stay, 0 where none is."""
-    # One doubling without a rise may be chance between two rises: a level holds over a factor of four.
+    """Return the index of the last level from which on the levels over doubled lags stay constant; 0 where none is."""
+    # One doubling without a rise may be chance between two rises: the level has to hold over a factor of four.
     pairs = enumerate(itertools.pairwise(_rises(levels)))
     return max((i + 1 for i, pair in pairs if not any(pair)), default=0)
 
 
 def _at(levels: Sequence[float], last: int) -> Noise:
-    """Return the noise whose levels over doubled lags rise up to the last one; that of the first if none does."""
+    """Return the noise with the level `last`; its memory is that of the last rise before it, else 1."""
     risen = [i for i, rise in enumerate(_rises(levels)[:last]) if rise]
     return Noise(levels[last], 2 ** (risen[-1] + 1)) if risen else Noise(levels[0], 1)
 
@@ -379,9 +386,11 @@ def _rises(levels: Sequence[float]) -> list[bool]:
 
 
 def _visits(deflection: FloatArray, memory: int) -> Iterator[tuple[IntArray, IntArray]]:
-    """Return pairs of samples of two visits: at one deflection, at one on the same way, as far on it from its turn.
+    """Return pairs of samples of two visits of one place, for three meanings of place: the same deflection; the same
+    deflection and direction; the same direction and distance from the last reversal.
 
-    Two are of different visits if they are four memories apart, and at one place within half a memory's way.
+    Samples are of different visits if they are four memories apart, and at one place if they are at most half the path
+    of one memory apart.
     """
     near = 0.5 * float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
     inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0

@@ -1,6 +1,6 @@
-"""All samples of one diagnosis, as the misfit is located in them: motion, baseline law, and the rows looked at.
+"""All samples of one diagnosis, in which the misfit is located: motion, law of the baseline, and a selection of rows.
 
-Sets of effects are compared in blocks of them, see `regressors.dataset`.
+The sets of effects are compared in blocks of samples instead, see `regressors.dataset`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from radialtire import TireModel
 from .motion import FloatArray, IndexArray, Motion, motion_of
 
 ROWS = 8000
-"""Samples in which the misfit is located, evenly spaced, all experiments together."""
+"""Number of samples in which the misfit is located: evenly spaced, of all recordings together."""
 
 OF_TIME = frozenset({"time", "rate", "acceleration"})
 """Coordinates that need the times of the samples."""
@@ -59,7 +59,7 @@ class RawExperiment:
     """One recording; arrays of one length n.
 
     time [s] from its start; force [N] as read; motion: its kinematics; coefficient A [N/cm^B], exponent B [1] of the
-    baseline law; rows: indices of the samples that are looked at; number: of the recording, from 0
+    baseline law; rows: indices of the samples in which the misfit is located; number: of the recording, from 0
     two_sided: whether the part can pull
     """
 
@@ -134,12 +134,12 @@ def raw_dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> RawDa
 
 
 def alone(recording: R) -> R:
-    """Return a recording without what was recorded before it, where a fit begins (see `simulation.channels.begun`)."""
+    """Return a recording without the history before it: a fit begins at rest (see `simulation.channels.begun`)."""
     if getattr(recording, "history", None) is None:
         return recording
     return replace(recording, history=None)  # type: ignore[type-var]
 
 
 def is_timed(recordings: Sequence[Recorded]) -> bool:
-    """Whether the time of every recording was measured; one that does not say it was."""
+    """Whether the time of every recording was measured; without the attribute `timed` it was."""
     return all(getattr(recording, "timed", True) for recording in recordings)
