@@ -287,9 +287,7 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
 
 
 def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explanation:
-    """Return a set, or in its place the likeliest one with no more effects whose tire leaves clearly less,
-    repeatedly.
-    """
+    """Return a set, or in its place the likeliest one with no more effects that leaves clearly less, repeatedly."""
     for other in likely:
         if len(other.effects) <= len(chosen.effects) and other.error < NO_WORSE * chosen.error:
             return _leaving_least(other, likely)

@@ -1,14 +1,14 @@
-"""How sure a verdict is, and which other sets the recordings cannot rule out.
+"""The confidence of a verdict, and the alternatives that the recordings cannot rule out.
 
-What speaks for and against a verdict gives the rate at which such verdicts were right:
+The probability of a verdict is the rate at which verdicts with such grounds were right:
 
     p = 1 / (1 + exp(-(w_0 + sum_i w_i g_i)))
 
-g_i: the grounds, numbers that every diagnosis has; w_i: fitted by logistic regression to blind trials on worlds wider
-than the catalogue (`validation.calibrate`), in `calibration.json` beside this file, with the command and the seeds. The
-weights of what must lower a probability (a remainder, a worse fit on held-out data, a motion that cannot show what is
-claimed) are held at zero or below. Source of the method: J. Platt, "Probabilistic outputs", Adv. Large Margin
-Classifiers (1999) 61.
+g_i: the grounds, numbers that every diagnosis has; w_i: weights, fitted by logistic regression to blind trials that
+also hold physics outside the catalogue (`validation.calibrate`); they stand in `calibration.json` beside this file,
+with the command and the seeds. Grounds that must lower a probability (a remainder, a worse fit on held-out data, a
+motion that cannot show the claim) have weights of zero or below. Source of the method: J. Platt, "Probabilistic
+outputs", Adv. Large Margin Classifiers (1999) 61.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from .acceptance import HeldOut
 
 Grounds = Mapping[str, float]
 
-FURTHEST = 15.0
-"""Log odds beyond which a ranking says no more."""
+MOST_LOG_ODDS = 15.0
+"""Largest size of log odds that is used as a ground."""
 
-SMALLEST = 1e-4
-"""Share of the misfit below which shares are alike."""
+LEAST_SHARE = 1e-4
+"""Shares of the misfit below this one count as this one."""
 
 OF_VERDICT = (
     "odds",
@@ -89,21 +89,25 @@ RAISING = ("odds",)
 def grounds_of_verdict(
     explanation: Explanation, validation: HeldOut, remainder: Remainder, *, unexplained: bool
 ) -> dict[str, float]:
-    """Return what the verdict's probability rests on; remainder: of the written tire, as it is told; unexplained:
-    whether something unknown is told.
+    """Return the grounds of the verdict's probability.
 
-    odds: log posterior odds against all other sets; contested: tempered probability of these
-    remainder_share: of the misfit; remainder_size: ln(1 + size over the noise)
-    structure: the same of what in the remainder depends on a recorded coordinate
-    transfer: ln of the error on held-out data over the fitted one; alike: ln(1 + sets that this motion cannot tell from
-    it); imitated: effects that a refitted law could be, see `grounds_of_effect`
-    effects: their number; loudness: ln of the misfit over the noise; least_share: ln of the least share of an effect
-    significance: of the effect that has the least, see `grounds_of_effect`
-    unknown, nothing: 1 where it tells of something unknown, and where it names no effect; unknown_size: the
-    remainder_size of something unknown, since what is hardly more than the noise may be noise of another kind
+    remainder: of the written tire, as it is reported; unexplained: whether something unknown is reported
+
+    odds: log posterior odds against all other sets; contested: tempered probability of all other sets
+    remainder_share: share of the misfit in the remainder; remainder_size: ln(1 + its size over the noise)
+    structure: the same for the part of the remainder that depends on a recorded coordinate
+    transfer: ln(error on held-out data / error on fitted data)
+    alike: ln(1 + number of sets that this motion cannot distinguish from the verdict's)
+    imitated: effects that a refitted law can imitate, see `grounds_of_effect`
+    law_alone: 1 where the verdict is a refitted law alone
+    effects: their number; loudness: ln(misfit / noise); least_share: ln of the smallest share of an effect
+    significance: smallest significance of an effect, see `grounds_of_effect`
+    unknown: 1 where something unknown is reported; nothing: 1 where no effect is named
+    unknown_size: remainder_size where something unknown is reported: a remainder hardly larger than the noise may be
+    noise of another kind
     """
     rest = [e.log_evidence for e in explanation.evidence[1:]]
-    chances = -float(np.logaddexp.reduce(rest)) if rest else FURTHEST
+    chances = -float(np.logaddexp.reduce(rest)) if rest else MOST_LOG_ODDS
     names = [e.name for e in explanation.effects]
     of_fit = _of_fit(explanation, validation, remainder)
     return {
@@ -124,20 +128,20 @@ def grounds_of_verdict(
 
 
 def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> dict[str, float]:
-    """Return what the probability of one named effect rests on, see `grounds_of_verdict`.
+    """Return the grounds of the probability of one effect; those not explained here are as in `grounds_of_verdict`.
 
-    odds: log odds of all sets with it against all without; contested: tempered probability of these
-    share: ln of its share of the misfit; alike: ln(1 + effects that this motion cannot tell from it)
-    imitated: of an effect that a law of another shape could be, on one surface: beside the refitted law the number of
-    its parameters of form, which let it follow such a law (one that has a strength alone fits by no accident), else
-    the odds, at most 1, of that law in the place of all such effects, tempered; beside_law: whether it depends on the
-    deflection alone and stands beside a refitted law, which may have another form than the catalogue's
-    significance: normal probability, two-sided, with which that of its parameters which the recordings determine best
-    differs from its neutral value; its standard deviation counts the errors of the forms
+    odds: log odds of all sets with it against all without; contested: tempered probability of all sets without it
+    share: ln of its share of the misfit; alike: ln(1 + number of effects that this motion cannot distinguish from it)
+    imitated: for an effect that, on one surface, a law of another shape can imitate. Beside a refitted law: the number
+    of its parameters of form, by which it can follow such a law (an effect with a strength only does not fit by
+    chance). Else: the tempered odds, at most 1, of that law in place of all such effects beside_law: 1 where it depends
+    on the deflection only and stands beside a refitted law, which may have another shape than the catalogue's
+    significance: two-sided normal probability of the difference from neutral, of the parameter for which it is largest;
+    the standard deviation includes the form errors
     """
     with_it = [e.log_evidence for e in explanation.evidence if effect.name in e.names]
     without = [e.log_evidence for e in explanation.evidence if effect.name not in e.names]
-    odds = FURTHEST
+    odds = MOST_LOG_ODDS
     if without:
         odds = float(np.logaddexp.reduce(with_it) - np.logaddexp.reduce(without))
     names = [e.name for e in explanation.effects]
@@ -163,37 +167,41 @@ def probability(of: str, grounds: Grounds) -> float:
     return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
 
 
-def shared(probability: float, alike: int) -> float:
-    """Return a verdict's probability where the motion cannot tell as many other sets from it: they share its odds.
+def sharing_odds(probability: float, alike: int) -> float:
+    """Return a verdict's probability p where the motion cannot distinguish this many other sets from it.
 
-    Calibration alone would not lower it: the rig's forms differ where the motion turns, and real ones differ otherwise.
+    All of them have the odds of the verdict: p / (p + (1 - p) (1 + alike)). Calibration alone would not lower p,
+    because in the trials the forms of these effects differ in reversals, which need not hold for real ones.
     """
     return probability / (probability + (1.0 - probability) * (1.0 + alike))
 
 
-def of_all(probability: float, named: Sequence[float], doubted: Sequence[float] = ()) -> float:
-    """Return a verdict's probability beside those of the effects that it names and of those that it leaves out as
-    doubted: it is no surer than that any of the former is there, or that any of the latter is not.
+def no_surer_than_effects(probability: float, named: Sequence[float], doubted: Sequence[float] = ()) -> float:
+    """Return a verdict's probability, limited by those of its effects.
+
+    It is at most that of each named effect, and at most that of the absence of each effect left out as doubted.
     """
     return min((probability, *named, *(1.0 - p for p in doubted)))
 
 
 def confidence_of(grounds: Grounds, named: Sequence[float], doubted: Sequence[float]) -> float:
-    """Return the confidence of a verdict with these grounds; named, doubted: probabilities of effects (`of_all`).
+    """Return the confidence of a verdict with these grounds; named, doubted: probabilities of its effects and of those
+    left out (see `no_surer_than_effects`).
 
-    One that something unknown acts, and no known effect, is no surer than its posterior, for it denies what all other
-    sets name; where held-out data refuted likelier ones, it is as likely as not. Calibration alone would not lower it:
-    drawn unknown effects are far from every known one, real ones are often known ones in other forms.
+    The verdict that something unknown acts and no known effect contradicts all other sets. So it is at most as probable
+    as its posterior odds against them say, and at most 50 % where held-out data refuted likelier sets. Calibration
+    alone would not lower it: unknown effects in the trials differ from every known one, real ones are often known
+    effects in other forms.
     """
     alike = round(math.expm1(grounds["alike"]))
-    own = shared(probability("verdict", grounds), alike)
+    own = sharing_odds(probability("verdict", grounds), alike)
     if grounds["nothing"] and grounds["unknown"]:
         own = min(own, 1.0 / (1.0 + math.exp(-max(grounds["odds"], 0.0))))
-    return of_all(own, named, doubted)
+    return no_surer_than_effects(own, named, doubted)
 
 
-def unshared(probability: float, alike: int) -> float:
-    """Return the probability of which `shared` made this one: that of the verdict and the sets alike together."""
+def of_confounded(probability: float, alike: int) -> float:
+    """Return the inverse of `sharing_odds`: the probability of the verdict and the sets confounded with it together."""
     return probability * (1.0 + alike) / (1.0 + probability * alike)
 
 
@@ -202,11 +210,11 @@ def _loudness(explanation: Explanation) -> float:
 
 
 def _share(effect: NamedEffect) -> float:
-    return math.log(max(effect.share, SMALLEST))
+    return math.log(max(effect.share, LEAST_SHARE))
 
 
 def _significance(effect: NamedEffect) -> float:
-    """Return the significance of an effect; 1 of a refitted law, whose columns are judged together by its odds."""
+    """Return the significance of an effect; 1 for a refitted law, whose columns are judged together by its odds."""
     if effect.name == REFITTED_LAW:
         return 1.0
     own = ((p, effect.parameters.get(p.name)) for p in CATALOGUE[effect.name].parameters if not p.optional)
@@ -230,7 +238,7 @@ def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder)
 
 
 def _imitated(name: str, names: Sequence[str], explanation: Explanation) -> float:
-    """Return how well a law of another shape could be what an effect is, see `grounds_of_effect`."""
+    """Return how well a law of another shape can imitate an effect, see `grounds_of_effect`."""
     within_law = explanation.excitation.within_law
     if name == REFITTED_LAW or not within_law(name):
         return 0.0
@@ -242,7 +250,7 @@ def _imitated(name: str, names: Sequence[str], explanation: Explanation) -> floa
 
 
 def _limited(odds: float) -> float:
-    return min(max(odds, -FURTHEST), FURTHEST)
+    return min(max(odds, -MOST_LOG_ODDS), MOST_LOG_ODDS)
 
 
 @cache
@@ -252,19 +260,20 @@ def _weights() -> Mapping[str, Mapping[str, float]]:
 
 
 CREDIBLE = 0.97
-"""The verdict and its alternatives together hold this probability: the rate at which the truth should be among them."""
+"""Probability of the verdict and its alternatives together: the rate at which the true set should be among them."""
 
-MOST = 10
-"""So many alternatives are listed, the likeliest first."""
+MOST_LISTED = 10
+"""Most alternatives that are listed, the likeliest first."""
 
 LONG_ENOUGH = 1.0
-"""A hold: at rest for at least so many seconds."""
+"""Shortest rest [s] that counts as a hold."""
 
 FASTER = 10.0
-"""The factor to another speed."""
+"""Factor between a recorded speed and another one that is recommended."""
 
-REACHED = 0.1
-"""Speed [m/s] that every rig is taken to reach where its limits are not given; else twice the fastest recorded one."""
+USUAL_SPEED = 0.1
+"""Least top speed [m/s] assumed of a rig whose limits are not given; it is at least twice the fastest recorded
+speed."""
 
 LAW_TRAITS = ("static",)
 """Traits of a refitted law: it depends on deflection and surface only."""
@@ -272,9 +281,11 @@ LAW_TRAITS = ("static",)
 
 @dataclass(frozen=True)
 class Alternative:
-    """Another set of effects that the recordings cannot rule out: its probability, and what the recordings lack.
+    """Another set of effects that the recordings cannot rule out.
 
-    log_odds: of the verdict against it, not tempered; left [N]: what its tire leaves, where nothing else is named
+    log_odds: of the verdict against it, not tempered; reason: what the recordings lack to decide, and what to record
+    probability: of the set, not a number where the recordings cannot show it; left [N]: error of its tire, where the
+    verdict names no effect
     """
 
     names: tuple[str, ...]
@@ -287,38 +298,38 @@ class Alternative:
 def alternatives_of(
     explanation: Explanation, dataset: RawDataset, confidence: float, limits: Limits | None = None
 ) -> tuple[Alternative, ...]:
-    """Return the sets that the recordings cannot rule out; confidence: the calibrated probability of the verdict;
-    limits: of the rig, where they are known.
+    """Return the sets that the recordings cannot rule out; confidence: probability of the verdict; limits: of the rig,
+    where they are known.
 
-    First those in which an effect that this motion cannot tell from one of the verdict's stands in its place: they have
-    equal parts of what the verdict gave them (`confidence.shared`). Then the likeliest others until all together hold
-    the probability CREDIBLE: what else the confidence leaves is shared by evidence. A set is not told as likelier
-    beside the verdict than its evidence is: what is left then belongs to sets that nobody has compared.
+    First come the sets that this motion cannot distinguish from the verdict's: each has the same part of the
+    probability that the verdict gave up to them (`sharing_odds`). Then the likeliest others follow, until all together
+    have the probability CREDIBLE; they share the rest of the probability by their evidence. No set gets more than its
+    evidence relative to the verdict's allows; what then remains belongs to sets that were not compared.
 
-    An effect that the excitation cannot show, and one that leaves no trace beside the verdict's refitted law, is an
-    alternative beside the verdict, with the reason.
+    Effects that the excitation cannot show, and those that the verdict's refitted law can imitate, are listed last, in
+    addition to the verdict's own, with the reason.
     """
     best = explanation.model.names
     own = next(e for e in explanation.evidence if set(e.names) == set(best))
     others = [e for e in explanation.evidence if set(e.names) != set(best)]
     whole = max(sum(e.probability for e in others), 1e-300)
     count = len(explanation.confounded)
-    alone = unshared(confidence, count)
+    with_confounded = of_confounded(confidence, count)
     covered, found = confidence, []
     for e in others:
         confounded = e.names in explanation.confounded
         if covered >= CREDIBLE and not confounded:
             continue
-        equal = (alone - confidence) / count if confounded else 0.0
-        left = (1.0 - alone) * e.probability / whole
+        equal = (with_confounded - confidence) / count if confounded else 0.0
+        left = (1.0 - with_confounded) * e.probability / whole
         covered += equal + left
-        told = equal + min(left, confidence * e.probability / max(own.probability, 1e-300))
+        stated = equal + min(left, confidence * e.probability / max(own.probability, 1e-300))
         reason = reason_of(best, e.names, explanation, dataset, limits)
-        found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, told))
+        found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, stated))
     found.sort(key=lambda a: a.names not in explanation.confounded)
-    listed = found[:MOST]
-    told_of = {frozenset(a.names) for a in listed}
-    beside_law = {n: (*best, n) for n in explanation.within_law if frozenset((*best, n)) not in told_of}
+    listed = found[:MOST_LISTED]
+    listed_sets = {frozenset(a.names) for a in listed}
+    beside_law = {n: (*best, n) for n in explanation.within_law if frozenset((*best, n)) not in listed_sets}
     reasons = {n: reason_of(best, names, explanation, dataset, limits) for n, names in beside_law.items()}
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan"))
@@ -334,7 +345,7 @@ def reason_of(
     dataset: RawDataset,
     limits: Limits | None = None,
 ) -> str:
-    """Return what the recordings lack to tell two sets apart, as an action."""
+    """Return what the recordings lack to decide between two sets, and what to record: "no hold: hold 10 s at 15 mm"."""
     differing = [set(_traits(n)) for n in set(names) ^ set(other)]
     common = set.intersection(*differing) if differing else set()
     lacks = insufficient_excitation(explanation, dataset, limits)
@@ -354,7 +365,7 @@ def reason_of(
 def insufficient_excitation(
     explanation: Explanation, dataset: RawDataset, limits: Limits | None = None
 ) -> list[str]:
-    """Return what the recordings lack that tells effects apart, each as an action."""
+    """Return what the recordings lack to distinguish effects, each with what to record."""
     timed = explanation.excitation.timed
     lacks = []
     if not timed:
@@ -380,7 +391,7 @@ def _another_speed(dataset: RawDataset, limits: Limits | None) -> str:
     """Return a speed far from those recorded, with its unit: ten times the typical one where the rig reaches that."""
     speeds = np.concatenate([np.abs(e.motion.rate) for e in dataset.experiments])
     typical, fastest = float(np.sqrt(np.mean(speeds**2))), float(speeds.max())
-    reached = max(2.0 * fastest, REACHED) if limits is None else limits.fastest
+    reached = max(2.0 * fastest, USUAL_SPEED) if limits is None else limits.fastest
     speed = FASTER * typical if FASTER * typical <= reached else typical / FASTER
     return f"{float(f'{1e3 * speed:.2g}'):g} mm/s"
 

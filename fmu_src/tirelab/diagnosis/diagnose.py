@@ -28,7 +28,7 @@ from .acceptance import (
     without_unlikely,
 )
 from .confidence import (
-    REACHED,
+    USUAL_SPEED,
     Alternative,
     alternatives_of,
     confidence_of,
@@ -290,9 +290,9 @@ def _limits_of(data: _Data) -> Limits:
     """Return the limits of a rig that drove these recordings, and can drive twice as fast."""
     deepest = data.samples.max_deflection
     if not data.timed:
-        return Limits(deepest=deepest, fastest=REACHED)
+        return Limits(deepest=deepest, fastest=USUAL_SPEED)
     fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in data.samples.experiments)
-    return Limits(deepest=deepest, fastest=max(REACHED, fastest))
+    return Limits(deepest=deepest, fastest=max(USUAL_SPEED, fastest))
 
 
 __all__ = ["PoorRecording", "Recorded", "catalogue_names", "diagnose"]

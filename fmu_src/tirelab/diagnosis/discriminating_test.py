@@ -1,10 +1,10 @@
-"""The discriminating test: the waveform on which two fitted models differ most, whatever their parameters then do.
+"""The discriminating test: the waveform on which two fitted models differ most, after a refit of the alternative.
 
-For every waveform that the rig can drive, both tires are simulated; what a refit of the alternative's own parameters
-could take up is projected out of their difference (a T-optimal design, Atkinson & Fedorov 1975). The remainder is
-judged as a diagnosis will judge it: by what it costs in log likelihood beside the noise and what the forms of the
-accepted effects usually miss on that waveform (`selection.search`). Noise alone would call a test decisive whose
-difference a slightly wrong form leaves as well.
+For every waveform that the rig can drive, both tires are simulated. The part of their difference that a refit of the
+alternative's own parameters could follow is projected out (a T-optimal design, Atkinson & Fedorov 1975). The rest is
+judged as in a diagnosis, by its log likelihood under the noise and the usual form errors of the accepted effects on
+that waveform (`selection.search`). With the noise alone, a test would count as decisive whose difference a slightly
+wrong form causes as well.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from ..estimation.findings import FittedModel
 from ..planning.waveforms import WAVEFORMS, Limits, sample_times
 from ..preprocessing.motion import FloatArray
-from ..regressors.dataset import ROWS
+from ..regressors.dataset import BLOCKS
 from ..report.titles import question
 from ..selection.search import beside_noise
 from ..simulation.simulate import simulate
@@ -28,8 +28,8 @@ DECISIVE = 5.7
 and deviation S; from here S^2/2 - 1.645 S > ln 1000, odds of 1000 to 1 in nineteen of twenty such tests."""
 
 
-FAINT = 0.01
-"""Distance of a sample, in units of the noise, below which no number is told."""
+INVISIBLE = 0.01
+"""Distance of a sample, in units of the noise, below which the message gives no number."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,8 @@ class DiscriminatingTest:
     """The test on which two sets of effects differ most.
 
     between: the two sets; gain: expected log likelihood ratio; separation: expected distance in units of the noise, all
-    samples together; typical: root mean square distance of one sample in units of the noise; missed: the same of what
-    the forms of the accepted effects may miss
+    samples together; typical: root mean square distance of one sample in units of the noise; missed: root mean square
+    of the form errors of the accepted effects, in the same unit; ground: whether the test is on a surface
     """
 
     test: Test
@@ -77,7 +77,7 @@ class DiscriminatingTest:
             differ += f", {self.typical / self.missed:.2g} times what the forms of the effects may miss"
         if not self.sufficient:
             none = f"No motion within the rig's limits decides {asked}: the forces would differ by"
-            if self.typical < FAINT:
+            if self.typical < INVISIBLE:
                 return f"{none} less than a hundredth of the noise."
             return f"{none} at most {differ} ({self.test.name}{place})."
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
@@ -107,7 +107,7 @@ class DiscriminatingTest:
 def discriminate(
     accepted: FittedModel, alternative: FittedModel, noise: float, limits: Limits
 ) -> DiscriminatingTest:
-    """Return the test within `limits` that tells the two fitted models apart best.
+    """Return the test within `limits` that distinguishes the two fitted models best.
 
     noise [N]: of one sample. The alternative may follow the accepted model with its free parameters.
     """
@@ -138,10 +138,12 @@ def discriminate(
 
 
 def expected_gain(samples: int, different: float, missed: float) -> float:
-    """Return the expected log likelihood ratio of two sets whose forces differ so much, where the forms of the true one
-    miss so much; both root mean squares in units of the noise of one sample.
+    """Return the expected log likelihood ratio of two sets on this many samples.
+
+    different: root mean square difference of their forces; missed: root mean square of the true set's form errors; both
+    in units of the noise of one sample
     """
-    blocks = min(samples, ROWS)
+    blocks = min(samples, BLOCKS)
     averaged = samples / blocks
     law = beside_noise(blocks).above(missed * math.sqrt(averaged))
     left = blocks + samples * missed**2

@@ -41,7 +41,7 @@ noise alone carry an end away by more than a few samples that count as one."""
 LOCATED = 1e-3
 """Chance, over all spans of all coordinates together, of reporting any span in noise alone."""
 
-FAINT = 0.35
+MEAN_DIFFERS = 0.35
 """Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
 
 LEAST, DENSER = 0.03, 1.5
@@ -249,7 +249,7 @@ class _Bins:
         """
         unit = self.variance * self.counted(self.numbers) / np.maximum(self.numbers, 1.0)
         usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
-        least = np.maximum(0.5 * usual * self.numbers, FAINT * np.sqrt(self.variance * self.numbers))
+        least = np.maximum(0.5 * usual * self.numbers, MEAN_DIFFERS * np.sqrt(self.variance * self.numbers))
         return (
             self.excess - np.maximum(self.usual, DENSE * self.variance),
             unit * (self.means - 1.0) - np.maximum(self.usual, DENSE * unit),

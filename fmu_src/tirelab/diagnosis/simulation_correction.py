@@ -1,20 +1,20 @@
-"""A simulation of others beside which effects are looked for, and its correction as something that runs.
+"""The diagnosis of a user's own simulation: its elastic law as the baseline, and its correction as an FMU.
 
-The simulated force is that of the recordings or of an FMU. Its elastic law is identified from it as from a recording:
-that of a tire on the ground, or, of a part that pulls or has no law of a tire, a straight line of a part that is held
-at both ends (a damper has hardly any slope). What is diagnosed is
+The simulated force stands in the recordings or comes from an FMU. Its elastic law is identified from it as from a
+recording: the law of a tire on the ground or, for a part that pulls or does not follow such a law, the straight line of
+a part that is held at both ends (that of a damper has hardly any slope). What is diagnosed is
 
     F - F_believed + law(x)
 
-with that law as the baseline: the misfit is that of the simulation, F - F_believed, whatever it holds beside its
-law, and effects that grow with the load know the load. Effects before the elastic law (an offset or a lag of the
-deflection, a spring in series) change the deflection that the simulation is given; all others are an additional force:
+with that law as the baseline. The misfit is then F - F_believed, that of the simulation, whatever it contains besides
+its law, and effects that grow with the load have the load. Effects before the elastic law (an offset or a lag of the
+deflection, a series spring) change the deflection that the simulation is given; all others are an additional force:
 
     F = F_simulation(x_t) + corrected tire(x) - law(x_t),    x_t = x after the effects before the law
 
-Where only the simulation's force is known, in a column of the recording, x_t = x: everything is an additional force.
-So it is where the simulation with the other deflection is WORSE than with the force that its law would add: the law is
-then no stand-in for its stiffness.
+Where only the simulated force is known, as a column of the recording, x_t = x and every effect is an additional force.
+So it is if changing the deflection leaves an error more than FORCE_FROM times that of the additional force: the law
+then does not represent the stiffness of the simulation.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ def believed_force(recording: Recording) -> FloatArray:
 
 CORRECTION = "Correction.fmu"
 
-WORSE = 1.1
+FORCE_FROM = 1.1
 """Error with the other deflection over that with the additional force from which the force is delivered."""
 
 
@@ -232,7 +232,7 @@ def deliver(folder: Path, believed: Believed, corrected: TireModel, report: Prog
     pairs = list(zip(believed.fitted, forces, strict=True))
     with_other = rmse([r.force + believed_force(r) - simulate(believed.tire, r) - f for r, f in pairs])
     with_force = rmse([r.force - simulate(corrected, r) for r in believed.fitted])
-    if with_other <= WORSE * with_force:
+    if with_other <= FORCE_FROM * with_force:
         return replace(moved, forces=forces)
     remark = (
         "an effect acts before the simulation, yet is delivered as an additional force: given the other deflection the "

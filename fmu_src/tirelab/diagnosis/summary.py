@@ -17,7 +17,7 @@ from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 from .verdict import Fit
 
-MOST = 3
+MOST_NAMED = 3
 """Alternatives that are named in the sentences; all stand in `alternative_details` of diagnosis.json."""
 
 REPEATS = 0.1
@@ -110,18 +110,17 @@ def _remainder(regressions: Sequence[ResidualModel]) -> str:
 def _alternatives(names: Sequence[str], alternatives: Sequence[Alternative]) -> str:
     """Return the sets that the recordings cannot rule out, as differences from the verdict's `names`.
 
-    Something unknown in them acts beside every alternative.
-
-    Each reason is said once, with all sets that it holds for; beyond the MOST likeliest sets only their number is said.
+    Something unknown in the verdict belongs to every alternative too. Each reason is given once, with all sets to which
+    it applies; of sets beyond the MOST_NAMED likeliest only the number is given.
     """
     by_reason: dict[str, dict[str, list[str]]] = {}
     likeliest = sorted(
         alternatives, key=lambda a: -a.probability if math.isfinite(a.probability) else math.inf
     )
-    for alternative in likeliest[:MOST]:
+    for alternative in likeliest[:MOST_NAMED]:
         what, how = replaced(names, [*alternative.names, *(n for n in names if n == UNKNOWN)])
         by_reason.setdefault(alternative.reason, {}).setdefault(how, []).append(what)
-    cannot, others = "These recordings cannot rule out", len(alternatives) - MOST
+    cannot, others = "These recordings cannot rule out", len(alternatives) - MOST_NAMED
     more = f" {others} more {'are' if others > 1 else 'is'} listed below." if others > 0 else ""
     sets_of = {
         reason: listed([f"{listed(what, 'or')} {how}".strip() for how, what in by_how.items()], "or")

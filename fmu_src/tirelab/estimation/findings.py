@@ -1,7 +1,7 @@
-"""What the estimation hands to the diagnosis: effects, sets that were compared, fitted models, and the remainder.
+"""The results of the estimation: named effects, the sets that were compared, fitted models, and the remainder.
 
-A parameter's uncertainty includes the error of the forms. The remainder is what the named effects leave beyond the
-noise: how much, where, and on what it depends.
+The uncertainty of a parameter includes the form errors. The remainder is the part of the misfit beyond the noise that
+the named effects leave: how large it is, where it lies, and on what it depends.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ FloatArray = NDArray[np.float64]
 
 
 SHAPE_INDICES = range(2, COMMON)
-"""Where the shape stands among the values of a refitted law."""
+"""Indices of the parameters of the shape among those of a refitted law."""
 
 DETERMINED = 0.5
-"""Part of the prior's standard deviation below which the recordings determine a parameter."""
+"""A parameter counts as determined by the recordings if its standard deviation is below this part of the prior's."""
 
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """value and its standard deviation, in the parameter's unit; determined: whether the recordings say more than the
-    prior did.
+    """Value and standard deviation of a parameter in its unit; determined: whether the recordings determine it, and not
+    its prior.
     """
 
     owner: str
@@ -49,8 +49,8 @@ class FittedParameter:
 def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
     """Return all fitted parameters; of a refitted law the changes of A and B on each surface.
 
-    Their covariance is that of Laplace's approximation with the variance V of noise and discrepancy, beside the forms'
-    errors.
+    Their covariance is that of Laplace's approximation, with the variance V of noise and discrepancy and with the form
+    errors as further coefficients.
     """
     slopes = fit.jacobian
     if not slopes.shape[1]:
@@ -70,7 +70,7 @@ def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
 
 
 def _covariance(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return (S^T S + 1)^-1 from the singular values of S: inverting the sum loses what is small beside the largest."""
+    """Return (S^T S + 1)^-1 from the singular values of S; inverting the sum would lose the small ones to rounding."""
     triangle = np.linalg.qr(
         np.concatenate([slopes, np.zeros_like(slopes, shape=(slopes.shape[1],) * 2)]), mode="r"
     )
@@ -79,7 +79,7 @@ def _covariance(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[FittedParameter]:
-    """Return the changes of A and B on each surface: those common to all and its own together."""
+    """Return the changes of A and B on each surface, each the sum of the common change and that of the surface."""
     at = {p.index: i for i, p in enumerate(fit.problem.parameters) if p.owner == LAW}
     if not at:
         return []
@@ -98,23 +98,24 @@ def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[FittedParame
     return found
 
 
-BINS = 15
-"""Parts of a coordinate's range in which the mean remainder is taken."""
+REMAINDER_BINS = 15
+"""Number of parts of a coordinate's range in which the mean of the remainder is taken."""
 
 STRUCTURED = 6.0
-"""Chi-square per bin of the mean remainder above which it depends on a coordinate: coloured noise reaches 2 to 3."""
+"""Chi-square per bin of these means above which the remainder depends on the coordinate; coloured noise reaches 2 to
+3."""
 
 UNEXPLAINED_SIZE = LIKE_NOISE
-"""Size of a remainder beyond which it is unexplained: more than the noise."""
+"""Size of a remainder, in units of the noise, beyond which it is unexplained."""
 
 UNEXPLAINED_SHARE = 0.1
-"""Share of the misfit beyond which a remainder is unexplained, whatever the forms of the named effects may miss."""
+"""Share of the misfit beyond which a remainder is unexplained, even if the form errors account for it."""
 
 
 @dataclass(frozen=True)
 class Dependence:
-    """share: of the remainder's power that a function of the coordinate follows; begin, end: where most of it lies, in
-    the coordinate's unit.
+    """Dependence of the remainder on a coordinate; share: of the remainder's power that a function of it follows;
+    begin, end: part of the range in which most of that lies, in the coordinate's unit.
     """
 
     coordinate: str
@@ -125,10 +126,12 @@ class Dependence:
 
 @dataclass(frozen=True)
 class Remainder:
-    """share: of the misfit's power beyond the noise; size: root mean square over the noise of the recorded samples;
-    force [N]; depends: coordinates, the strongest first; uncompared: share of its power that lies where no set is
-    compared with another, at sharp turns of the motion or quicker than the blocks; of_forms: share of its power that
-    the errors of the named effects' forms account for.
+    """What a set leaves of the misfit beyond the noise.
+
+    share: its part of the misfit's power beyond the noise; size: its root mean square over the noise of the recorded
+    samples; force [N]: its root mean square; depends: coordinates on which it depends, the strongest first uncompared:
+    share of its power by which sets are not compared: in sharp turns of the motion, or quicker than the blocks
+    of_forms: share of its power that the form errors of the named effects account for
     """
 
     share: float
@@ -153,13 +156,13 @@ class Remainder:
 
     @property
     def unexplained(self) -> bool:
-        """Whether it is something that no named effect explains, and not the error of their forms."""
+        """Whether no named effect explains it, not even by the error of its form."""
         beyond_forms = self.size * np.sqrt(1.0 - self.of_forms) > UNEXPLAINED_SIZE
         return bool(beyond_forms or (self.size > UNEXPLAINED_SIZE and self.share > UNEXPLAINED_SHARE))
 
 
 def remainder_of(fit: Fit) -> Remainder:
-    """Return what a fitted set leaves beyond the noise of the averaged misfit, each block for its samples."""
+    """Return the remainder of a fitted set; each block counts with the number of its samples."""
     dataset = fit.problem.dataset
     counts, sizes, noises, levels = np.array(
         [(e.counts.sum(), e.size, e.noise, e.floor.level) for e in dataset.experiments]
@@ -182,19 +185,20 @@ def remainder_of(fit: Fit) -> Remainder:
 
 
 def _of_forms(fit: Fit) -> float:
-    """Return the share of what a fitted set leaves beyond the noise that the errors of its forms account for."""
+    """Return the share of the remainder of a fitted set that its form errors account for."""
     count = fit.residual.size
-    beyond = fit.unformed - count * (1.0 + fit.form_error**2)
+    beyond = fit.beyond_forms - count * (1.0 + fit.form_error**2)
     return float(1.0 - np.clip(beyond / max(fit.power - count, 1e-300), 0.0, 1.0))
 
 
 def of_the_written_tire(
     compared: Remainder, before: Sequence[FloatArray], after: Sequence[FloatArray], noise: float
 ) -> Remainder:
-    """Return the remainder of the written tire over all samples as recorded but single ones that stand out.
+    """Return the remainder of the written tire over all recorded samples without single outliers.
 
-    compared: that of the fitted set in the compared blocks; before, after [N]: what the baseline and the written tire
-    leave of each recording where its gauges follow; noise [N]: of the recorded samples, root mean square
+    compared: remainder of the fitted set in the compared blocks; before, after [N]: residuals of the baseline and of
+    the written tire at the compared samples of each recording; noise [N]: root mean square noise of the recorded
+    samples
     """
     whole, left = (float(np.mean(np.concatenate([v[~spikes(v)] for v in r]) ** 2)) for r in (before, after))
     beyond, missed = max(left - noise**2, 0.0), max(whole - noise**2, 1e-300)
@@ -215,7 +219,7 @@ def of_the_written_tire(
 def _dependences(dataset: Dataset, left: FloatArray) -> tuple[Dependence, ...]:
     found = []
     for name, values in _coordinates(dataset).items():
-        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
+        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, REMAINDER_BINS + 1)))
         if edges.size < 4:
             continue
         which = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
@@ -241,14 +245,14 @@ def _coordinates(dataset: Dataset) -> dict[str, FloatArray]:
     }
 
 
-STEP = 1e-3
-"""Step of the sensitivities, in standard deviations of a parameter's prior."""
+SENSITIVITY_STEP = 1e-3
+"""Step of the difference quotients of the sensitivities, in standard deviations of a parameter's prior."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter's value with its standard deviation and unit; determined: whether the recordings say more of it than
-    its prior did.
+    """A parameter's value with its standard deviation and unit; determined: whether the recordings determine it, and
+    not its prior.
     """
 
     value: float
@@ -261,8 +265,9 @@ class Estimate:
 class NamedEffect:
     """An effect that the baseline lacks.
 
-    parameters: what was fitted of it; share: of the misfit's power beyond the noise left where it alone is taken out
-    probability: that it is there, over all sets that were fitted; grounds: what a calibrated probability rests on
+    parameters: its fitted parameters by their names; share: part of the misfit's power beyond the noise that comes back
+    where it alone is removed; probability: that it is present; grounds: the numbers on which a calibrated probability
+    rests, empty where the probability is that of the ranking
     """
 
     name: str
@@ -274,9 +279,10 @@ class NamedEffect:
 
 @dataclass(frozen=True)
 class Evidence:
-    """One set that was fitted: log posterior over that of the chosen one, chi square per sample, sizes of its effects.
+    """A fitted set compared with the chosen one.
 
-    size: root mean square of what each effect adds to the others, over the noise
+    log_evidence: log posterior minus that of the chosen set; chi_square: per block; size: root mean square of the
+    response that each effect adds to the others, over the noise; probability: of the set in the tempered ranking
     """
 
     names: tuple[str, ...]
@@ -288,7 +294,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class FittedModel:
-    """A set of effects fitted to the recordings in the catalogue's own forms."""
+    """A set of effects fitted to the recordings with the effects' own equations."""
 
     fit: Fit
 
@@ -304,7 +310,7 @@ class FittedModel:
 
     @property
     def baseline(self) -> TireModel:
-        """The tire under the effects."""
+        """The tire without the effects."""
         return self.fit.problem.dataset.tire
 
     @property
@@ -318,14 +324,16 @@ class FittedModel:
         base = simulate(self.tire, motion)
         columns = []
         for i in range(positions.size):
-            step = STEP if positions[i] + STEP <= problem.high[i] else -STEP
+            step = (
+                SENSITIVITY_STEP if positions[i] + SENSITIVITY_STEP <= problem.high[i] else -SENSITIVITY_STEP
+            )
             moved = positions.copy()
             moved[i] += step
             columns.append((simulate(problem.tire(moved), motion) - base) / step)
         return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))
 
     def missed(self, motion: Sampled) -> float:
-        """Return the root mean square [N] of what the forms of its effects may miss on a motion."""
+        """Return the root mean square [N] of the form errors of its effects on a motion."""
         values, dataset, whole = self.fit.values, self.fit.problem.dataset, simulate(self.tire, motion)
         without = {n: tire_of(dataset, {m: v for m, v in values.items() if m != n}) for n in values}
         return math.hypot(*(form_error(n) * size_of(whole - simulate(t, motion)) for n, t in without.items()))
@@ -333,7 +341,7 @@ class FittedModel:
 
 @dataclass(frozen=True)
 class Refitted:
-    """A set of effects fitted once more: its tire, and what it leaves of each recording [N]."""
+    """A set of effects fitted to a part of the data: its tire, and its residual [N] in each recording."""
 
     tire: TireModel
     residuals: tuple[FloatArray, ...]

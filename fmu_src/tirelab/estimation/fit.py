@@ -1,8 +1,10 @@
-"""One set of effects fitted in the catalogue's own forms, and its evidence.
+"""The fit of one set of effects with the effects' own equations, and its evidence.
 
-The fit is penalised least squares in bounds by Levenberg's and Marquardt's steps on the axes of the priors. Minimised
-is |r(q)|^2 / V + sum (q_i / w_i)^2. Steps are cut at the bounds; what stands at a bound and would leave it is held for
-a step. The evidence is Laplace's approximation, with form errors, discrepancy and the law's scales.
+The fit minimises |r(q)|^2 / V + sum (q_i / w_i)^2 within bounds, by the method of Levenberg and Marquardt: penalised
+least squares with the residual r in units of the noise, the positions q on the axes of the priors, their standard
+deviations w and the variance V of noise and discrepancy. Steps are cut at the bounds; a parameter at a bound that would
+leave it is held for that step. The evidence is Laplace's approximation, with form errors, discrepancy and the law's
+scales.
 """
 
 from __future__ import annotations
@@ -31,18 +33,20 @@ LONGEST = 1.5
 """Longest step, in standard deviations of the prior."""
 
 TRUSTED = 0.5
-"""Part of the promised gain that a step must bring for the slopes to be updated only."""
+"""Part of the predicted gain that a step must reach for the slopes to be updated instead of computed anew."""
 
 TRIES = 8
-"""Dampings tried before a step is given up."""
+"""Number of dampings tried before a step is given up."""
 
 DAMPING = (1e-3, 1e-7, 1e7)
-"""Damping at first, least and most."""
+"""Damping factor: first, smallest and largest."""
 
 
 @dataclass(frozen=True)
 class Objective:
-    """residual: (k,) -> (m,); low, high, width (k,): bounds and standard deviations of the prior; variance: V."""
+    """What is minimised: residual: (k,) -> (m,); low, high, width (k,): bounds and standard deviations of the prior;
+    variance: V.
+    """
 
     residual: Callable[[FloatArray], FloatArray]
     low: FloatArray
@@ -51,11 +55,11 @@ class Objective:
     variance: float
 
     def cost(self, residual: FloatArray, q: FloatArray) -> float:
-        """Return what is minimised."""
+        """Return |r|^2 / V + sum (q_i / w_i)^2."""
         return float(residual @ residual) / self.variance + float(np.sum((q / self.width) ** 2))
 
     def jacobian(self, q: FloatArray, at: FloatArray) -> FloatArray:
-        """Return the slopes (m, k) of the residual `at` the positions q."""
+        """Return the slopes (m, k) of the residual at the positions q, where it is `at`."""
         columns = []
         for i in range(q.size):
             aside = q.copy()
@@ -65,32 +69,34 @@ class Objective:
 
 
 @dataclass(frozen=True)
-class Minimum:
-    """positions (k,), the residual there (m,) and its slopes (m, k); settled: whether the last steps gained nothing."""
+class Iterate:
+    """positions (k,), residual (m,) and slopes (m, k) there; converged: whether the last steps gained next to
+    nothing.
+    """
 
     positions: FloatArray
     residual: FloatArray
     jacobian: FloatArray
-    settled: bool
+    converged: bool
     evaluations: int
 
 
-def begun(objective: Objective, start: FloatArray) -> Minimum:
-    """Return where a search begins."""
+def initial_iterate(objective: Objective, start: FloatArray) -> Iterate:
+    """Return the start of a minimisation, moved into the bounds."""
     q = np.clip(start, objective.low, objective.high)
     residual = objective.residual(q)
-    return Minimum(q, residual, objective.jacobian(q, residual), False, 1 + q.size)
+    return Iterate(q, residual, objective.jacobian(q, residual), False, 1 + q.size)
 
 
-def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) -> Minimum:
-    """Return the minimum near a start; a round that gains less than `enough` (twice a log likelihood) is the last.
+def minimise(objective: Objective, start: Iterate, rounds: int, enough: float) -> Iterate:
+    """Return the minimum near a start; it ends with a round that gains less than `enough` (twice a log likelihood).
 
-    Between rounds the slopes are updated by Broyden's rule (Math. Comp. 19 (1965) 577); they are taken anew by
-    difference quotients where a step gains less than they promised, and at the end.
+    Between rounds the slopes are updated by Broyden's rule (Math. Comp. 19 (1965) 577). They are computed anew by
+    difference quotients where a step gains much less than they predicted, and at the end.
     """
     q, residual, slopes = start.positions, start.residual, start.jacobian
     cost = objective.cost(residual, q)
-    damping, evaluations, settled, exact = DAMPING[0], start.evaluations, not q.size, True
+    damping, evaluations, converged, exact = DAMPING[0], start.evaluations, not q.size, True
     for _ in range(rounds if q.size else 0):
         step, left, new = np.zeros_like(q), residual, cost
         for _ in range(TRIES if exact else 1):
@@ -109,7 +115,7 @@ def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) 
             updated = slopes + np.outer((left - foretold) / float(step @ step), step)
             gained, q, residual, cost = cost - new, q + step, left, new
         if exact and small:
-            settled, exact = True, not moved
+            converged, exact = True, not moved
             break
         if moved and not small and gained > TRUSTED * promised:
             slopes, exact = updated, False
@@ -119,7 +125,7 @@ def minimised(objective: Objective, start: Minimum, rounds: int, enough: float) 
     if not exact:
         slopes = objective.jacobian(q, residual)
         evaluations += q.size
-    return Minimum(q, residual, slopes, settled, evaluations)
+    return Iterate(q, residual, slopes, converged, evaluations)
 
 
 def _step(
@@ -143,20 +149,20 @@ LAW_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 """Scales of a group of the law's parameters that are tried (type II)."""
 
 PASSES = 2
-"""Rounds in which the groups' scales are found one after the other."""
+"""Number of rounds in which the scales of the groups are found one after the other."""
 
 FORM_SCALES = (1.0, 3.0, 10.0, 30.0, 100.0)
-"""Scales of the form errors that are tried (type II), of each effect as far as its form is still one."""
+"""Scales of the form errors that are tried (type II); the form error of an effect is at most the whole effect."""
 
 
 @dataclass(frozen=True)
 class Linearised:
     """A fitted set near its optimum, in units of the noise.
 
-    residual (m,); slopes (m, k); positions (k,) on the priors' axes; forms: columns (m, f) of each effect's form errors
-    errors: of each form, as declared
-    groups (k,): numbers from 1 on of parameters whose prior has a scale to be found, 0: the prior is as declared
-    widths (k,): standard deviations of the priors; more than 1 where a parameter's own scale was found
+    residual (m,); slopes (m, k); positions (k,) on the axes of the priors
+    forms: for each effect the columns (m, f) of its form errors; errors: for each effect its form error, as declared
+    groups (k,): number of the group of a parameter whose prior's scale is to be found; 0: the prior is as declared
+    widths (k,): standard deviations of the priors; more than 1 for a parameter with a scale of its own
     """
 
     residual: FloatArray
@@ -171,13 +177,13 @@ class Linearised:
 @dataclass(frozen=True)
 class LaplaceEvidence:
     """log_likelihood: marginal; variance: V of the discrepancy; scales: of the form errors of each effect
-    unformed (m,): residual less what the form errors and the parameters that give way explain of it.
+    beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them.
     """
 
     log_likelihood: float
     variance: float
     scales: FloatArray
-    unformed: FloatArray
+    beyond_forms: FloatArray
 
 
 def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEvidence:
@@ -185,27 +191,27 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
     power = float(fit.residual @ fit.residual)
     gram = fit.slopes.T @ fit.slopes
     width = fit.widths
-    best = _of_parameters(power, gram, fit.positions, width, discrepancy)
+    best = _parameter_evidence(power, gram, fit.positions, width, discrepancy)
     for _ in range(PASSES if fit.groups.any() else 0):
         for group in np.unique(fit.groups[fit.groups > 0]):
             for scale in LAW_SCALES:
                 trial = np.where(fit.groups == group, scale, width)
-                value = _of_parameters(power, gram, fit.positions, trial, discrepancy)
+                value = _parameter_evidence(power, gram, fit.positions, trial, discrepancy)
                 if value[0] > best[0]:
                     best, width = value, trial
-    cost = _cost_of(fit.widths)
+    cost = _cost_of_scales(fit.widths)
     if not fit.forms:
         return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual)
-    found = _beside_forms(fit, width, discrepancy)
+    found = _evidence_with_forms(fit, width, discrepancy)
     return replace(found, log_likelihood=found.log_likelihood - cost)
 
 
-def _cost_of(scales: FloatArray) -> float:
-    """Return what scales cost under half-Cauchy priors, beside those of 1."""
+def _cost_of_scales(scales: FloatArray) -> float:
+    """Return the log of the half-Cauchy prior density at 1 over that at each scale, summed."""
     return float(np.sum(np.log1p(scales**2) - math.log(2.0)))
 
 
-def _of_parameters(
+def _parameter_evidence(
     power: float, gram: FloatArray, positions: FloatArray, width: FloatArray, discrepancy: Discrepancy
 ) -> tuple[float, float]:
     """Return the evidence at given standard deviations of the prior, without form errors, at the best V."""
@@ -213,15 +219,15 @@ def _of_parameters(
     curvatures = np.maximum(np.linalg.eigvalsh(gram * np.outer(width, width)), 0.0) if width.size else width
     determinant = np.log1p(curvatures[:, None] / variances).sum(axis=0)
     prior = float(np.sum((positions / width) ** 2))
-    values = -0.5 * (power / variances + prior + determinant) + discrepancy.beside(variances)
+    values = -0.5 * (power / variances + prior + determinant) + discrepancy.terms_of(variances)
     best = int(np.argmax(values))
     return float(values[best]), float(variances[best])
 
 
-def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:
-    """Return the evidence where the form errors explain what they can, and the parameters give way to them.
+def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:
+    """Return the evidence with form errors: linear coefficients beside the parameters, which are refitted with them.
 
-    The scales of all effects are found together first, then one after the other.
+    One scale for all effects is found first, then those of the effects one after the other.
     """
     variances = discrepancy.grid()
     k, counts = width.size, [f.shape[1] for f in fit.forms]
@@ -230,17 +236,19 @@ def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) 
     # The slopes are those of the residual: a step along them takes the positions the other way.
     pull = np.concatenate([-fit.positions / width, np.zeros(sum(counts))])
     power = float(fit.residual @ fit.residual)
-    fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.beside(variances)
-    # What the parameters alone would still gain is not counted: a fit that stopped early must not win by it.
-    alone, _, _ = _gained(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
+    fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.terms_of(variances)
+    # The gain that the parameters alone could still make is not counted: a fit that stopped early must not win by it.
+    alone, _, _ = _linear_gain(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
     most = 1.0 / np.array(fit.errors)
 
     def of(scales: FloatArray) -> tuple[float, FloatArray, int, FloatArray]:
         wide = np.concatenate([width, np.repeat(scales, counts)])
-        gained, determinant, given_way = _gained(gram * np.outer(wide, wide), moment * wide, pull, variances)
+        gained, determinant, given_way = _linear_gain(
+            gram * np.outer(wide, wide), moment * wide, pull, variances
+        )
         values = fixed + 0.5 * (gained - alone - determinant)
         best = int(np.argmax(values))
-        return float(values[best]) - _cost_of(scales), scales, best, given_way(best) * wide
+        return float(values[best]) - _cost_of_scales(scales), scales, best, given_way(best) * wide
 
     best = max((of(np.minimum(scale, most)) for scale in FORM_SCALES), key=lambda f: f[0])
     for i in range(len(counts)) if len(counts) > 1 else ():
@@ -249,15 +257,18 @@ def _beside_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) 
             (best, *(of(s) for s in own if s[i] <= most[i] and s[i] != best[1][i])), key=lambda f: f[0]
         )
     likelihood, scales, index, coefficients = best
-    unformed = fit.residual - columns @ coefficients
-    return LaplaceEvidence(likelihood, float(variances[index]), scales, unformed)
+    beyond_forms = fit.residual - columns @ coefficients
+    return LaplaceEvidence(likelihood, float(variances[index]), scales, beyond_forms)
 
 
-def _gained(
+def _linear_gain(
     gram: FloatArray, moment: FloatArray, pull: FloatArray, variances: FloatArray
 ) -> tuple[FloatArray, FloatArray, Callable[[int], FloatArray]]:
-    """Return for each V what linear coefficients gain (twice a log likelihood), the log determinant of their curvature,
-    and the coefficients; pull: how far each already is from its prior's centre, in standard deviations.
+    """Return for each V the gain of linear coefficients (twice a log likelihood), the log determinant of their
+    curvature, and a function from the index of V to the coefficients.
+
+    gram (k, k), moment (k,): normal equations; pull (k,): distance of each coefficient from the centre of its prior, in
+    standard deviations
     """
     if not moment.size:
         none = np.zeros(variances.size)
@@ -272,28 +283,28 @@ def _gained(
 
 
 LAW_LOOSE = 3.0
-"""Scale of the law's prior while it is fitted; the evidence finds its own."""
+"""Scale of the law's prior during the fit; afterwards the evidence finds the scale."""
 
-REWEIGHTED = 4
-"""Times that a fit is repeated with the V that it led to."""
+REWEIGHTINGS = 4
+"""Number of times that a fit is repeated with the V found by the last one."""
 
 OPTIONAL_GAIN = 60.0
-"""What optional forms may gain in log likelihood."""
+"""Largest gain in log likelihood expected from optional parameters."""
 
 ROUNDS = 20
-ENOUGH = 0.2
-"""Rounds of a fit, and the gain (twice a log likelihood) below which it ends."""
+LEAST_GAIN = 0.2
+"""Most rounds of a fit, and the gain (twice a log likelihood) of a round below which it ends."""
 
 
 @dataclass(frozen=True)
 class Fit:
     """A fitted set.
 
-    values: of every effect; log_likelihood: marginal (Laplace); variance: V of the discrepancy
-    residual (m,), jacobian (m, k): in units of the noise; near: what the evidence is made of
+    positions (k,): of its free parameters; log_likelihood: marginal (Laplace); variance: V of the discrepancy
+    residual (m,), jacobian (m, k): in units of the noise; near: the linearisation from which the evidence is computed
     forms (m, f): columns of the form errors, scaled
-    unformed: sum of squares that the form errors leave, the parameters giving way
-    sizes: root mean squares of what each effect adds to the others
+    beyond_forms: sum of squares that form errors and refitted parameters leave
+    sizes: root mean square of the response that each effect adds to the others, by its name
     """
 
     problem: EstimationProblem
@@ -304,7 +315,7 @@ class Fit:
     jacobian: FloatArray
     near: Linearised
     forms: FloatArray
-    unformed: float
+    beyond_forms: float
     sizes: Mapping[str, float]
     evaluations: int
 
@@ -325,60 +336,60 @@ class Fit:
 
     @property
     def slopes(self) -> FloatArray:
-        """What may give way (m, k + f): the parameters, and the forms of what they size."""
+        """Columns (m, k + f) of all linear coefficients: of the parameters and of the form errors."""
         return np.concatenate([self.jacobian, self.forms], axis=1)
 
     @property
     def power(self) -> float:
-        """Sum of squares left, in units of the noise."""
+        """Sum of squares of the residual, in units of the noise."""
         return float(self.residual @ self.residual)
 
     @property
     def form_error(self) -> float:
-        """Root mean square of what the forms of its effects may miss, in units of the noise."""
+        """Root mean square of the form errors of all its effects, in units of the noise."""
         return math.sqrt(sum((form_error(name) * size) ** 2 for name, size in self.sizes.items()))
 
-    def judged(self, discrepancy: Discrepancy) -> Fit:
-        """Return the fit as it is judged under another discrepancy."""
+    def with_discrepancy(self, discrepancy: Discrepancy) -> Fit:
+        """Return the fit with its evidence under another discrepancy."""
         evidence = laplace_evidence(self.near, discrepancy.blurred(self.problem.dataset.rounding_error))
         return replace(
             self,
             log_likelihood=evidence.log_likelihood,
             variance=evidence.variance,
             forms=_scaled(self.near.forms, evidence.scales, self.residual.size),
-            unformed=float(evidence.unformed @ evidence.unformed),
+            beyond_forms=float(evidence.beyond_forms @ evidence.beyond_forms),
         )
 
 
 def fitted(
     dataset: Dataset, starts: Sequence[Values], discrepancy: Discrepancy, variance: float, wanted: float
 ) -> Fit:
-    """Return a set fitted from several starts: its plain forms first, then the best of them with the optional ones.
+    """Return a set fitted from several starts: first without the optional parameters, then the best of these with them.
 
-    variance: V to begin with; the fit is repeated where its own is another; wanted: a log likelihood; what is further
-    behind it than optional forms may gain is not refined
+    variance: V at the start; the fit is repeated where it leads to another one; wanted: a log likelihood: a fit that is
+    further below it than optional parameters may gain is not refined
     """
-    plain = [_climbed(problem_of(dataset, s, plain=True), s, discrepancy, variance) for s in starts]
+    plain = [_optimise(problem_of(dataset, s, plain=True), s, discrepancy, variance) for s in starts]
     best = max(plain, key=lambda f: f.log_likelihood)
     if best.log_likelihood < wanted - OPTIONAL_GAIN:
         return best
     whole = problem_of(dataset, best.values, plain=False)
     if len(whole.parameters) == len(best.problem.parameters):
         return best
-    free = _climbed(whole, best.values, discrepancy, best.variance)
+    free = _optimise(whole, best.values, discrepancy, best.variance)
     return max((best, free), key=lambda f: f.log_likelihood)
 
 
-def _climbed(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
+def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
     loose = np.where(problem.groups > 0, LAW_LOOSE, 1.0)
-    positions = problem.positions(start, awake=True)
+    positions = problem.positions(start, off_bounds=True)
     width = loose * problem.widths(positions)
     objective = Objective(problem.residual, problem.low, problem.high, width, variance)
-    found = begun(objective, positions)
+    found = initial_iterate(objective, positions)
     best: Fit | None = None
-    for _ in range(REWEIGHTED):
-        found = minimised(objective, found, ROUNDS, ENOUGH)
-        fit = _judged(problem, found, discrepancy)
+    for _ in range(REWEIGHTINGS):
+        found = minimise(objective, found, ROUNDS, LEAST_GAIN)
+        fit = _with_evidence(problem, found, discrepancy)
         if best is None or fit.log_likelihood > best.log_likelihood:
             best = fit
         width = loose * problem.widths(found.positions)
@@ -389,7 +400,7 @@ def _climbed(problem: EstimationProblem, start: Values, discrepancy: Discrepancy
     return best
 
 
-def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy) -> Fit:
+def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Discrepancy) -> Fit:
     curves = problem.curves(found.positions)
     forms = form_errors(curves, problem.dataset, smooth_functions(problem.dataset))
     held = _held(problem, found)
@@ -416,7 +427,7 @@ def _judged(problem: EstimationProblem, found: Minimum, discrepancy: Discrepancy
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
     )
-    return fit.judged(discrepancy)
+    return fit.with_discrepancy(discrepancy)
 
 
 def _scaled(forms: Sequence[FloatArray], scales: FloatArray, rows: int) -> FloatArray:
@@ -425,8 +436,8 @@ def _scaled(forms: Sequence[FloatArray], scales: FloatArray, rows: int) -> Float
     return np.concatenate([np.zeros((rows, 0)), *scaled], axis=1)
 
 
-def _held(problem: EstimationProblem, found: Minimum) -> NDArray[np.bool_]:
-    """Return which parameters stand at a bound that they would leave."""
+def _held(problem: EstimationProblem, found: Iterate) -> NDArray[np.bool_]:
+    """Return which parameters (k,) stand at a bound beyond which the residual would fall."""
     uphill = found.jacobian.T @ found.residual
     at_low, at_high = found.positions <= problem.low, found.positions >= problem.high
     return np.asarray((at_low & (uphill > 0.0)) | (at_high & (uphill < 0.0)))

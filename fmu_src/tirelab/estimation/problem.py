@@ -1,16 +1,16 @@
-"""A set of effects as a fit: free parameters in, a tire and what it leaves of the recordings out.
+"""A set of effects as an estimation problem: from the values of its free parameters to a tire and its residual.
 
-A free parameter is counted on the axis of its prior: 0 at the prior's centre, 1 one standard deviation beyond. What the
-form of a fitted effect may miss is its own response, modulated smoothly by what the recording shows:
+The position of a free parameter is measured on the axis of its prior: 0 at the centre of the prior, 1 one standard
+deviation above it. The discrepancy that the form of a fitted effect may cause is its own response, modulated smoothly:
 
     discrepancy = sum_e c_e f_e scale_e sum_j z_j phi_j,   z_j ~ N(0, 1)
 
 c_e: response of effect e as fitted; f_e: its form error, declared from measurements; phi_j: smooth functions of
-deflection, direction, way since the last turn, speed, time and surface, together of mean square 1. An effect beside
-another one that only mends the other one's form explains nothing that these do not. The law's discrepancy is the law
-times functions of the deflection, on each surface. Each `scale` is found by the evidence under a half-Cauchy prior (A.
-Gelman, Bayesian Analysis 1 (2006) 515), since real forms may be further from the catalogue's than the measured ones;
-no form misses more than its whole effect.
+deflection, direction, path since the last reversal, speed, time and surface, of mean square 1 together. A second effect
+that would only correct the form of the first explains nothing that these functions do not. The discrepancy of the law
+is the law times functions of the deflection, on each surface. Each `scale` maximises the evidence under a half-Cauchy
+prior (A. Gelman, Bayesian Analysis 1 (2006) 515), since real forms may differ more from the catalogue's than those that
+were measured; the form error is at most the whole effect.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
@@ -47,22 +47,22 @@ from ..regressors.signature import (
 FloatArray = NDArray[np.float64]
 
 
-AWAKE = 0.3
-"""Where an optional form begins that lies at a bound of its parameter, in standard deviations: at the bound itself some
-have no slope."""
+START_OFFSET = 0.3
+"""Distance, in standard deviations, from its bound at which the fit of an optional parameter starts: at the bound
+itself the slope of some is zero."""
 
 COMMON = 4 + HEIGHTS
-"""Parameters of the law that are common to all surfaces: they come first."""
+"""Number of parameters of the law that are common to all surfaces; they come first."""
 
 
 @dataclass(frozen=True)
 class FreeParameter:
     """owner: the effect's name, or LAW; index: of its parameter there; label, unit: for a reader
-    centre, spread: of the prior, of the logarithm where `logarithm`
-    low, high: bounds on the axis of the prior, minimum, maximum: of the value
-    optional: whether the plain form does without it; plain: its value there
-    group: number of those whose prior has a scale that is found by the evidence, 0: as declared
-    signed: whether it is a strength of either sign, which may lie far beyond its prior's spread: see `widths`
+    centre, spread: of the prior; of the prior of the logarithm if `logarithm`
+    low, high: bounds of the position; minimum, maximum: bounds of the value
+    optional: whether the plain form of the effect keeps it at the value `plain`
+    group: number of the group whose prior's scale is found by the evidence; 0: the prior is as declared
+    signed: whether it is a strength of either sign, which may lie far outside the spread of its prior (see `widths`)
     """
 
     owner: str
@@ -93,16 +93,16 @@ class FreeParameter:
         return min(max((inside - self.centre) / self.spread, self.low), self.high)
 
     @property
-    def awake(self) -> float:
-        """The position at which a fit of the optional forms begins."""
+    def start(self) -> float:
+        """The position from which a fit of an optional parameter starts: its plain value, moved off a bound."""
         start = self.position(self.plain)
         if start <= self.low + 1e-9:
-            return min(self.low + AWAKE, self.high)
-        return max(self.high - AWAKE, self.low) if start >= self.high - 1e-9 else start
+            return min(self.low + START_OFFSET, self.high)
+        return max(self.high - START_OFFSET, self.low) if start >= self.high - 1e-9 else start
 
 
 def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]:
-    """Return what may be fitted of an effect, in the order of its parameters."""
+    """Return the free parameters of an effect, in the order of its parameters."""
     return tuple(
         _free(name, i, p, scales)
         for i, p in enumerate(CATALOGUE[name].parameters)
@@ -111,8 +111,8 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
 
 
 def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
-    """Return what may be fitted of the law: factor and exponent common to all surfaces, bend, twist and heights of the
-    shape, and, with more than one surface, factor and exponent of each beside the common ones.
+    """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and heights of the
+    shape, and with more than one surface a further factor and exponent for each.
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
     spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[HEIGHT] * HEIGHTS]
@@ -167,12 +167,12 @@ def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
 
 
 Values = Mapping[str, tuple[float, ...]]
-"""Of each effect the values of all its parameters; of LAW the values of its free ones."""
+"""For each effect the values of all its parameters; for LAW those of its free ones."""
 
 
 @dataclass(frozen=True)
 class EstimationProblem:
-    """names: of the set; parameters: what is fitted; held: values of everything that is not."""
+    """names: effects of the set; parameters: those that are fitted; held: values of all others."""
 
     dataset: Dataset
     names: tuple[str, ...]
@@ -195,9 +195,11 @@ class EstimationProblem:
         return np.array([p.group for p in self.parameters], dtype=np.int_)
 
     def widths(self, positions: FloatArray) -> FloatArray:
-        """Return the standard deviations of the priors at positions on their axes: 1, but of a strength of either sign
-        that lies beyond 1 what makes it likeliest. A scale of its own gives its prior Cauchy's tails: of other
-        strengths the logarithm is normal, so they may be many times the usual one too.
+        """Return the standard deviations of the priors, on their axes, at these positions (k,).
+
+        They are 1, except for a strength of either sign: there max(|position|, 1), which makes the position likeliest.
+        A scale of its own gives this prior the tails of a Cauchy law. Other strengths have a normal logarithm and may
+        be many times the usual one anyway.
         """
         signed = np.array([p.signed for p in self.parameters], dtype=bool)
         return np.where(signed, np.maximum(np.abs(positions), 1.0), 1.0)
@@ -209,13 +211,15 @@ class EstimationProblem:
             found[p.owner][p.index] = p.value(float(position))
         return {name: tuple(v) for name, v in found.items()}
 
-    def positions(self, values: Values, *, awake: bool = False) -> FloatArray:
-        """Return the positions of values; awake: optional forms that are off begin a little beside it."""
+    def positions(self, values: Values, *, off_bounds: bool = False) -> FloatArray:
+        """Return the positions (k,) of values; off_bounds: those of optional parameters at their plain value are moved
+        off a bound (see `FreeParameter.start`).
+        """
         found = []
         for p in self.parameters:
             value = values[p.owner][p.index]
-            asleep = awake and p.optional and value == p.plain
-            found.append(p.awake if asleep else p.position(value))
+            moved = off_bounds and p.optional and value == p.plain
+            found.append(p.start if moved else p.position(value))
         return np.array(found)
 
     def tire(self, positions: FloatArray) -> TireModel:
@@ -223,7 +227,7 @@ class EstimationProblem:
         return tire_of(self.dataset, self.values(positions))
 
     def curves(self, positions: FloatArray) -> dict[str, FloatArray]:
-        """Return what each effect adds to the others (m,), in units of the noise."""
+        """Return the response (m,) that each effect adds to the others, in units of the noise."""
         values = self.values(positions)
         whole = self.dataset.response(tire_of(self.dataset, values))
         found = {}
@@ -233,13 +237,15 @@ class EstimationProblem:
         return found
 
     def residual(self, positions: FloatArray) -> FloatArray:
-        """Return what that tire leaves, in units of the noise (m,)."""
+        """Return the residual (m,) of the tire at the positions, in units of the noise."""
         left = self.dataset.misfit - self.dataset.response(self.tire(positions))
         return np.where(np.isfinite(left), left, 1e6)
 
 
 def problem_of(dataset: Dataset, values: Values, *, plain: bool) -> EstimationProblem:
-    """Return the problem of the effects whose values are given; plain: the optional forms stay at these values."""
+    """Return the problem of the effects whose values are given; plain: optional parameters at their plain value
+    stay.
+    """
     free: list[FreeParameter] = []
     for name in values:
         own = (
@@ -257,7 +263,7 @@ def law_surfaces(dataset: Dataset) -> int:
 
 
 def law_start(dataset: Dataset) -> tuple[float, ...]:
-    """Return the law's values of the baseline."""
+    """Return the values at which a refitted law is that of the baseline."""
     return (0.0,) * len(parameters_of_law(law_surfaces(dataset)))
 
 
@@ -286,12 +292,13 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
     return arranged(tire, effects)
 
 
-DEPTHS, WAYS = HEIGHTS + 1, (HEIGHTS + 1) // 2
-"""Hats over the deflection, one more than a law's shape has heights, and over it with the sign of the direction."""
+DEFLECTION_HATS, SIGNED_HATS = HEIGHTS + 1, (HEIGHTS + 1) // 2
+"""Numbers of hat functions of the deflection (one more than the heights of a law's shape), and of those of the
+deflection times the sign of the direction and of the path since the last reversal."""
 
 
 def smooth_functions(dataset: Dataset) -> FloatArray:
-    """Return the functions phi (m, k) at the counted blocks, of mean square 1 together."""
+    """Return the functions phi (m, k) of the module's docstring at the counted blocks, of mean square 1 together."""
     many = dataset.experiments
     x = dataset.gathered([e.deflection for e in many])
     rate = dataset.gathered([e.rate for e in many])
@@ -302,9 +309,13 @@ def smooth_functions(dataset: Dataset) -> FloatArray:
     since_turn = dataset.gathered([_since_turn(e.deflection, e.gauge) for e in many]) / max(
         float(np.ptp(x)), 1e-300
     )
-    groups = [_hats(depth, DEPTHS), np.sign(rate)[:, None] * _hats(depth, WAYS)]
-    groups += [_hats(np.sqrt(np.minimum(since_turn, 1.0)), WAYS), _polynomial(time), _polynomial(speed)]
-    if 1 < len(dataset.radii) <= DEPTHS:
+    groups = [_hats(depth, DEFLECTION_HATS), np.sign(rate)[:, None] * _hats(depth, SIGNED_HATS)]
+    groups += [
+        _hats(np.sqrt(np.minimum(since_turn, 1.0)), SIGNED_HATS),
+        _polynomial(time),
+        _polynomial(speed),
+    ]
+    if 1 < len(dataset.radii) <= DEFLECTION_HATS:
         groups.append(np.column_stack([(radius == r).astype(float) for r in dataset.radii]))
     parts = [g / np.sqrt(max(float(np.mean(np.sum(g**2, axis=1))), 1e-300)) for g in groups]
     return np.asarray(np.concatenate(parts, axis=1) / np.sqrt(len(parts)))
@@ -315,7 +326,7 @@ def form_errors(
 ) -> dict[str, FloatArray]:
     """Return for each effect the columns (m, k) of its discrepancy at scale 1, in units of the noise.
 
-    curves (m,): what each effect adds to the others
+    curves (m,): response that each effect adds to the others
     """
     return {
         name: form_error(name) * size_of(curve) * _of_law(dataset)
@@ -331,16 +342,16 @@ def _of_law(dataset: Dataset) -> FloatArray:
     x = dataset.gathered([e.deflection for e in many])
     radius = dataset.gathered([e.surface_radius for e in many])
     force = dataset.stacked([e.baseline for e in many])
-    hats = force[:, None] * _hats((x - x.min()) / max(float(np.ptp(x)), 1e-300), DEPTHS)
+    hats = force[:, None] * _hats((x - x.min()) / max(float(np.ptp(x)), 1e-300), DEFLECTION_HATS)
     columns = [hats]
-    if 1 < len(dataset.radii) <= DEPTHS:
+    if 1 < len(dataset.radii) <= DEFLECTION_HATS:
         columns += [hats * (radius == r)[:, None] for r in dataset.radii]
     whole = np.concatenate(columns, axis=1)
     return np.asarray(whole / np.sqrt(max(float(np.mean(np.sum(whole**2, axis=1))), 1e-300)))
 
 
 def _since_turn(deflection: FloatArray, noise: float) -> FloatArray:
-    """Return how far [m] the tire is from where its direction last changed; noise [m]: of the deflection."""
+    """Return the distance (n,) [m] from the last reversal; noise [m]: of the deflection."""
     direction, _ = branches(deflection, noise)
     begin = np.append(0, np.flatnonzero(np.diff(direction)) + 1)
     turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
@@ -353,7 +364,9 @@ def _hats(place: FloatArray, count: int) -> FloatArray:
 
 
 def _polynomial(values: FloatArray) -> FloatArray:
-    """Return first and second power, each of mean zero and mean square 1; zero where the values are all one."""
+    """Return first and second power, each of mean 0 and mean square 1; one column of zeros where all values are
+    equal.
+    """
     spread = float(np.std(values))
     if spread < 1e-9:
         return np.zeros((values.size, 1))

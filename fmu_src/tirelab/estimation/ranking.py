@@ -1,9 +1,9 @@
-"""Sets of effects ranked by what they leave when they are fitted in the catalogue's own forms.
+"""Sets of effects, fitted with the effects' own equations and ranked by the evidence of these fits.
 
-Sets that the signatures find likely are fitted first, begun at the drawn forms that come nearest to what is still
-missing. From the best of them on, one candidate is taken out and one put in in turn, as long as that may win: what is
-left out begins at the optimum of the larger set, what is put in at that of the smaller one, so no set is judged worse
-than its own subset.
+The sets that the signatures find likely are fitted first, starting from the drawn responses that come nearest to the
+residual. Then the neighbours of the best sets are fitted, with one candidate removed, added or exchanged, as long as
+they may win. A smaller set starts from the optimum of the larger one, a larger set from that of the smaller one, so
+that no set is ranked below a part of itself.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from scipy.linalg import solve_triangular
 
 from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Signature, strengthened
-from ..selection.search import LOST, MOST, PRIOR_ODDS, Discrepancy, discrepancy_of
-from .fit import ENOUGH, Fit, fitted
+from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
+from .fit import LEAST_GAIN, Fit, fitted
 from .problem import Values, law_start, with_readings
 
 FloatArray = NDArray[np.float64]
@@ -28,7 +28,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Addition:
-    """A candidate beside a fit: values to begin at."""
+    """A candidate to be added to a fit, with the values of its parameters to start from."""
 
     name: str
     values: tuple[float, ...]
@@ -37,10 +37,10 @@ class Addition:
 def additions(
     signature: Signature, missing: FloatArray, slopes: FloatArray, variance: float, dataset: Dataset
 ) -> list[Addition]:
-    """Return the best drawn forms of a candidate for what is `missing` (m,), the likeliest first, at most two.
+    """Return the drawn responses of a candidate that follow the residual `missing` (m,) best, at most two, best first.
 
-    slopes (m, k): of what is already fitted, which may give way; variance: V. The second one is of the other kind,
-    plain or with its optional forms, where the first is not.
+    The second one is of the other kind than the first: without or with optional parameters.
+    slopes (m, k): of the parameters already fitted, which are refitted linearly; variance: V
     """
     factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
     across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
@@ -77,16 +77,16 @@ def additions(
     return found
 
 
-def promises(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepancy) -> list[float]:
-    """Return the log likelihood that each candidate may gain beside a fit, by its signature; what is fitted gives way.
+def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepancy) -> list[float]:
+    """Return the gain in log likelihood that each candidate, added to a fit, should bring by its signature.
 
-    Like the marginal likelihood of a set, linearised about the fit, at the best of a few sizes.
+    It is the marginal likelihood linearised about the fit, whose parameters are refitted, at the best of a few sizes.
     """
-    before, variance = discrepancy.profile(base.unformed)
+    before, variance = discrepancy.profile(base.beyond_forms)
     slopes = base.slopes
     factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
     across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
-    left = float(np.sqrt(base.unformed / base.residual.size))
+    left = float(np.sqrt(base.beyond_forms / base.residual.size))
     found = []
     for signature in signatures:
         columns = signature.columns - across.T @ (across @ signature.columns)
@@ -96,7 +96,7 @@ def promises(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepanc
         best = -np.inf
         for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
             z = size * turned / (values * size**2 + variance)
-            power = base.unformed - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
+            power = base.beyond_forms - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
             after, new = discrepancy.profile(power)
             determinant = float(np.log1p(values * size**2 / new).sum())
             best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))
@@ -105,42 +105,42 @@ def promises(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepanc
 
 
 BEGUN = 3
-"""Sets of the selection that are fitted before anything else, beside the best one of each size."""
+"""Number of the likeliest sets of the search that are fitted first, in addition to the best one of each size."""
 
 TEMPERATURE = 2.0
-"""Tempering of the posterior odds between sets: fits that stop early and forms that are not quite right."""
+"""Tempering of the log odds between sets, for fits that stop early and forms that are not quite right."""
 
 REACH = TEMPERATURE * LOST
-"""A fitted set this far behind the best in log posterior is not followed up, as in the search but tempered."""
+"""The neighbours of a set this far behind the best in log posterior are not fitted; as LOST of the search, tempered."""
 
 MOST_FITS = 40
-"""Budget: fits of one diagnosis."""
+"""Budget: number of fits of one diagnosis."""
 
 REPEATS = 2
-"""Budget: fits of one set, from the optima of others."""
+"""Budget: number of fits of one set, each from the optimum of another set."""
 
-MOST_EFFECTS = MOST + 1
-"""Effects of a fitted set: one may come in beside those that a search finds."""
+MOST_EFFECTS = MOST_CANDIDATES + 1
+"""Most effects of a fitted set: one more than the search finds."""
 
 PROMISING = 5
-"""Candidates put in beside a fitted set, the most promising first."""
+"""Number of candidates added to a fitted set, those with the largest predicted gain."""
 
 SWAPPED = PROMISING // 2
-"""Candidates put in the place of one of its own."""
+"""Number of candidates tried in place of one effect of a set."""
 
 CORRECTIONS = 3
-"""Budget: times that a set is fitted again with what its blocks leave out."""
+"""Budget: number of times that a set is fitted again with the distortion by its blocks subtracted."""
 
 USUAL_MOVED = 1.2
-"""Factor to another usual error of the forms from which on the sets are judged again."""
+"""Factor between the usual form errors, old and new, from which on the evidence of all sets is computed again."""
 
-HOPE = 8.0
-"""A promise may err by this much in log posterior, beside another promise, before it is not followed."""
+GAIN_ERROR = 8.0
+"""Error of a predicted gain, relative to another one: a candidate that is behind by more is not fitted."""
 
 
 @dataclass(frozen=True)
 class Ranking:
-    """Fits by their log posterior (not normalised), the likeliest first; discrepancy: under which they are judged."""
+    """Fits and their log posteriors (not normalised), the likeliest first; discrepancy: of their evidence."""
 
     fits: tuple[Fit, ...]
     posteriors: tuple[float, ...]
@@ -174,8 +174,8 @@ class Ranking:
 
 
 @dataclass
-class _Board:
-    """What was fitted so far; only `ranked` makes and fills it."""
+class _State:
+    """The fits so far; made and changed by `ranked` only."""
 
     dataset: Dataset
     signatures: Mapping[str, Signature]
@@ -185,20 +185,20 @@ class _Board:
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
     usual: float = 0.0
-    judged: int = 0
+    assessed_at: int = 0
 
-    def judge_again(self) -> bool:
-        """Judge all sets under what the forms of the best one usually miss; return whether that has moved.
+    def update_discrepancy(self) -> bool:
+        """Compute the evidence of all sets with the usual form error of the best one; return whether that has changed.
 
-        One error for all sets: one of their own would favour those whose forms are thought to be good.
+        One form error serves all sets: their own would favour sets whose forms are declared to be good.
         """
         usual = self.fits[self.best()].form_error
         near = self.usual / USUAL_MOVED <= usual <= self.usual * USUAL_MOVED
-        if self.judged == self.count or (self.judged and near):
+        if self.assessed_at == self.count or (self.assessed_at and near):
             return False
-        self.usual, self.judged = usual, self.count
+        self.usual, self.assessed_at = usual, self.count
         self.discrepancy = self.noise.above(usual)
-        self.fits = {names: fit.judged(self.discrepancy) for names, fit in self.fits.items()}
+        self.fits = {names: fit.with_discrepancy(self.discrepancy) for names, fit in self.fits.items()}
         return True
 
     def posterior(self, names: frozenset[str]) -> float:
@@ -217,14 +217,14 @@ class _Board:
             self.fits[key] = found
         return found
 
-    def put_in(self, base: Fit, name: str) -> None:
+    def add(self, base: Fit, name: str) -> None:
         """Fit a set with one more candidate, from the optimum of the smaller one."""
         if self.times[frozenset({*base.names, name})] >= REPEATS:
             return
         found = additions(self.signatures[name], base.residual, base.slopes, base.variance, self.dataset)
         self.fit([{**base.values, name: a.values} for a in found], base.variance)
 
-    def take_out(self, base: Fit, name: str) -> None:
+    def remove(self, base: Fit, name: str) -> None:
         """Fit a set without one of its candidates, from the optimum of the larger one."""
         if self.times[frozenset(base.names) - {name}] >= REPEATS:
             return
@@ -241,34 +241,36 @@ def ranked(
     """Return the sets that can still win, fitted and ranked.
 
     starts: sets to begin with, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
-    alike: effects that the motion cannot tell from one; the best set is fitted with each of them in its place
+    alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
+    them in its place
     """
     noise = discrepancy_of(dataset.misfit, 0.0)
-    board = _Board(dataset, {s.name: s for s in signatures}, noise, discrepancy)
-    board.fit([{}], discrepancy.highest)
+    state = _State(dataset, {s.name: s for s in signatures}, noise, discrepancy)
+    state.fit([{}], discrepancy.highest)
+    nothing_fitted = np.zeros((dataset.misfit.size, 0))
     for variance, parts in starts:
         if parts and len(parts) <= MOST_EFFECTS:
-            board.fit([_start(parts, board)], variance)
-    board.judge_again()
+            state.fit([_start_values(parts, nothing_fitted, 1.0, state)], variance)
+    state.update_discrepancy()
     followed: set[frozenset[str]] = set()
-    while board.count < MOST_FITS:
-        best = board.posterior(board.best())
-        open_sets = [n for n in board.fits if n not in followed and board.posterior(n) > best - REACH]
+    while state.count < MOST_FITS:
+        best = state.posterior(state.best())
+        open_sets = [n for n in state.fits if n not in followed and state.posterior(n) > best - REACH]
         if not open_sets:
             break
-        names = max(open_sets, key=board.posterior)
+        names = max(open_sets, key=state.posterior)
         followed.add(names)
-        _follow(board, names)
-        if board.judge_again():
+        _fit_neighbours(state, names)
+        if state.update_discrepancy():
             followed.clear()
-    _nested(board)
-    best_names = board.best()
+    _refit_below_subsets(state)
+    best_names = state.best()
     for name in sorted(best_names - {LAW}):
-        less = board.fits.get(best_names - {name})
+        less = state.fits.get(best_names - {name})
         for other in alike(name):
-            if less is not None and other in board.signatures and other not in best_names:
-                board.put_in(less, other)
-    return _in_order(board.fits.values(), board.discrepancy)
+            if less is not None and other in state.signatures and other not in best_names:
+                state.add(less, other)
+    return _in_order(state.fits.values(), state.discrepancy)
 
 
 def _in_order(fits: Iterable[Fit], discrepancy: Discrepancy) -> Ranking:
@@ -277,11 +279,11 @@ def _in_order(fits: Iterable[Fit], discrepancy: Discrepancy) -> Ranking:
 
 
 def corrected(ranking: Ranking, samples: Samples) -> Ranking:
-    """Return the ranking where what can still win is fitted to the samples: what its blocks leave out is added to them.
+    """Return the ranking in which every set that can still win, and every part of it, is fitted to the samples.
 
-    So is every part of it: an effect beside it may have been found for what the blocks leave out of the others.
-    A deferred correction: what the blocks leave out is taken at the optimum, and the fit repeated with it. H. J.
-    Stetter, "The defect correction principle and discretization methods", Numer. Math. 29 (1978) 425-443.
+    The distortion of the response by averaging over blocks is computed at the optimum and subtracted, and the fit is
+    repeated: a deferred correction (H. J. Stetter, "The defect correction principle and discretization methods", Numer.
+    Math. 29 (1978) 425-443). Parts are included because an effect may have been added only to follow this distortion.
     """
     winning = [frozenset(f.names) for f in ranking.fits if ranking.behind(f) < LOST]
     found = (
@@ -299,65 +301,57 @@ def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
         left_out = samples.left_out(dataset, fit.tire)
         pairs = zip(left_out, dataset.experiments, strict=True)
         new = dataset.stacked([own - e.left_out for own, e in pairs])
-        if new @ new < ENOUGH * fit.variance:
+        if new @ new < LEAST_GAIN * fit.variance:
             break
         fit = fitted(dataset.corrected(left_out), [fit.values], discrepancy, fit.variance, -np.inf)
     return fit
 
 
-def _follow(board: _Board, names: frozenset[str]) -> None:
-    """Fit the neighbours of a set that may win against the best: one candidate out, one in, one for another."""
-    base = board.fits[names]
+def _fit_neighbours(state: _State, names: frozenset[str]) -> None:
+    """Fit the neighbours of a set: with one candidate removed, one added, one exchanged for another."""
+    base = state.fits[names]
     for name in sorted(names):
-        board.take_out(base, name)
+        state.remove(base, name)
     if len(names) < MOST_EFFECTS:
-        _promising(board, names, names, PROMISING)
+        _add_promising(state, names, names, PROMISING)
     for name in sorted(names):
-        _promising(board, names - {name}, names, SWAPPED)
+        _add_promising(state, names - {name}, names, SWAPPED)
 
 
-def _promising(board: _Board, names: frozenset[str], beside: frozenset[str], most: int) -> None:
-    """Put in what may bring a fitted set within reach of the best, or promises as much as what it is to replace.
+def _add_promising(state: _State, names: frozenset[str], beside: frozenset[str], most: int) -> None:
+    """Add the candidates that may bring a fitted set near the best one, or that promise as much as the one they
+    replace.
 
-    beside: the set that is followed, of which nothing is put in
+    beside: the set whose neighbours are fitted; its own effects are not added
     """
-    base, best = board.fits[names], board.posterior(board.best())
-    others = [n for n in board.signatures if n not in beside]
-    replaced = [n for n in board.signatures if n in beside - names]
-    gains = promises([board.signatures[n] for n in (*others, *replaced)], base, board.discrepancy)
-    # A fit may bring far more than its promise did, so a promise is held against that of what it would replace.
-    wanted = min([best + PRIOR_ODDS - board.posterior(names), *gains[len(others) :]])
+    base, best = state.fits[names], state.posterior(state.best())
+    others = [n for n in state.signatures if n not in beside]
+    replaced = [n for n in state.signatures if n in beside - names]
+    gains = predicted_gains([state.signatures[n] for n in (*others, *replaced)], base, state.discrepancy)
+    # A fit may gain far more than was predicted, so a prediction is compared with that of the effect it would replace.
+    wanted = min([best + PRIOR_ODDS - state.posterior(names), *gains[len(others) :]])
     for gain, name in sorted(zip(gains, others, strict=False), reverse=True)[:most]:
-        if gain > wanted - HOPE and board.count < MOST_FITS:
-            board.put_in(base, name)
+        if gain > wanted - GAIN_ERROR and state.count < MOST_FITS:
+            state.add(base, name)
 
 
-def _start(parts: Mapping[str, FloatArray], board: _Board) -> dict[str, tuple[float, ...]]:
-    """Return values for what each candidate is to explain."""
-    none = np.zeros((board.dataset.misfit.size, 0))
-    values: dict[str, tuple[float, ...]] = {}
-    for name, part in parts.items():
-        if name == LAW:
-            values[name] = law_start(board.dataset)
-            continue
-        values[name] = additions(board.signatures[name], part, none, 1.0, board.dataset)[0].values
-    return values
+def _start_values(
+    parts: Mapping[str, FloatArray], slopes: FloatArray, variance: float, state: _State
+) -> dict[str, tuple[float, ...]]:
+    """Return values to start from, for the part of the misfit that each candidate is to explain."""
+    return {
+        name: additions(state.signatures[name], part, slopes, variance, state.dataset)[0].values
+        for name, part in parts.items()
+    }
 
 
-def _nested(board: _Board) -> None:
-    """Fit every set again that leaves more than a subset of it."""
-    for names in sorted(board.fits, key=len):
-        for less in list(board.fits):
-            if less < names and board.fits[less].power < 0.999 * board.fits[names].power:
-                if board.posterior(names) < board.posterior(board.best()) - REACH:
-                    continue
-                start = dict(board.fits[less].values)
-                for name in names - less:
-                    own = board.fits[less]
-                    if name == LAW:
-                        start[name] = law_start(board.dataset)
-                    else:
-                        start[name] = additions(
-                            board.signatures[name], own.residual, own.slopes, own.variance, board.dataset
-                        )[0].values
-                board.fit([start], board.fits[less].variance)
+def _refit_below_subsets(state: _State) -> None:
+    """Fit every set again that leaves more than one of its subsets, from the optimum of the subset."""
+    for names in sorted(state.fits, key=len):
+        for subset in list(state.fits):
+            fit = state.fits[subset]
+            leaves_less = subset < names and fit.power < 0.999 * state.fits[names].power
+            if leaves_less and state.posterior(names) >= state.posterior(state.best()) - REACH:
+                missing = dict.fromkeys(sorted(names - subset), fit.residual)
+                added = _start_values(missing, fit.slopes, fit.variance, state)
+                state.fit([{**fit.values, **added}], fit.variance)

@@ -117,7 +117,7 @@ BEYOND = 5.0
 """Rise of the force over what the stiffness, the mean one or that on the way there, makes of the reading: a progressive
 tire is stiffer there."""
 
-MOST = 0.5
+MAJORITY = 0.5
 """A majority: of the samples that stand still (the motion is hardly more than its noise then), and of the stays in
 which a gauge at the end of its travel is seen to be there."""
 
@@ -155,7 +155,7 @@ def after_pauses(recording: Recorded) -> BoolArray:
     for first in np.flatnonzero(steps[1:] > PAUSE * before) + 2:
         found[first : first + SETTLING] = True
     own = found[-recording.time.size :]
-    return own if own.mean() < MOST else np.zeros_like(own)
+    return own if own.mean() < MAJORITY else np.zeros_like(own)
 
 
 def compared(recordings: Sequence[Recorded]) -> tuple[BoolArray, ...]:
@@ -191,7 +191,7 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
     band, changes = STANDS_OUT * deflection_noise(x), np.abs(np.diff(x))
     finest = float(np.min(changes[changes > 0.0]))
     near = x > np.partition(x, -FEWEST_EVENTS)[-FEWEST_EVENTS] - band
-    if near.mean() > MOST:
+    if near.mean() > MAJORITY:
         return np.zeros(x.size, dtype=bool)
     stiffness, noise = float(np.ptp(force)) / float(np.ptp(x)), white_level(force)
     places = np.flatnonzero(near)
@@ -213,7 +213,7 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
         onwards = own[fifth] - own[0] > ONWARDS * (own[0] - force[begin - fifth]) > 0.0
         stopped.append(bool(rise > allowed and onwards and np.mean(own > ends + 0.5 * rise) > BROAD))
     # A gauge stops each time; what else moves the force may do so now and then.
-    return near if stopped and np.mean(stopped) >= MOST else np.zeros(x.size, dtype=bool)
+    return near if stopped and np.mean(stopped) >= MAJORITY else np.zeros(x.size, dtype=bool)
 
 
 def _turns(stays: Sequence[FloatArray]) -> bool:

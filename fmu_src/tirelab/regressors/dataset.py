@@ -66,13 +66,13 @@ class Scales:
         return 1.0 if name == "1" else float(getattr(self, name))
 
 
-ROWS = 4000
+BLOCKS = 4000
 """Blocks of all recordings together, where the motion allows: signatures and fits cost in proportion."""
 
-MOST_ROWS = 40_000
+MOST_BLOCKS = 40_000
 """Budget: blocks of all recordings together, whatever the motion asks for."""
 
-FEWEST_ROWS = 600
+FEWEST_BLOCKS = 600
 """Blocks that a recording keeps at least, where it has as many samples."""
 
 TURN = 0.5
@@ -227,8 +227,8 @@ def dataset_of(
     readings: noise of the samples of each recording, if it is known; blocks are as long at least as it remembers
     """
     total = sum(r.time.size for r in recordings)
-    size = max(1, -(-total // ROWS))
-    least = size * ROWS // MOST_ROWS
+    size = max(1, -(-total // BLOCKS))
+    least = size * BLOCKS // MOST_BLOCKS
     known: Sequence[Noise | None] = readings or [None] * len(recordings)
     experiments = tuple(
         _experiment(r, tire, (least, size), n) for r, n in zip(recordings, known, strict=True)
@@ -317,7 +317,7 @@ def _experiment(
     longest = TURN * slow / max(quick * interval, 1e-300)
     least, most = sizes
     # Blocks within the memory of their noise would not be independent of each other.
-    most = max(min(most, recording.time.size // FEWEST_ROWS), reading.memory)
+    most = max(min(most, recording.time.size // FEWEST_BLOCKS), reading.memory)
     size = int(max(1, least, min(most, longest)))
     whole = recording.time.size // size * size
     good = (resolved | turns)[:whole].reshape(-1, size)

@@ -1,14 +1,14 @@
-"""What the recorded motion and channels can show, before any force is looked at.
+"""Which effects the recorded motion and channels can show, judged without the force.
 
-Traits of effects that the motion cannot tell from others are left out. An effect that changes a channel (a leak the
-pressure) must show in it. Each channel of all recordings together is
+Effects with traits that the motion cannot distinguish from others are left out. An effect that changes a channel, as a
+leak changes the pressure, must show in it. Each channel of all recordings together is modelled by least squares as
 
     y = level of the recording + sum of the courses of the effects that change it + rest,
 
-by least squares, with each effect's courses from draws of its parameters. An effect is refuted where its courses add
-next to nothing. An effect that reads the channel needs one that was set to several values: levels and rest must differ
-at one deflection in one direction, and more so than from one to another, as the pressure does that swings with each
-stroke. Or everything that depends on both would pass for it.
+where the courses of an effect are its leading time series, from draws of its parameters. An effect is refuted where its
+courses explain next to nothing. An effect that reads the channel needs a channel that was set to several values: at one
+deflection and direction, levels and rest must vary, and more than from one deflection to another. A pressure that only
+swings with each stroke does not: then everything that depends on the deflection would be attributed to it.
 """
 
 from __future__ import annotations
@@ -30,19 +30,21 @@ FloatArray = NDArray[np.float64]
 Cells = NDArray[np.int_]
 
 COURSES, COURSE_DRAWS = 2, DRAWS // 2
-"""Courses of an effect, and the draws that they are the leading ones of: those of the plain form alone."""
+"""Number of courses of an effect, and of the draws from which they are computed: those of the plain form only."""
 
 AS_GOOD = 0.75
-"""Part of what an effect explains that another must explain to stand for it."""
+"""Part of what an effect explains that another one must explain to take its place."""
 
 ALIKE = float(np.sqrt(AS_GOOD))
-"""Cosine of the leading courses of two effects beyond which either may stand for the other."""
+"""Cosine between the leading courses of two effects above which either may take the place of the other."""
 
 
 @dataclass(frozen=True)
 class ChannelEvidence:
-    """impossible: effects that the channels speak against, or that need one that is not there; unvaried: effects that
-    read a channel which was the same at every visit of a deflection, and the sentence that says so.
+    """What the channels show of the effects.
+
+    impossible: effects that the channels refute, or that need a channel that was not recorded; unvaried: effects that
+    read a channel which was the same at every visit of a deflection, each with the sentence that says so
     """
 
     impossible: frozenset[str]
@@ -50,7 +52,9 @@ class ChannelEvidence:
 
 
 def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidence:
-    """Return what the channels show; cells: deflection and direction of each recording's blocks, -1: where it turns."""
+    """Return what the channels show; cells: of deflection and direction for each recording's blocks, -1 in a
+    reversal.
+    """
     impossible: set[str] = set()
     unvaried: dict[str, str] = {}
     for channel in CHANNELS:
@@ -79,8 +83,9 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
 def _followed(
     value: FloatArray, effects: Sequence[Effect], dataset: Dataset
 ) -> tuple[FloatArray, dict[str, tuple[float, float]]]:
-    """Return what all courses explain of a channel within the recordings, and of each effect the part of the variance
-    that it adds to those that are unlike it, and the size of its course: 0 where it goes the other way.
+    """Return the part of a channel that all courses explain within the recordings, and for each effect two numbers: the
+    part of the variance that it explains beyond the effects unlike it, and the size of its course, 0 where the fitted
+    course has the opposite sign.
     """
     centred = _centring(dataset.experiments)
     target = centred(value)
@@ -109,7 +114,9 @@ def _cosine(a: FloatArray, b: FloatArray) -> float:
 
 
 def _courses(effect: Effect, dataset: Dataset) -> list[FloatArray]:
-    """Return the leading courses of an effect's factor over all recordings, the first one in the effect's own sense."""
+    """Return the leading courses of an effect's factor over all recordings, the first with the sign that the effect
+    has.
+    """
     sets, _ = drawn(effect, dataset.scales, COURSE_DRAWS)
     tire = TireModel(dataset.tire.law, tested_range=None)
     histories = [elastic_stage(tire, e, e)[0] for e in dataset.experiments]
@@ -129,13 +136,13 @@ def _factor(effect: Effect, values: tuple[float, ...], histories: Sequence[Histo
 
 
 def _centring(experiments: Sequence[Experiment]) -> Callable[[FloatArray], FloatArray]:
-    """Return the function that takes the mean of each recording off values of all of them in a row."""
+    """Return the function that subtracts the mean of each recording from the values of all of them in a row."""
     ends = np.cumsum([e.time.size for e in experiments])[:-1]
     return lambda values: np.concatenate([part - part.mean() for part in np.split(values, ends)])
 
 
 def _spreads(values: FloatArray, cell: Cells) -> tuple[float, float]:
-    """Return the standard deviations of values within the cells and of the cells' means; a cell of -1 is none."""
+    """Return the standard deviations of the values within cells and of the cells' means; the cell -1 does not count."""
     inside = cell >= 0
     if not inside.any():
         return 0.0, 0.0
@@ -145,24 +152,26 @@ def _spreads(values: FloatArray, cell: Cells) -> tuple[float, float]:
 
 
 CELLS = 12
-"""Parts of the deflection's span in which two visits are visits of the same deflection."""
+"""Number of parts of the deflection's span; visits of one part count as visits of the same deflection."""
 
 SPEEDS = 0.5
-"""Spread of the speed, at one deflection in one direction, over its mean, below which there is one speed."""
+"""Standard deviation over mean of the speed, at one deflection and direction, below which there is one speed only."""
 
 UNDER_WAY = 0.5
-"""Speed over its root mean square above which the direction is sure, between rest (0) and the usual speed (1): a
-channel may change with it."""
+"""Speed over its root mean square above which the direction is certain, halfway between rest (0) and the usual speed
+(1)."""
 
 NO_EVIDENCE = ChannelEvidence(frozenset(), {})
-"""That of recordings whose channels were not looked at."""
+"""For recordings whose channels were not examined."""
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """returns: part of the variance of time between visits of the same deflection in the same direction; speeds: spread
-    of the speed there; timed: whether the samples' times are known; surfaces: how many were pressed on; channels: what
-    the recorded channels show.
+    """What the recorded motion and channels can show.
+
+    returns: part of the variance of time between visits of the same deflection and direction; speeds: standard
+    deviation over mean of the speed there; timed: whether the times of the samples are known; surfaces: their number;
+    channels: what the recorded channels show
     """
 
     returns: float
@@ -177,7 +186,7 @@ class Excitation:
         return self.speeds < SPEEDS
 
     def hidden(self, name: str) -> str:
-        """Return why an effect of this name cannot be shown, or ""."""
+        """Return why an effect cannot be shown; empty where it can."""
         if name in self.channels.unvaried:
             return self.channels.unvaried[name]
         traits = CATALOGUE[name].traits
@@ -188,12 +197,12 @@ class Excitation:
         return ""
 
     def reasons(self, names: Sequence[str]) -> dict[str, str]:
-        """Return why, of all the effects that cannot be shown."""
+        """Return the effects of `names` that cannot be shown, each with the reason."""
         return {name: why for name in names if (why := self.hidden(name))}
 
     def alike(self, name: str) -> tuple[str, ...]:
-        """Return the effects that this motion cannot tell from one of this name: loops, where each deflection is passed
-        at one speed.
+        """Return the effects that this motion cannot distinguish from one: those that make loops, where each deflection
+        is passed at one speed only.
         """
         if self.speeds >= SPEEDS or "loop" not in CATALOGUE[name].traits:
             return ()
@@ -201,19 +210,19 @@ class Excitation:
         return tuple(n for n in loops if not self.hidden(n))
 
     def within_law(self, name: str) -> bool:
-        """Whether a law of another shape could be all that an effect of this name is: it depends on the deflection
-        alone, which on one surface is all that a law can be; not on a channel that was read beside it.
+        """Whether a law of another shape can imitate an effect: on one surface, one of the deflection alone can be
+        imitated, unless it also depends on a channel.
         """
         return self.surfaces == 1 and of_deflection(name)
 
 
 def of_deflection(name: str) -> bool:
-    """Whether an effect depends on deflection and surface alone, as a law does, and on no channel beside them."""
+    """Whether an effect depends on deflection and surface only, as a law does, and on no channel."""
     return "static" in CATALOGUE[name].traits and CATALOGUE[name].reads is None
 
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
-    """Return what the motion of all recordings can show; on one surface they show their speeds together."""
+    """Return what the motion of all recordings can show; the speeds of recordings on one surface are taken together."""
     visits = [_visits(e) for e in dataset.experiments]
     returns = [_share_within(v.time, v.cell) for v in visits]
     together: dict[float, list[_Visits]] = {}
@@ -237,7 +246,7 @@ class _Visits:
 
 
 def _visits(e: Experiment) -> _Visits:
-    # In a hold everything that relaxes passes for something slow: only visits on the way count.
+    # In a hold, relaxation looks like a slow effect: only visits while the tire moves count.
     moving = _moving(e)
     cell = _cells(e, float(e.deflection.min()), float(e.deflection.max()))
     return _Visits(e.time[moving], np.abs(e.rate[moving]), cell[moving])

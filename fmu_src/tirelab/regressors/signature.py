@@ -1,17 +1,17 @@
-"""The signature of an effect: what its own response may look like on the recorded motion.
+"""The signature of an effect: the responses that it may have to the recorded motion.
 
-Parameters are drawn from their priors, the response of the baseline tire with the effect is simulated along the motion,
-and the baseline is taken off. Mean and covariance of these curves, of one size, are a Gaussian law of forms: the mean
-and the leading vectors of a singular value decomposition, each scaled by its standard deviation. The priors are
-multiples of the recording's own force and travel.
+Parameters are drawn from their priors, the baseline tire with the effect is simulated along the motion, and the force
+of the baseline is subtracted. The responses, scaled to one size, are taken as draws from a normal law. The signature
+holds their mean and the leading vectors of a singular value decomposition, each scaled by its standard deviation. The
+priors are multiples of the recording's force and travel.
 
 The elastic law has a signature of its own: how a refitted law, or one of another shape, would differ.
 
     dF / F = a + b l + c l^2 + d l^3 + h(x),   l = ln(x / x_ref)
 
-a and b on each surface beside those common to all, h: straight lines between the heights of a law's shape. These are
-the derivatives of what is fitted and delivered as a refitted law, so a law that can be fitted is seen before it is.
-Their scale is not declared: it is found by the marginal likelihood (type II), like that of the effects.
+a and b: common to all surfaces, and further ones on each; h: straight lines between the heights of a law's shape. These
+are the derivatives of the law that is fitted and delivered, so that every law that can be fitted is considered. Their
+scale is not declared: it maximises the marginal likelihood (type II), like that of the effects.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ FloatArray = NDArray[np.float64]
 
 
 LEAST_MASS = 1e-3
-"""Part of a prior that must lie within the parameter's bounds, or the prior says nothing there."""
+"""Part of a prior within the parameter's bounds below which the value is taken at the nearer bound."""
 
 
 def centre_and_spread(parameter: Parameter, scales: Scales) -> tuple[float, float, bool]:
@@ -63,15 +63,15 @@ def quantile(parameter: Parameter, share: float, scales: Scales) -> float:
 
 
 def at_reading(parameter: Parameter, scales: Scales) -> float:
-    """Return the value of a parameter that follows from the reading: the centre of its prior, within its bounds."""
+    """Return the value of a parameter of the reading, such as its noise: the centre of its prior, within its bounds."""
     return quantile(parameter, 0.5, scales) if parameter.prior is not None else parameter.start
 
 
 def drawn(effect: Effect, scales: Scales, count: int) -> tuple[list[list[float]], FloatArray]:
-    """Return `count` quasi-random sets of values (Sobol), and a number of 0 to 1 for each that sizes it.
+    """Return `count` quasi-random sets of values (Sobol), and for each a number from 0 to 1 that sets its size.
 
-    The first half is of the plain form: what it does without stays at its start. Halves of a Sobol sequence fill the
-    priors evenly; every other one of its sets would not.
+    In the first half, the plain form, the optional parameters keep their start values. Each half of a Sobol sequence
+    fills the priors evenly; every second set of it would not.
     """
     names = effect.parameters
     shares = qmc.Sobol(len(names) + 1, seed=1).random(count)
@@ -98,20 +98,20 @@ SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.trait
 """The effect in which a refitted law keeps bend and twist."""
 
 FACTOR, EXPONENT, BEND, TWIST, HEIGHT = 0.1, 0.07, 0.03, 0.01, 0.05
-"""Standard deviations of a, b, c, d and each height at the scale 1: their proportions are what counts, the recordings
-find the scale."""
+"""Standard deviations of a, b, c, d and each height at the scale 1. Only their proportions matter, since the scale is
+found from the recordings."""
 
 HEIGHTS = sum(p.name.startswith("height") for p in CATALOGUE[SHAPE].parameters)
-"""Heights in the shape of a refitted law."""
+"""Number of heights in the shape of a refitted law."""
 
 REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
-"""Index of the shape's reference."""
+"""Index of the reference deflection among the parameters of the shape."""
 
 LEAST_RATIO = 0.01
 """The least x / x_ref, as in the effect SHAPE."""
 
 MOST_SURFACES = 8
-"""Beyond them (terrain) the law is refitted for all alike."""
+"""With more surfaces than these (terrain) the law is refitted with one change for all of them."""
 
 
 def candidates() -> tuple[str, ...]:
@@ -153,25 +153,25 @@ def law_signature(dataset: Dataset) -> Signature:
 DRAWS = 32
 COLUMNS = 8
 ENERGY = 0.999
-"""Draws of an effect, most columns of its signature, and the part of the deviations' energy that they hold."""
+"""Number of draws of an effect, most columns of its signature, and the part of the variance that these must hold."""
 
 FEWEST = 6
-"""Fewer draws with a response make no signature: the effect cannot show itself here."""
+"""Fewest draws with a response; with fewer, the recordings cannot show the effect."""
 
-SMALLEST = 0.1
-"""Size from which on curves are drawn, up to all of the misfit: where the response is not linear, the form depends
-on the size."""
+LEAST_DRAWN = 0.1
+"""Smallest size of the drawn responses, as a part of the misfit; the largest is the whole misfit. The shape of a
+nonlinear response depends on its size."""
 
 SILENT = 1e-7
-"""Response over the baseline force below which there is none."""
+"""A response below this part of the baseline force counts as none."""
 
 
 @dataclass(frozen=True)
 class Signature:
-    """The law of forms of one candidate, in units of the noise.
+    """The signature of one candidate, in units of the noise.
 
-    mean (m,) and basis (m, r): of the curves, divided by their size; signed: whether the size may be negative
-    curves (k, m) of size 1, values of their parameters and sizes (k,): the draws; none for the law
+    mean (m,) and basis (m, r): of the drawn responses, divided by their size; signed: whether the size may be negative
+    curves (k, m): drawn responses of size 1; values: of their parameters; sizes (k,); no draws for the law
     """
 
     name: str
@@ -184,12 +184,12 @@ class Signature:
 
     @property
     def columns(self) -> FloatArray:
-        """Mean and basis beside each other (m, 1 + r)."""
+        """Mean and basis in one matrix (m, 1 + r)."""
         return np.column_stack([self.mean, self.basis])
 
 
 def size_of(curve: FloatArray) -> float:
-    """Return the root mean square."""
+    """Return the root mean square of a response."""
     return float(np.sqrt(np.mean(curve**2)))
 
 
@@ -203,7 +203,7 @@ def signature_of(name: str, dataset: Dataset) -> Signature | None:
     values: list[tuple[float, ...]] = []
     sizes: list[float] = []
     for chosen, share in zip(sets, shares, strict=True):
-        wanted = min(misfit * SMALLEST ** (1.0 - share), 0.3 * force)
+        wanted = min(misfit * LEAST_DRAWN ** (1.0 - share), 0.3 * force)
         curve, scaled = _sized(effect, chosen, dataset, wanted)
         size = size_of(curve) if curve.size else 0.0
         if not SILENT * force < size < 30.0 * max(misfit, wanted):
@@ -232,7 +232,7 @@ def _strength(effect: Effect, values: Sequence[float]) -> float:
 def _sized(
     effect: Effect, values: list[float], dataset: Dataset, wanted: float
 ) -> tuple[FloatArray, list[float]]:
-    """Return a response near the wanted size and its parameters; an empty one where it is not finite."""
+    """Return a response near the wanted size, and its parameters; an empty response where it is not finite."""
     adjustable = any(p.role == "strength" for p in effect.parameters)
     curve = np.zeros(0)
     for _ in range(3):
@@ -247,7 +247,7 @@ def _sized(
 
 
 def strengthened(effect: Effect, values: Sequence[float], factor: float) -> list[float]:
-    """Return the values with every strength, and what adds to it in its unit, times a factor, within bounds."""
+    """Return the values with every strength, and every parameter that adds to one, times a factor, within bounds."""
     units = {p.unit for p in effect.parameters if p.role == "strength"}
     found = []
     for p, value in zip(effect.parameters, values, strict=True):
@@ -269,7 +269,7 @@ def _basis(deviations: FloatArray) -> FloatArray:
 
 
 def in_other_noise(signature: Signature, before: Dataset, after: Dataset) -> Signature:
-    """Return a signature of a dataset in the noise levels of another one of the same recordings."""
+    """Return a signature in units of the noise of another dataset of the same recordings."""
     pairs = zip(before.experiments, after.experiments, strict=True)
     factor = np.concatenate([np.full(int(b.counts.sum()), b.noise / a.noise) for b, a in pairs])
     curves = signature.curves * factor

@@ -1,22 +1,23 @@
-"""Search over sets of candidates by the marginal likelihood of their signatures: a beam, one candidate at a time.
+"""Beam search over sets of candidates by the marginal likelihood of their signatures, one candidate more at a time.
 
-The likelihood is linear in Gaussian coefficients, so known in closed form:
+The model is linear in normally distributed coefficients, so its marginal likelihood is known in closed form:
 
     misfit = sum_i s_i (m_i + A_i z_i) + discrepancy + noise,   z ~ N(0, 1)
 
-s_i is the size of candidate i, V the variance of the discrepancy: both are found by the marginal likelihood (type II).
+The size s_i of candidate i and the variance V of noise and discrepancy maximise the marginal likelihood (type II).
 
-A form that is not quite right leaves something smooth: over n blocks it has about e effective samples (e << n). In
-units of the noise each of them has the variance V = 1 + n tau^2 / e, with tau the root mean square of the discrepancy.
-What the set leaves beyond the noise lies in these e samples, so with a residual of the sum of squares q
+The discrepancy of a form that is not quite right is smooth: over n blocks it has about e effective samples (e << n). In
+units of the noise each of them has the variance V = 1 + n tau^2 / e, where tau is the root mean square of the
+discrepancy. The part of the residual beyond the noise lies in these e samples, so with a sum of squares q of the
+residual
 
     2 ln p(V) = -(q - (n - e)) / V - e ln V,
 
-highest at V = (q - (n - e)) / e: a set is priced by e ln(what it leaves). V is a number of every set, found by the
-marginal likelihood. What forms usually miss, f, follows from their measured errors. They may also be better: the
-density of a miss is flat below f, so one of tau or less has the chance tau / f, which is the price of a smaller V. A
-set that leaves far less than f has good forms, for wrong ones do not meet there by chance. Below the noise one miss is
-like another.
+with its maximum at V = (q - (n - e)) / e. A set is thus ranked by e ln(what it leaves), and every set has its own V.
+The usual discrepancy f follows from the measured form errors. It may also be smaller: below f its prior density is
+constant, so that tau or less has the probability tau / f, by which a smaller V is penalised. A set that leaves far less
+than f is taken to have good forms, because wrong ones would hardly fit so well by chance. Discrepancies below the noise
+count alike.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
@@ -40,20 +41,22 @@ FloatArray = NDArray[np.float64]
 
 
 EFFECTIVE = 30.0
-"""Effective samples of a discrepancy. What is left of recorded dampers has 30 to 60 by its autocorrelation, of pistons
-100 to 200; more than 30 let many a set win over a simpler one."""
+"""Effective samples of a discrepancy. By its autocorrelation, the residual of recorded dampers has 30 to 60 of them,
+that of pistons 100 to 200; with more than 30, larger sets often win over simpler ones."""
 
 LIKE_NOISE = 1.0
-"""Root mean square of a remainder like the noise, in units of it: forms that leave no more are taken for exact."""
+"""Root mean square of a discrepancy, in units of the noise, up to which the forms of a set count as exact."""
 
 GRID = 40
-"""Variances that are tried."""
+"""Number of variances V that are tried."""
 
 
 @dataclass(frozen=True)
 class Discrepancy:
-    """samples: n; effective: e; usual: V of what forms usually miss, highest: V of the whole misfit
-    exact: V of a remainder like the noise; where that is less than the usual V, it is the lowest.
+    """The law of the discrepancy, see the docstring of the module.
+
+    samples: n; effective: e; usual: V of the usual discrepancy f; highest: V of the whole misfit; exact: V of a
+    discrepancy as large as the noise, the lowest V where it is less than the usual one
     """
 
     samples: int
@@ -67,8 +70,10 @@ class Discrepancy:
         """The lowest V."""
         return min(self.exact, self.usual)
 
-    def beside(self, variance: FloatArray) -> FloatArray:
-        """Return what the log likelihood holds beside -q / 2V, for several V: with the price of a V below the usual."""
+    def terms_of(self, variance: FloatArray) -> FloatArray:
+        """Return the terms of the log likelihood other than -q / 2V, for several V, with the penalty of V below the
+        usual.
+        """
         e = self.effective
         flat = 0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance)
         missed = np.minimum(variance, self.usual) - 1.0
@@ -76,17 +81,19 @@ class Discrepancy:
 
     def likelihood(self, power: float, variance: float) -> float:
         """Return the log likelihood of a sum of squares left at one V."""
-        return -0.5 * power / variance + float(self.beside(np.array(variance)))
+        return -0.5 * power / variance + float(self.terms_of(np.array(variance)))
 
     def above(self, form_error: float) -> Discrepancy:
-        """Return the discrepancy of a set whose forms usually miss this much, a root mean square in units of the
+        """Return the discrepancy where the usual one is larger by this form error, a root mean square in units of the
         noise.
         """
         usual = self.usual + self._of(form_error)
         return replace(self, usual=usual, highest=max(self.highest, 2.0 * usual))
 
     def blurred(self, error: float) -> Discrepancy:
-        """Return the discrepancy where the reading adds this much whatever the forms are, in units of the noise."""
+        """Return the discrepancy where the reading adds this error to exact and to wrong forms, in units of the
+        noise.
+        """
         return replace(self.above(error), exact=self.exact + self._of(error))
 
     def grid(self) -> FloatArray:
@@ -96,7 +103,7 @@ class Discrepancy:
     def profile(self, power: float) -> tuple[float, float]:
         """Return the log likelihood of a sum of squares left at its best V, and that V.
 
-        Above the usual V it is highest where e V = q', with q' = q - (n - e); below it, where the price has the slope
+        With q' = q - (n - e): above the usual V the maximum is at V = q' / e; below it, where the penalty has the slope
         1 / 2 (V - 1), at the larger root of (e - 1) V^2 - (q' + e) V + q' = 0.
         """
         e = self.effective
@@ -113,41 +120,46 @@ class Discrepancy:
         return math.sqrt(max(variance - 1.0, 0.0) * self.effective / self.samples)
 
     def _of(self, error: float) -> float:
-        """Return what a root mean square in units of the noise adds to V."""
+        """Return the increase of V by an error, a root mean square in units of the noise."""
         return error**2 * self.samples / self.effective
 
 
 def beside_noise(samples: int) -> Discrepancy:
-    """Return the discrepancy's law over so many samples where nothing is missed but what forms are said to miss."""
+    """Return the discrepancy over so many samples of noise, without form errors: see `Discrepancy.above`."""
     effective = min(EFFECTIVE, samples / 3.0)
     return Discrepancy(samples, effective, 1.0, math.inf, 1.0 + LIKE_NOISE**2 * samples / effective)
 
 
 def discrepancy_of(misfit: FloatArray, missed: float) -> Discrepancy:
-    """Return the discrepancy's law for a misfit (n,) in units of the noise; missed: part of it by forms."""
+    """Return the discrepancy for a misfit (n,) in units of the noise; missed: usual form error, as a part of the
+    misfit.
+    """
     law, power = beside_noise(misfit.size), float(misfit @ misfit)
     usual = 1.0 + missed**2 * max(power - law.samples, 0.0) / law.effective
     return replace(law, usual=usual, highest=max(2.0 * power / law.effective, 2.0 * usual))
 
 
 def usual_form_error() -> float:
-    """Return the root mean square of all form errors: what a set may miss of a misfit before its effects are known."""
+    """Return the root mean square of all form errors: the usual one of a set before its effects are known."""
     return float(np.sqrt(np.mean([effect.form_error**2 for effect in CATALOGUE.values()])))
 
 
 SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)
-"""Sizes tried first, as parts of the misfit."""
+"""Sizes of a candidate that are tried first, as parts of the misfit."""
 
-ROUNDS = 12
-NARROWEST, WIDEST = 1e-3, 100.0
+ITERATIONS = 12
+"""Most iterations in the maximisation of a set's marginal likelihood."""
+
+LEAST_SIZE, MOST_SIZE = 1e-3, 100.0
 """Bounds of a size, as parts of the misfit."""
 
 
 @dataclass(frozen=True)
 class NormalEquations:
-    """Products of all signatures' columns with each other and with the misfit.
+    """Normal equations of all signatures' columns and the misfit.
 
-    gram (k, k), moment (k,), power: of the misfit; places: of each candidate its columns, the mean first
+    gram (k, k); moment (k,); power: sum of squares of the misfit; places: columns of each candidate, the mean first;
+    signed: whether its size may be negative; columns (n, k)
     """
 
     gram: FloatArray
@@ -169,7 +181,7 @@ class Evidence:
 
 
 def normal_equations(signatures: Sequence[Signature], misfit: FloatArray) -> NormalEquations:
-    """Return the products of the signatures' columns."""
+    """Return the normal equations of the signatures; misfit (n,) in units of the noise."""
     columns = np.concatenate([np.empty((misfit.size, 0)), *(s.columns for s in signatures)], axis=1)
     places, begin = {}, 0
     for s in signatures:
@@ -194,9 +206,9 @@ def evidence_of(
     *,
     polish: bool = True,
 ) -> Evidence:
-    """Return the evidence of a set, begun at the sizes of a set that shares names with it.
+    """Return the evidence of a set; start: evidence of a set that shares names with it, from whose sizes to start.
 
-    polish: whether sizes and variance are climbed to the top; else the best of a few are taken
+    polish: whether sizes and variance are optimised; else the best of a few values is taken
     """
     known = dict(zip(start.names, start.sizes, strict=True)) if start is not None else {}
     if not names:
@@ -222,10 +234,10 @@ def evidence_of(
         return -_likelihood(names, direction * np.exp(q[:-1]), math.exp(q[-1]), equations, discrepancy)[0]
 
     first = np.append(np.log(np.maximum(np.abs(sizes), 1e-4 * unit)), math.log(variance))
-    bounds = [(math.log(NARROWEST * unit), math.log(WIDEST * unit))] * len(names)
-    # Below the usual V the price has another slope: a rough ranking can do without.
+    bounds = [(math.log(LEAST_SIZE * unit), math.log(MOST_SIZE * unit))] * len(names)
+    # Below the usual V the penalty has another slope; the rough ranking of the search does not need it.
     bounds.append((math.log(discrepancy.usual), math.log(discrepancy.highest)))
-    answer = minimize(cost, first, method="L-BFGS-B", bounds=bounds, options={"maxiter": ROUNDS})
+    answer = minimize(cost, first, method="L-BFGS-B", bounds=bounds, options={"maxiter": ITERATIONS})
     found = direction * np.exp(answer.x[:-1])
     return Evidence(tuple(names), -float(answer.fun), tuple(found.tolist()), math.exp(answer.x[-1]))
 
@@ -276,22 +288,23 @@ def _likelihood(
 
 
 PRIOR_ODDS = 5.0
-"""What a candidate must gain in log likelihood before it is as likely as not: one of a dozen candidates is there, or
-none; and it is worth naming."""
+"""Gain in log likelihood at which a candidate is as likely present as absent. It is the prior of one effect, if any,
+out of a dozen candidates, with a margin so that what is named is worth naming."""
 
-POLISHED, MOST = 8, 5
-"""Sets polished among a size's candidates, candidates of a set."""
+POLISHED, MOST_CANDIDATES = 8, 5
+"""Number of sets of each size that are optimised, and most candidates in a set."""
 
 BEAM = POLISHED // 2
-"""Sets kept from one size to the next."""
+"""Number of sets kept from one size to the next."""
 
 LOST = 10.0
-"""Sets this far behind, in log posterior, do not win: a size of sets whose best is ends the search."""
+"""A set this far behind the best in log posterior cannot win any more; if no set of a size is nearer, the search
+ends."""
 
 
 @dataclass(frozen=True)
 class Selection:
-    """Sets by their posterior (log, not normalised), the likeliest first."""
+    """Evidence of sets by their log posterior (not normalised), the likeliest first."""
 
     ranked: tuple[Evidence, ...]
 
@@ -306,7 +319,7 @@ class Selection:
 
 
 def search(equations: NormalEquations, discrepancy: Discrepancy) -> Selection:
-    """Return the sets that were visited."""
+    """Return the sets that the search visited."""
     order = {name: i for i, name in enumerate(equations.places)}
     found: dict[tuple[str, ...], Evidence] = {(): evidence_of((), equations, discrepancy)}
     frontier: list[tuple[str, ...]] = [()]
@@ -317,7 +330,7 @@ def search(equations: NormalEquations, discrepancy: Discrepancy) -> Selection:
     def polished(names: tuple[str, ...], start: Evidence) -> None:
         found[names] = evidence_of(names, equations, discrepancy, start)
 
-    for size in range(1, MOST + 1):
+    for size in range(1, MOST_CANDIDATES + 1):
         rough: dict[tuple[str, ...], Evidence] = {}
         for base in frontier:
             for name in order:
@@ -330,7 +343,7 @@ def search(equations: NormalEquations, discrepancy: Discrepancy) -> Selection:
         for names in best:
             polished(names, rough[names])
         frontier = sorted(best, key=lambda n: -posterior(n))[:BEAM]
-        if size > 2:  # a candidate that came first may have been made needless since
+        if size > 2:  # later candidates may have made an earlier one unnecessary
             for names in frontier[:2]:
                 for out in names:
                     less = tuple(n for n in names if n != out)

@@ -18,8 +18,8 @@ from drives import damped, flat_force, read, triangle
 from radialtire import TireModel
 from tirelab.diagnosis.confidence import (
     CREDIBLE,
-    FURTHEST,
     LOWERING,
+    MOST_LOG_ODDS,
     OF_EFFECT,
     OF_VERDICT,
     alternatives_of,
@@ -27,11 +27,11 @@ from tirelab.diagnosis.confidence import (
     grounds_of_effect,
     grounds_of_verdict,
     insufficient_excitation,
-    of_all,
+    no_surer_than_effects,
+    of_confounded,
     probability,
     reason_of,
-    shared,
-    unshared,
+    sharing_odds,
 )
 from tirelab.estimation.findings import Estimate, Evidence, NamedEffect
 from tirelab.planning.waveforms import Limits
@@ -123,7 +123,7 @@ def test_odds_of_an_effect_are_all_sets_with_it_against_all_without() -> None:
 
 def test_an_effect_in_every_set_has_the_largest_odds_that_count() -> None:
     one = explained("inertia", ("inertia force_lag", -4.0))
-    assert grounds_of_effect(one.effects[0], one, HELD_OUT)["odds"] == FURTHEST
+    assert grounds_of_effect(one.effects[0], one, HELD_OUT)["odds"] == MOST_LOG_ODDS
 
 
 @pytest.mark.parametrize(
@@ -161,13 +161,13 @@ def test_a_refitted_law_in_an_effects_place_imitates_it_as_far_as_it_is_likely()
 
 
 def test_a_verdict_is_no_surer_than_an_effect_that_it_names() -> None:
-    assert of_all(0.9, [0.95, 0.3]) == 0.3
-    assert of_all(0.9, [0.95]) == of_all(0.9, []) == 0.9
+    assert no_surer_than_effects(0.9, [0.95, 0.3]) == 0.3
+    assert no_surer_than_effects(0.9, [0.95]) == no_surer_than_effects(0.9, []) == 0.9
 
 
 def test_a_verdict_is_no_surer_than_that_what_it_leaves_out_is_not_there() -> None:
-    assert of_all(0.9, [0.95], [0.1, 0.25]) == 0.75
-    assert of_all(0.9, [], [0.1]) == of_all(0.9, [], []) == 0.9
+    assert no_surer_than_effects(0.9, [0.95], [0.1, 0.25]) == 0.75
+    assert no_surer_than_effects(0.9, [], [0.1]) == no_surer_than_effects(0.9, [], []) == 0.9
 
 
 @pytest.mark.parametrize("odds", [-15.0, -3.0, 0.0, 2.0, 15.0])
@@ -188,10 +188,10 @@ def test_what_speaks_for_sets_without_an_effect_contests_it() -> None:
 
 
 def test_sets_that_are_alike_share_the_odds_of_a_verdict() -> None:
-    assert shared(0.8, 0) == pytest.approx(0.8)
+    assert sharing_odds(0.8, 0) == pytest.approx(0.8)
     # Odds of four to one against one rival that is alike: four to two.
-    assert shared(0.8, 1) == pytest.approx(4.0 / 6.0)
-    assert unshared(4.0 / 6.0, 1) == pytest.approx(0.8)
+    assert sharing_odds(0.8, 1) == pytest.approx(4.0 / 6.0)
+    assert of_confounded(4.0 / 6.0, 1) == pytest.approx(0.8)
 
 
 @pytest.mark.parametrize("of", ["verdict", "effect"])

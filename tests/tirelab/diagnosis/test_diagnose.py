@@ -9,7 +9,7 @@ from drives import Drive, damped, flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
 from rivals import rivals
 from scipy.signal import butter, lfilter
-from tirelab.diagnosis.confidence import probability, shared, unshared
+from tirelab.diagnosis.confidence import of_confounded, probability, sharing_odds
 from tirelab.diagnosis.diagnose import PoorRecording, catalogue_names, diagnose
 from tirelab.simulation.simulate import simulate
 
@@ -116,10 +116,10 @@ def test_at_one_rate_the_loops_are_alternatives(one_rate_verdict):
     assert frozenset({"rate_independent_hysteresis"}) in named
     # One other loop can still win: with a claim to its odds it leaves it less than a verdict that stands alone has.
     alone = probability("verdict", verdict.grounds)
-    assert verdict.confidence == pytest.approx(shared(alone, 1))
+    assert verdict.confidence == pytest.approx(sharing_odds(alone, 1))
     assert verdict.confidence < alone
     each = {a.names: a.probability for a in verdict.alternatives}
-    assert each[("viscous_damping",)] >= unshared(verdict.confidence, 1) - verdict.confidence > 0.05
+    assert each[("viscous_damping",)] >= of_confounded(verdict.confidence, 1) - verdict.confidence > 0.05
 
 
 def test_a_verdict_is_json(alike_verdict):

@@ -39,14 +39,14 @@ SIZE = DATASET.misfit.size
 WHITE = np.random.default_rng(8).normal(size=SIZE)
 
 
-def left(values: np.ndarray, form_error: float = 0.0, unformed: float | None = None) -> Any:
+def left(values: np.ndarray, form_error: float = 0.0, beyond_forms: float | None = None) -> Any:
     power = float(values @ values)
     return SimpleNamespace(
         problem=SimpleNamespace(dataset=DATASET),
         residual=values,
         power=power,
         form_error=form_error,
-        unformed=power if unformed is None else unformed,
+        beyond_forms=power if beyond_forms is None else beyond_forms,
     )
 
 
@@ -99,13 +99,13 @@ def test_what_forms_account_for_is_no_unknown() -> None:
     whole = np.full(SIZE, 3.0)
     (e,) = DATASET.experiments
     unit = e.noise / e.floor.level
-    found = remainder_of(left(whole, unformed=3.0 * SIZE))
+    found = remainder_of(left(whole, beyond_forms=3.0 * SIZE))
     assert found.of_forms == pytest.approx(0.75)
     assert found.size == pytest.approx(np.sqrt(8.0) * unit)
     # The same by forms that may miss twice the noise in every case: 4 of the 8, and 2 with what they explain.
     assert remainder_of(left(whole, form_error=2.0)).of_forms == pytest.approx(0.5)
-    assert remainder_of(left(whole, form_error=2.0, unformed=7.0 * SIZE)).of_forms == pytest.approx(0.75)
-    assert remainder_of(left(whole, unformed=0.9 * SIZE)).of_forms == 1.0
+    assert remainder_of(left(whole, form_error=2.0, beyond_forms=7.0 * SIZE)).of_forms == pytest.approx(0.75)
+    assert remainder_of(left(whole, beyond_forms=0.9 * SIZE)).of_forms == 1.0
 
 
 def test_a_small_share_of_the_misfit_is_unexplained_only_beyond_the_forms() -> None:

@@ -11,7 +11,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
-from tirelab.estimation.fit import FORM_SCALES, Linearised, Objective, begun, laplace_evidence, minimised
+from tirelab.estimation.fit import (
+    FORM_SCALES,
+    Linearised,
+    Objective,
+    initial_iterate,
+    laplace_evidence,
+    minimise,
+)
 from tirelab.selection.search import Discrepancy
 
 ROWS = 40
@@ -27,14 +34,14 @@ def objective(high: float = 9.0) -> Objective:
 
 
 def test_minimum_of_a_linear_model_is_ridge_regression() -> None:
-    found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-12)
+    found = minimise(objective(), initial_iterate(objective(), np.zeros(3)), 30, 1e-12)
     ridge = np.linalg.solve(COLUMNS.T @ COLUMNS + 0.09 * np.eye(3), COLUMNS.T @ DATA)
     assert found.positions == pytest.approx(ridge, abs=1e-6)
-    assert found.settled
+    assert found.converged
 
 
 def test_minimum_respects_a_bound_and_fits_the_rest() -> None:
-    found = minimised(objective(high=0.1), begun(objective(high=0.1), np.zeros(3)), 30, 1e-12)
+    found = minimise(objective(high=0.1), initial_iterate(objective(high=0.1), np.zeros(3)), 30, 1e-12)
     assert found.positions[0] == pytest.approx(0.1)
     rest = COLUMNS[:, 1]
     left = DATA - 0.1 * COLUMNS[:, 0] - found.positions[2] * COLUMNS[:, 2]
@@ -47,7 +54,7 @@ ERROR = 1e-4
 
 def linearised(*forms: np.ndarray) -> Linearised:
     """The linear model at its optimum, beside the columns of each effect's form errors."""
-    found = minimised(objective(), begun(objective(), np.zeros(3)), 30, 1e-14)
+    found = minimise(objective(), initial_iterate(objective(), np.zeros(3)), 30, 1e-14)
     errors = (ERROR,) * len(forms)
     return Linearised(
         found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int), np.ones(3)
@@ -85,8 +92,8 @@ def test_what_only_mends_a_form_explains_nothing_that_the_form_errors_do_not() -
     forms = np.column_stack([shape, np.ones(ROWS)])
     near = linearised(forms)
     wrong = replace(near, residual=near.residual + 2.0 * shape)
-    unformed = laplace_evidence(wrong, FIXED).unformed
-    assert unformed @ unformed < 1.2 * (near.residual @ near.residual)
+    beyond_forms = laplace_evidence(wrong, FIXED).beyond_forms
+    assert beyond_forms @ beyond_forms < 1.2 * (near.residual @ near.residual)
     assert wrong.residual @ wrong.residual > 5.0 * (near.residual @ near.residual)
 
 
@@ -191,7 +198,7 @@ def test_what_forms_cannot_explain_is_left(drawn: tuple[np.ndarray, np.ndarray, 
     everything = np.hstack([slopes, forms])
     outside = np.linalg.svd(everything)[0][:, -1]
     found = laplace_evidence(at_the_optimum(slopes, (forms,), 5.0 * outside, 1.0), fixed(1.0))
-    np.testing.assert_allclose(found.unformed, 5.0 * outside, atol=1e-9)
+    np.testing.assert_allclose(found.beyond_forms, 5.0 * outside, atol=1e-9)
 
 
 def test_a_scale_of_the_laws_prior_is_found() -> None:

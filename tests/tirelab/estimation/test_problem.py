@@ -56,9 +56,9 @@ def test_positions_and_values_stay_within_their_bounds() -> None:
 
 def test_an_optional_form_that_is_off_at_its_bound_begins_inside() -> None:
     at_bound = free(plain=0.0, optional=True)
-    assert at_bound.low < at_bound.awake < at_bound.position(1.0)
+    assert at_bound.low < at_bound.start < at_bound.position(1.0)
     inside = free(plain=2.0, optional=True)
-    assert inside.awake == inside.position(2.0)
+    assert inside.start == inside.position(2.0)
 
 
 def test_every_parameter_of_an_effect_with_a_prior_is_free_but_readings() -> None:

@@ -11,7 +11,7 @@ import pytest
 from drives import damped
 from radialtire import TireModel
 from tirelab.estimation.fit import fitted
-from tirelab.estimation.ranking import TEMPERATURE, Ranking, additions, corrected, promises, ranked
+from tirelab.estimation.ranking import TEMPERATURE, Ranking, additions, corrected, predicted_gains, ranked
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
 from tirelab.regressors.signature import Signature, law_signature, signatures_of
@@ -81,7 +81,7 @@ def test_the_largest_promise_is_that_of_what_is_there(
     dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy
 ) -> None:
     nothing = fitted(dataset, [{}], noise, noise.highest, -np.inf)
-    found = dict(zip([s.name for s in signatures], promises(signatures, nothing, noise), strict=True))
+    found = dict(zip([s.name for s in signatures], predicted_gains(signatures, nothing, noise), strict=True))
     assert max(found, key=found.__getitem__) == "viscous_damping"
     # A law of the deflection follows nothing of a force of the rate, and may not gain by that.
     assert found["recalibration"] < 0.1 * found["viscous_damping"]
