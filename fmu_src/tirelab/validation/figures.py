@@ -84,7 +84,10 @@ def effect_reliability_diagram(points: Sequence[Point]) -> Figure:
     figure = Figure(figsize=(4.6, 4.4), layout="constrained")
     axes = figure.subplots()
     _reliability(axes, points)
-    axes.set(xlabel="stated probability of an effect", ylabel="part of the named effects that was there")
+    axes.set(
+        xlabel="stated probability of an effect\n(above each bar: number of effects)",
+        ylabel="part of the named effects that was there",
+    )
     return figure
 
 
@@ -97,7 +100,7 @@ def held_out_errors(scores: Sequence[Score]) -> Figure:
 
 def overview(scores: Sequence[Score], title: str) -> Figure:
     """Draw the proof in one figure: naming over size, held-out errors, reliability."""
-    figure = Figure(figsize=(13.0, 4.2), layout="constrained")
+    figure = Figure(figsize=(13.0, 4.6), layout="constrained")
     named, errors, confidence = figure.subplots(1, 3)
     _rates(named, naming(scores).get(ANY_EFFECT, []))
     _over_sizes(named)
@@ -109,8 +112,10 @@ def overview(scores: Sequence[Score], title: str) -> Figure:
 
 
 def _over_sizes(axes: Axes) -> None:
-    axes.set(xscale="log", xlim=(0.8, 150.0), ylim=(-0.05, 1.05))
-    axes.set_xticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
+    sizes = [size for line in axes.lines for size in line.get_xdata() if size > 0.0]
+    axes.set(xscale="log", xlim=(0.8, max(150.0, 1.3 * max(sizes, default=0.0))), ylim=(-0.05, 1.05))
+    ticks = [tick for tick in (1, 3, 10, 30, 100, 300, 1000) if tick <= axes.get_xlim()[1]]
+    axes.set_xticks(ticks, [str(tick) for tick in ticks])
     axes.minorticks_off()
     _plain(axes)
 
@@ -121,19 +126,19 @@ def _reliability(axes: Axes, points: Sequence[Point]) -> None:
     for p in points:
         axes.annotate(
             f"{p.rate.trials}",
-            (p.at, p.rate.value),
-            (-8, -12),
+            (p.at, p.rate.interval[1]),
+            (0, 3),
             textcoords="offset points",
             fontsize=8,
-            ha="right",
+            ha="center",
         )
     axes.set(
-        xlabel="stated confidence",
+        xlabel="stated confidence\n(above each bar: number of verdicts)",
         ylabel="part of the verdicts that was right",
         xlim=(0, 1.03),
-        ylim=(0, 1.03),
+        ylim=(0, 1.08),
     )
-    axes.legend(frameon=False, loc="upper left")
+    axes.legend(frameon=False, loc="lower right")
     _plain(axes)
 
 
@@ -160,7 +165,7 @@ def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
         axis.set_minor_formatter(mpl.ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
     _plain(axes)
 
 
