@@ -1,4 +1,4 @@
-"""A whole diagnosis of files: read, judge, write the tire, build its FMU, replay it, write diagnosis.json and the page.
+"""A whole diagnosis of files: read them, diagnose, write the tire, build and replay its FMU, write the results.
 
 The command, the batch and the blind trials all call `run_diagnosis`.
 """
@@ -114,47 +114,78 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     """Diagnose as it is asked; see `run_diagnosis`."""
     report = progress or (lambda sentence: None)
     limits = None if asked.rig is None else read_rig(asked.rig, {}).test_limits
-    baseline, model, said = _baseline(asked.tire)
+    baseline, model, baseline_notes = _baseline(asked.tire)
     asked = replace(asked, reading=asked.reading.of_part()) if baseline.is_part else asked
-    files, skipped = recording_files(asked.recordings, asked.reading.columns)
-    kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
-    check_once([*files, *kept_files])
-    check_folder(asked.out)
-    fitted = [alone(_read(file, asked.reading, report)) for file in files]
-    kept = [_read(file, asked.reading, report) for file in kept_files]
-    check_apart(list(zip((*files, *kept_files), (*fitted, *kept), strict=True)))
-    check_depth(fitted, kept)
-    beside = [file for file in (asked.simulation, asked.rig) if file is not None]
-    origin = {
-        "command": command_line(
-            asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading, asked.rig
-        ),
-        "date": datetime.now().astimezone().isoformat(timespec="seconds"),
-        "files": [
-            (str(file), sha256(file))
-            for file in files_read([*files, *kept_files], asked.reading.settings, beside)
-        ],
-    }
+    read = _read_all(asked, report)
+    origin = _origin(asked, read.files)
+    fitted, kept = read.fitted, read.kept
     believed = _simulation(asked, model, fitted, [alone(r) for r in kept], report)
     if believed is not None:
-        baseline, fitted, kept = believed.tire, list(believed.fitted), list(believed.kept)
+        baseline, fitted, kept = believed.tire, believed.fitted, believed.kept
     try:
         verdict = diagnose(fitted, baseline, held_out=kept, limits=limits, progress=report)
     except PoorRecording as error:
         doubts = [f"{r.name}: {doubt}" for r in fitted for doubt in r.doubts]
         raise PoorRecording("; ".join([str(error), *doubts])) from None
-    with staged(asked.out) as aside:
-        found = _Found(verdict, tuple(fitted), tuple(kept), believed)
-        content, warnings = _delivered(aside, found, origin, report, asked.samples)
-    # What an earlier diagnosis wrote and this one does not have would seem to belong to it.
-    there = {TEST: verdict.test is not None, DATA: asked.samples, FMU: believed is None}
-    there |= {CORRECTION: believed is not None, SYSTEM: believed is not None and believed.model is not None}
-    for name, written in there.items():
-        if not written:
-            (asked.out / name).unlink(missing_ok=True)
-    notes = [*said, *map(str, (*skipped, *more_skipped))]
+    with staged(asked.out) as folder:
+        found = _Found(verdict, fitted, kept, believed)
+        content, warnings = _delivered(folder, found, origin, report, asked.samples)
+    _remove_outdated(asked, found)
+    notes = [*baseline_notes, *read.skipped]
     notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
     return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
+
+
+@dataclass(frozen=True)
+class _Read:
+    """The recordings of a request, fitted and held out, all their files, and notes on files that were skipped."""
+
+    fitted: tuple[Recording, ...]
+    kept: tuple[Recording, ...]
+    files: tuple[Path, ...]
+    skipped: tuple[str, ...]
+
+
+def _read_all(asked: Request, report: Progress) -> _Read:
+    """Read the recordings; raises TirelabError for a request that would fail after the work (see `request_checks`)."""
+    files, skipped = recording_files(asked.recordings, asked.reading.columns)
+    kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
+    every = (*files, *kept_files)
+    check_once(every)
+    check_folder(asked.out)
+    fitted = tuple(alone(_read(file, asked.reading, report)) for file in files)
+    kept = tuple(_read(file, asked.reading, report) for file in kept_files)
+    check_apart(list(zip(every, (*fitted, *kept), strict=True)))
+    check_depth(fitted, kept)
+    return _Read(fitted, kept, every, tuple(map(str, (*skipped, *more_skipped))))
+
+
+def _origin(asked: Request, files: Sequence[Path]) -> dict[str, Any]:
+    """Return command, date and files with their hashes, by which the page says how to repeat the diagnosis."""
+    beside = [file for file in (asked.simulation, asked.rig) if file is not None]
+    return {
+        "command": command_line(
+            asked.recordings, asked.out, asked.tire, asked.held_out, asked.reading, asked.rig
+        ),
+        "date": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "files": [(str(file), sha256(file)) for file in files_read(files, asked.reading.settings, beside)],
+    }
+
+
+def _remove_outdated(asked: Request, found: _Found) -> None:
+    """Remove files of an earlier diagnosis from the folder that this one did not write: they would seem to be its
+    own.
+    """
+    believed = found.believed
+    written = {
+        TEST: found.verdict.test is not None,
+        DATA: asked.samples,
+        FMU: believed is None,
+        CORRECTION: believed is not None,
+        SYSTEM: believed is not None and believed.model is not None,
+    }
+    for name in (name for name, is_new in written.items() if not is_new):
+        (asked.out / name).unlink(missing_ok=True)
 
 
 @dataclass(frozen=True)
