@@ -1,4 +1,4 @@
-"""The coordinates of the samples, cut into bins: time, deflection, rate, surface, cycle and more."""
+"""The coordinates of the samples, divided into bins: time, deflection, rate, surface, cycle and others."""
 
 from __future__ import annotations
 
@@ -12,22 +12,23 @@ from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
 
 BINS = 800
-"""Bins of a continuous coordinate at most, of about equal numbers of samples: a span of 1 % has eight of them."""
+"""Most bins of a continuous coordinate, with about equal numbers of samples: eight in a span of 1 % of them."""
 
 MOST_SURFACES = 12
-"""More radii than these (terrain) are a continuous coordinate; so many of them are told, evenly over the curvature."""
+"""More radii than these (terrain) are a continuous coordinate; a report then names this many, evenly over the
+curvature."""
 
 NARROWEST = 1.0 / 2000.0
-"""No bin is narrower than this part of its coordinate's range (between the first and the last percent)."""
+"""Least width of a bin, as a part of the coordinate's range between its first and last percent."""
 
 
 @dataclass(frozen=True)
 class Axis:
     """A coordinate cut into bins.
 
-    bin_of: bin of each sample; start, stop: bounds of each bin; parts: bins at which the parts begin over whose ends no
-    span reaches, and the number of bins; labels: of spans, from their first and last bin; slow: whether samples are
-    compared with those of the same deflection and direction; recordings: name for each part, or None
+    bin_of: bin of each sample; start, stop: bounds of each bin; parts: first bin of each part, then the number of bins;
+    no span reaches across the end of a part; label: returns that of a span from its first and last bin; slow: whether
+    samples are compared with those of the same deflection and direction; recordings: name for each part, or None
     """
 
     by: str
@@ -42,7 +43,7 @@ class Axis:
 
 
 def axes_of(recordings: Sequence[Recorded], dataset: RawDataset, kept: Sequence[IndexArray]) -> list[Axis]:
-    """Return every coordinate of the recordings, at the samples `kept` of each one's rows."""
+    """Return every coordinate of the recordings; kept: of each recording, indices of the samples among its rows."""
     records = [(record.sampled, own) for record, own in zip(dataset.experiments, kept, strict=True)]
 
     def joined(value: Callable[[RawExperiment], FloatArray]) -> FloatArray:
@@ -83,7 +84,9 @@ def _even(by: str, unit: str, values: FloatArray, slow: bool = False) -> Axis:
 
 
 def _force(elastic: FloatArray, recorded: FloatArray) -> Axis:
-    """Return the force: bins of the baseline's, which noise does not sort, bounded by the recorded one in them."""
+    """Return the axis of the force: binned by that of the baseline, which has no noise, with bounds of the recorded
+    one.
+    """
     bin_of, start, stop = _bounded(_bins(elastic)[0], recorded)
     return Axis("force", "N", bin_of, start, stop, (0, start.size), _nothing)
 

@@ -40,7 +40,7 @@ from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import contradiction_of, residual_models, unexplained_by
 from .summary import summarise
-from .verdict import Fit, Verdict
+from .verdict import FitErrors, Verdict
 
 QUICK = (
     "Most of it lies in sharp turns of the motion or in changes quicker than what is compared: drive round corners, "
@@ -200,11 +200,11 @@ def _residuals(explanation: Explanation, data: _Data) -> list[FloatArray]:
 
 def _errors(
     data: _Data, residuals: Sequence[FloatArray], explanation: Explanation, validation: HeldOut
-) -> Fit:
+) -> FitErrors:
     """Return the noise floor and the errors [N] before and after the correction, over the compared samples."""
     sizes = np.array([b.size for b in data.before], dtype=float)
     levels = np.array([f.level for f in explanation.floors])
-    return Fit(
+    return FitErrors(
         float(np.sqrt(np.sum(sizes * levels**2) / sizes.sum())),
         rmse(_compared(data.before, explanation)),
         explanation.error,

@@ -1,17 +1,17 @@
-"""Where simulation and recording differ: the residual over every coordinate of a recording.
+"""Localization of the misfit: the residual over every coordinate of a recording.
 
-Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording two
-kinds of span are searched: where the squared error beyond the noise is denser than elsewhere, and where the mean
-residual differs from elsewhere. They are spans of largest sum (Kadane's, Bentley 1984), bounded where the residual
-changes and not by a grid. In time, cycles and history "elsewhere" means at the same deflections and directions of the
-same recording, else every cycle's deep half would be a place.
+Along time, deflection, rate, acceleration, radius, force, cycle, largest deflection so far, direction and recording,
+two kinds of spans are searched: those in which the squared error beyond the noise is denser than elsewhere, and those
+in which the mean residual differs from elsewhere. They are spans of maximum sum (Kadane's algorithm, Bentley 1984), so
+that they begin and end where the residual changes. For time, cycle and history, "elsewhere" means at the same
+deflections and directions of the same recording; otherwise the deep half of every cycle would be a place.
 
-Places are ranked by concentration: their part of the excess error less their part of the samples, or the part of it
-that their own mean takes away, whichever is more.
+Places are ranked by concentration: their part of the excess error minus their part of the samples, or the part of it
+that their own mean explains, whichever is larger.
 
-A span is reported where noise alone would hardly show it anywhere: its squares, and the squares of its bins' means, are
-compared with chi square with as many degrees of freedom as the noise has independent samples (a block as long as its
-correlation counts once), and the chance is multiplied by the number of spans that were examined.
+A span is reported if noise alone would hardly show it anywhere. The sum of its squares, and that of the squared means
+of its bins, are compared with the chi-squared law with as many degrees of freedom as the noise has independent samples
+in it; the probability is multiplied by the number of spans that were examined.
 """
 
 from __future__ import annotations
@@ -32,24 +32,24 @@ from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 
 DEPTHS = 12
-"""Spans of deflection, loading and unloading apart, in which samples are alike: they share a mean error."""
+"""Number of parts of the deflection, for loading and for unloading, within which samples count as alike."""
 
 DENSE = 1.0
-"""Samples belong to a span where their excess is at least this part of the noise's variance: less would let a walk of
-noise alone carry an end away by more than a few samples that count as one."""
+"""Least excess of a sample in a span, as a part of the noise's variance. With less, noise alone would shift the ends of
+a span by more than a few independent samples."""
 
 LOCATED = 1e-3
-"""Chance, over all spans of all coordinates together, of reporting any span in noise alone."""
+"""Probability of reporting any span in noise alone, over all spans of all coordinates together."""
 
 MEAN_DIFFERS = 0.35
-"""Means belong to a span where they differ from the mean elsewhere by this part of the noise at least, as above."""
+"""Least difference between a mean in a span and the mean elsewhere, as a part of the noise; for the same reason."""
 
 LEAST, DENSER = 0.03, 1.5
-"""A place has at least this concentration; where it has it for its share, that share is so many times as dense as the
-rest: what holds its samples' share of the error is no place."""
+"""Least concentration of a place; and how many times denser than elsewhere its part of the error is at least, if the
+concentration comes from that part. A span whose part of the error is that of its samples is not a place."""
 
 MOST_SPANS = 4
-"""Spans along one coordinate (in time: of one recording) at most."""
+"""Most spans along one coordinate (along time: in one recording)."""
 
 
 @dataclass(frozen=True)
@@ -110,13 +110,13 @@ def localize(
 ) -> tuple[Span, ...]:
     """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
 
-    levels [N]: noise floor of each recording
-    left [N]: what a correction that explains everything leaves of each recording: noise, however slowly it wanders
+    levels [N]: noise floor of each recording; left [N]: residuals of a correction that explains everything: they are
+    noise, and their correlation gives the number of independent samples; None: the noise counts as white
     """
     samples = _samples(dataset, residuals, levels, left, compared(recordings))
     axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, dataset, samples.kept)]
     looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
-    # Where the noise was taken for too large, the densest span has more than all samples together.
+    # If the noise floor is too high, the densest span has more excess than all samples together.
     whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-300)
     found = [s for axis, bins in axes for s in _spans(axis, replace(bins, whole=whole), looked_at)]
     return tuple(sorted(found, key=lambda s: -s.concentration))
@@ -125,9 +125,10 @@ def localize(
 def law_corrected(
     recordings: Sequence[Recorded], before: Sequence[FloatArray], baseline: TireModel, corrected: TireModel
 ) -> list[FloatArray]:
-    """Return the residuals [N] in which physics has its place: what the corrected elastic law alone leaves.
+    """Return the residuals [N] of the baseline with the corrected elastic law, in which the other effects are
+    localized.
 
-    before [N]: of the baseline, returned where its law was not corrected, or nothing but its law
+    before [N]: residuals of the baseline, returned where its law was not corrected, or nothing but the law was
     """
     if corrected.law == baseline.law or corrected.effects == baseline.effects:
         return list(before)
@@ -152,9 +153,10 @@ def _largest(values: FloatArray, offset: int) -> tuple[int, int]:
 class _Samples:
     """The compared samples of all recordings end to end, without spikes; arrays of one length.
 
-    residual [N]; variance [N^2]: of the noise; excess [N^2]: square beyond it; alike_excess [N^2], alike_residual [N]:
-    means of the samples like this one; together: of each recording, numbers of samples and how many of the noise then
-    count as one; kept: of each recording, indices into its rows
+    residual [N]; variance [N^2]: of the noise; excess [N^2]: squared residual minus variance; alike_excess [N^2],
+    alike_residual [N]: means over the samples at the same deflection and direction; together: for each recording,
+    numbers n of samples and how many of n count as one, because the noise is correlated; kept: for each recording,
+    indices into its rows
     """
 
     residual: FloatArray
@@ -185,14 +187,14 @@ def _samples(
     together = [(np.ones(1), np.ones(1)) for _ in levels]
     if left is not None:
         rows = zip(dataset.experiments, left, kept, strict=True)
-        together = [_wander(values[record.rows][chosen]) for record, values, chosen in rows]
+        together = [_correlation(values[record.rows][chosen]) for record, values, chosen in rows]
     return _Samples(own, variance, excess, alike, usual, tuple(together), tuple(kept))
 
 
-def _wander(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return lengths n of blocks, and how many samples of a noise count as one in means of so many.
+def _correlation(noise: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return lengths n of blocks, and for each how many samples c of a correlated noise count as one.
 
-    The variance of the mean of n samples that count as n/c is c/n times theirs; with 12 blocks it is known to a third.
+    The variance of the mean of n samples is c/n times theirs; with 12 blocks it is known to a third.
     """
     length, power, found = 1, float(np.mean(noise**2)), [(1.0, 1.0)]
     while noise.size >= 24 * length and power > 0.0:
@@ -217,9 +219,9 @@ def _alike(record: RawExperiment, chosen: IndexArray, values: Sequence[FloatArra
 class _Bins:
     """What the bins of an axis hold; arrays of one value a bin.
 
-    numbers: of samples; total [N]: of the residual; apart [N]: of what it has beyond the mean elsewhere
-    variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: square
-    beyond the noise, and what so many samples have elsewhere; whole [N^2]: excess of all bins
+    numbers: of samples; total [N]: sum of the residual; apart [N]: sum of the residual minus the mean elsewhere
+    variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: squares
+    minus variance, summed, and the same for as many samples elsewhere; whole [N^2]: excess of all bins
     together: as in `_Samples`
     """
 
@@ -234,7 +236,7 @@ class _Bins:
     together: tuple[tuple[FloatArray, FloatArray], ...]
 
     def counted(self, number: FloatArray | float) -> FloatArray:
-        """Return how many samples of the noise count as one among so many, those of the worst recording."""
+        """Return how many of this number of samples count as one; the largest value of all recordings."""
         return np.asarray(np.max([np.interp(number, *curve) for curve in self.together], axis=0))
 
     @cached_property
@@ -243,9 +245,10 @@ class _Bins:
         return self.total**2 / np.maximum(self.variance * self.counted(self.numbers), 1e-300)
 
     def scores(self) -> tuple[FloatArray, ...]:
-        """Return what each bin adds to a span: by its samples' squares, by that of its mean, by its mean, by less it.
+        """Return what each bin adds to a span by four criteria: the squares of its samples, the square of its mean, its
+        mean above and its mean below that elsewhere.
 
-        The mean's square shows a faint force sooner; half of the usual error parts the means from none.
+        The squared mean finds a small force earlier; half of the usual error separates such means from zero.
         """
         unit = self.variance * self.counted(self.numbers) / np.maximum(self.numbers, 1.0)
         usual = np.sqrt(max(self.whole, 0.0) / float(np.sum(self.numbers)))
@@ -258,7 +261,7 @@ class _Bins:
         )
 
     def log_chance(self, a: int, b: int) -> float:
-        """Return the logarithm of the chance that noise alone fills the bins [a, b) so: the least of three tests."""
+        """Return the log probability of the bins [a, b) in noise alone: the smallest one of three tests."""
         squares, means, total, variance = (
             float(np.sum(v[a:b])) for v in (self.squares, self.means, self.total, self.variance)
         )

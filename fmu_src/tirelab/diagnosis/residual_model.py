@@ -1,8 +1,9 @@
-"""What no effect explains: its regression over one coordinate, and recordings that contradict each other.
+"""The unexplained remainder: its regression over one coordinate, and recordings that contradict each other.
 
-A regression says the force over one coordinate, and whether it repeats. Where something stays unexplained, the
-verdict's set and a refitted law are also fitted once more without each recording in turn. A recording contradicts the
-others where they are explained without it, and it is not explained by them: it is of another tire, pressure or zero.
+A regression gives the force over one coordinate, and by cross-validation whether it repeats. Where something stays
+unexplained, the verdict's set and a refitted law are also fitted without each recording in turn. A recording
+contradicts the others if they are explained without it and their fit does not explain it; it may be of another tire,
+pressure or zero.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from .localization import Span
 
 KNOTS = 120
 SAMPLES_PER_KNOT = 30
-"""Knots of a curve: straight lines between eight knots of a wave miss it by 4 % of its height root mean square, so that
-a ripple of a fifteenth of the range is followed; short recordings have fewer."""
+"""Most knots of a curve, and fewest samples for each. Straight lines through eight knots per wave miss it by 4 % of its
+height (root mean square), so that a ripple with a period of a fifteenth of the range is followed."""
 
 FOLDS = 5
-"""Blocks of time; each is predicted from the others."""
+"""Number of blocks of time in the cross-validation; each is predicted from the others."""
 
 Coordinate = Callable[[RawExperiment], FloatArray]
 
@@ -36,7 +37,7 @@ COORDINATES: dict[str, tuple[str, Coordinate]] = {
     "acceleration": ("m/s^2", lambda r: r.motion.acceleration),
     "force": ("N", lambda r: r.elastic(r.motion.deflection)),
 }
-"""The coordinate over which each kind of residual is regressed; what is not here is regressed over time."""
+"""Unit and values of each coordinate; a residual that depends on any other one is regressed over time."""
 
 
 @dataclass(frozen=True)
@@ -70,10 +71,10 @@ class ResidualModel:
 
 
 def unexplained_by(remainder: Remainder, places: Sequence[Span]) -> tuple[str, ...]:
-    """Return the coordinates on which an unexplained remainder depends: none where it is noise or an error of form.
+    """Return the coordinates on which an unexplained remainder depends: none where it is noise or a form error.
 
-    places: those of the remainder that noise alone does not show. Something short is less than the noise over the whole
-    recording; in its own place it is judged by the same bounds.
+    places: of the remainder. A short disturbance may be less than the noise over the whole recording; in its own place
+    it is judged by the same bounds.
     """
     if remainder.unexplained:
         return tuple(d.coordinate for d in remainder.depends) or ("time",)
@@ -135,7 +136,7 @@ def _knots(at: FloatArray) -> FloatArray:
     count = min(KNOTS, max(at.size // SAMPLES_PER_KNOT, 6))
     even = np.linspace(at.min(), at.max(), count // 3 + 1)
     knots = np.sort(np.concatenate([np.quantile(at, np.linspace(0.0, 1.0, count - count // 3)), even]))
-    # Points that all but coincide would make a step.
+    # Points that almost coincide would make a step.
     apart = np.diff(knots, prepend=-np.inf) > 1e-6 * (even[-1] - even[0])
     return np.asarray(knots[apart])
 
@@ -157,13 +158,15 @@ def _curve(at: FloatArray, force: FloatArray, knots: FloatArray, wanted: FloatAr
 
 
 EXPLAINED = 0.5
-"""Part of the error on the others that is left where they are explained without the one that contradicts them."""
+"""A recording contradicts the others only if their error without it is less than this part of that with it."""
 
 
 @dataclass(frozen=True)
 class Contradiction:
-    """names: of the recordings, one of three or more, or both of two; without [N]: error on the others where they are
-    fitted alone, together [N]: where all are; own [N]: error of the fit to the others on the one itself.
+    """A recording that contradicts the others.
+
+    names: its name, or both names where there are two recordings; without [N]: error on the others if only they are
+    fitted; together [N]: if all are fitted; own [N]: error on the recording itself if only the others are fitted
     """
 
     names: tuple[str, ...]
@@ -173,7 +176,7 @@ class Contradiction:
 
     @property
     def sentence(self) -> str:
-        """What is said of it."""
+        """The message about it."""
         if len(self.names) > 1:
             whose = f"Recordings {' and '.join(self.names)} contradict each other"
             each = f"each alone is explained to {self.without:.3g} N, both together to {self.together:.3g} N"

@@ -15,7 +15,7 @@ from .acceptance import NO_WORSE
 from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
-from .verdict import Fit
+from .verdict import FitErrors
 
 MOST_NAMED = 3
 """Alternatives that are named in the sentences; all stand in `alternative_details` of diagnosis.json."""
@@ -29,7 +29,7 @@ def summarise(
     alternatives: Sequence[Alternative],
     regressions: Sequence[ResidualModel],
     confidence: float,
-    fit: Fit,
+    fit: FitErrors,
     test: DiscriminatingTest | None = None,
 ) -> str:
     """Return the verdict in sentences, the first of them `titles.headline`.
@@ -62,7 +62,9 @@ AMPLIFIED = 1.1
 """The noise of the deflection is mentioned where it raises the held-out error by more than this factor."""
 
 
-def _errors(corrected: bool, unexplained: bool, fit: Fit, alternatives: Sequence[Alternative]) -> list[str]:
+def _errors(
+    corrected: bool, unexplained: bool, fit: FitErrors, alternatives: Sequence[Alternative]
+) -> list[str]:
     """Return what the correction does to the error, or what the alternative that leaves least would do."""
     noise = f"the noise is {newtons(fit.noise)}"
     if not corrected:

@@ -39,8 +39,8 @@ SCHEMA = 2
 
 
 @dataclass(frozen=True)
-class Fit:
-    """Noise and root mean square errors [N]; held_out_by: what was held out (see `held_out.HeldOut`).
+class FitErrors:
+    """Noise and root mean square errors [N]; held_out_by: what was held out (see `acceptance.HeldOut`).
 
     held_out_noise_free, after_noise_free: held_out_after and after where the tire is given the noise-free deflection
     """
@@ -56,7 +56,7 @@ class Fit:
 
     @property
     def left(self) -> float:
-        """What the tire leaves [N] beside the noise of the reading."""
+        """Error [N] of the tire without that caused by the noise of the deflection reading."""
         return min(error for error in (self.after, self.after_noise_free) if not math.isnan(error))
 
 
@@ -64,16 +64,16 @@ class Fit:
 class Verdict:
     """The answer of a diagnosis.
 
-    effects: what is missing, empty where nothing is; doubted: what the likeliest fit takes beside them, but is less
-    likely there than not, and is not named; confidence: 0 to 1; grounds: what it rests on
-    alternatives: other sets, likeliest first
-    unexplained_by: coordinates on which something depends that no effect explains; residual_models: regressions of it
-    summary: sentences for a reader; not_compared: those of them on samples that were left out
-    where: places of the misfit before the correction, or of what the refitted law leaves of it where other effects are
-    missing too; tire: the corrected one
-    evidence: all sets that were compared to the end; test: the one that separates an alternative from the verdict, None
-    where no motion within the rig's limits does (the summary then says so)
-    compared: number of sets compared; evaluations: simulations of whole recordings in the final fit
+    effects: those that the baseline lacks; doubted: further effects of the likeliest fit that are more probably absent,
+    and therefore not named; confidence: probability of the verdict, 0 to 1; grounds: the numbers on which it rests
+    alternatives: other sets, likeliest first; remainder: what the corrected tire leaves beyond the noise
+    unexplained_by: coordinates on which an unexplained remainder depends; residual_models: its regressions over them
+    summary: sentences for a reader; not_compared: those of them about samples that were left out
+    where: places of the misfit before the correction, or of the residual of the refitted law where other effects are
+    missing too; fit: errors before and after; tire: the corrected one
+    evidence: all fitted sets; test: the one that separates an alternative from the verdict, None where no motion within
+    the rig's limits does (the summary then says so)
+    compared: number of fitted sets; evaluations: simulations of all recordings in the final fit
     recordings, held_out: those that were fitted and those that were not; baseline: the tire that was corrected
     """
 
@@ -88,7 +88,7 @@ class Verdict:
     summary: str
     not_compared: tuple[str, ...]
     where: tuple[Span, ...]
-    fit: Fit
+    fit: FitErrors
     tire: TireModel
     evidence: tuple[Evidence, ...]
     test: DiscriminatingTest | None

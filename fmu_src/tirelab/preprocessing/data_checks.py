@@ -1,8 +1,8 @@
-"""Which recordings are too short or too poor to be diagnosed, and why; and which samples are not compared.
+"""Recordings that are too short or too poor to be diagnosed, and samples that are not compared.
 
-After a pause of the recording no rate is known until some samples have come. Where the force goes on rising as before
-and falls again while the reading stands at its largest (or its smallest) value, by more than the reading's own changes
-there allow, the gauge did not follow. In a hold the force stops rising.
+After a pause of the recording the rate is not known for some samples. A gauge is at the end of its travel where its
+reading stands at its largest (or smallest) value while the force goes on rising as before and falls again, by more than
+the changes of the reading there allow. In a hold, by contrast, the force stops rising.
 """
 
 from __future__ import annotations
@@ -23,13 +23,14 @@ BoolArray = NDArray[np.bool_]
 
 
 FEWEST_SAMPLES = 100
-"""Fewer samples cannot tell fifteen effects and the noise apart."""
+"""Fewest samples of a recording: fewer cannot distinguish the effects from each other and from the noise."""
 
 FEWEST_STEPS = 8
-"""Fewest distinct deflections: a cycle seen in fewer has no shape."""
+"""Fewest distinct deflections of a recording: with fewer, a cycle has no shape."""
 
 RELATED = 0.2
-"""Multiple correlation of a force with its deflection, rate and acceleration below which it has another cause."""
+"""Least multiple correlation of the force with deflection, rate and acceleration; below it the force has another
+cause."""
 
 
 class PoorRecording(TirelabError):
@@ -65,8 +66,8 @@ def check_signal(
 ) -> None:
     """Raise PoorRecording where the deflection is noise, or the force does not follow it or is hardly more than noise.
 
-    names, levels [N]: what each recording is called, its noise floor; beside: whether the force is what a simulation
-    leaves of the recorded one beside its law, which of a part without a law may be noise alone
+    names: of the recordings; levels [N]: their noise floors; beside: whether the force is that of a diagnosed
+    simulation (see `simulation_correction`), which for a part without a law may be noise only
     """
     for record, name, level in zip(dataset.experiments, names, levels, strict=True):
         motion = record.motion
@@ -101,9 +102,9 @@ def check_signal(
 
 
 def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) -> float:
-    """Return the multiple correlation of a force [N] with its causes along the way, by the `path` [m] of each sample.
+    """Return the multiple correlation of a force [N] with its causes; each sample has the weight of its `path` [m].
 
-    In a hold the tire goes none, and its force relaxes whatever the deflection is.
+    In a hold the path is zero: there the force relaxes at constant deflection.
     """
     root = np.sqrt(path / max(float(path.sum()), 1e-300))
     centred = [root * (values - float(root**2 @ values)) for values in (force, *causes)]
@@ -114,22 +115,22 @@ def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) 
 
 
 BEYOND = 5.0
-"""Rise of the force over what the stiffness, the mean one or that on the way there, makes of the reading: a progressive
-tire is stiffer there."""
+"""Rise of the force over that expected from the change of the reading and the stiffness (the mean one, or that just
+before), above which the gauge did not follow; a progressive tire is stiffer there."""
 
 MAJORITY = 0.5
-"""A majority: of the samples that stand still (the motion is hardly more than its noise then), and of the stays in
-which a gauge at the end of its travel is seen to be there."""
+"""A majority: of the samples near the largest reading (the motion is then hardly more than its noise), and of the stays
+in which the gauge is found at the end of its travel."""
 
 ONWARDS = 0.5
-"""Rate of the force in the first fifth of the stay over that before it: between going on (1) and stopping (0)."""
+"""Rate of the force in the first fifth of a stay over that before it: halfway between going on (1) and stopping (0)."""
 
 FOLLOWED = 0.01
-"""Significance of the turn by which a reading near its end shows that it follows the motion."""
+"""Significance level at which a reading near its largest value bends like a reversal, so that the gauge follows."""
 
 BROAD = 0.4
-"""Part of the stay in which the force is above half of its rise: half of it where the motion is a triangle, more in
-a sine; a ring dies away sooner."""
+"""Least part of a stay in which the force is above half of its rise: it is one half for a triangular motion, more for a
+sine; a ringing decays sooner."""
 
 
 def beyond_travel(deflection: FloatArray, force: FloatArray) -> BoolArray:
@@ -138,15 +139,16 @@ def beyond_travel(deflection: FloatArray, force: FloatArray) -> BoolArray:
 
 
 SETTLING = 8
-"""Samples after a pause in which no rate is known: each of a tire's filters has four unknowns, and twice as many
-samples tell them from noise."""
+"""Number of samples after a pause in which the rate is not known: the filters of the tire have four unknowns each, and
+twice as many samples distinguish these from noise."""
 
 
 def after_pauses(recording: Recorded) -> BoolArray:
-    """Return at which samples (n,) of a recording, or of a part of one, a tire has begun anew to follow the motion.
+    """Return which samples (n,) of a recording, or of a part of one, follow a pause so closely that the rate is
+    unknown.
 
-    That is after each interval that is PAUSE times the one before (see `radialtire.tracking`) and the usual one: what
-    follows a short one is none. Where most samples would be so, the recording is sampled like that.
+    A pause is an interval of PAUSE times both the one before and the median one (see `radialtire.tracking`). Where most
+    samples would follow a pause, that is how the recording is sampled, and none do.
     """
     whole = getattr(recording, "whole", recording)
     steps = np.diff(whole.time)
@@ -159,9 +161,7 @@ def after_pauses(recording: Recorded) -> BoolArray:
 
 
 def compared(recordings: Sequence[Recorded]) -> tuple[BoolArray, ...]:
-    """Return which samples of each recording are compared: those at which the deflection's gauge follows, and the rate
-    is known.
-    """
+    """Return which samples of each recording are compared: those at which the gauge follows and the rate is known."""
     return tuple(~beyond_travel(r.deflection, r.force) & ~after_pauses(r) for r in recordings)
 
 
@@ -217,9 +217,10 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
 
 
 def _turns(stays: Sequence[FloatArray]) -> bool:
-    """Return whether a reading turns in its stays near its largest value as a motion does: bent downwards, by a t-test.
+    """Return whether a reading bends downwards in its stays near the largest value, as a motion in a reversal does.
 
-    A stay counts from the first to the last reading that is not below its median: a gauge that stands still is reached.
+    It is a t-test of the curvature. Of each stay, the part from the first to the last reading at or above its median
+    counts: there a gauge at the end of its travel stands still.
     """
     bent = straight = left = freedom = 0.0
     for stay in stays:

@@ -1,23 +1,23 @@
-"""The motion of a recording: smoothed deflection, rate, acceleration, direction and turns.
+"""The motion of a recording: smoothed deflection, rate, acceleration, direction and reversals.
 
-The longest smoothing that the motion allows at each moment: a smoothing spline of order 3 (it penalises the third
-derivative) passes an angular frequency w [1/sample] by
+The deflection is smoothed as strongly as the motion allows at each moment. A smoothing spline of order 3 (which
+penalises the third derivative) has at the angular frequency w [1/sample] the gain
 
     H(w) = 1 / (1 + (w / w_c)^6)
 
-Splines of many cut-offs w_c are fitted. How well each predicts a held-out sample is known without another fit: a
-residual r of leverage h has left out the variance s^2 (1 - h) of the reading's noise s,
+Splines with several cut-offs w_c are fitted. How well each predicts a held-out sample follows without another fit: at
+the leverage h, the residual r has the variance s^2 (1 - h), where s is the noise of the reading:
 
     log p = 1/2 log(1 - h) - r^2 / (2 s^2 (1 - h))
 
-Summed over a window around each sample this weighs the splines (Wahba, "Spline Models for Observational Data", SIAM
-1990, on leave-one-out; the mean over models is Bayesian), together with how often each is used in the whole recording:
-long ones where the motion is smooth, short ones at corners. Being a mean given the data and not the data themselves,
-rate and acceleration do not bias what is fitted to them towards zero.
+Summed over a window around each sample, log p is the weight of a spline, together with how often it is used in the
+whole recording (leave-one-out: Wahba, "Spline Models for Observational Data", SIAM 1990; the weighted mean is
+Bayesian). Long splines win where the motion is smooth, short ones at corners. Rate and acceleration are thus posterior
+means and not noisy data, so that coefficients fitted to them are not biased towards zero.
 
-In a turn within a sample neither is known. A misfit that depends on the direction, the rate or the past of the motion
-jumps there and says nothing that can be judged. Where it is the same before and after the turn, what shows within it
-comes from the deflection, which is read as well there as elsewhere, or from the mass that turns.
+In a reversal within one sample neither rate nor acceleration is known. A misfit that depends on direction, rate or
+history jumps there, and cannot be judged. Where the misfit is the same before and after the reversal, what shows within
+it comes from the deflection, which is read there as well as elsewhere, or from the reversed mass.
 """
 
 from __future__ import annotations
@@ -37,24 +37,24 @@ IndexArray = NDArray[np.intp]
 
 
 CORNER = TRIMMED**2
-"""Where five samples miss a cubic by this multiple of the noise variance (one in 400 of pure noise), and by what
-counts of a sample's travel, the motion has a corner within a sample."""
+"""The motion has a corner within a sample where five samples miss a cubic by this multiple of the noise variance (one
+in 400 of pure noise does), and by more than NEGLIGIBLE of the travel per sample."""
 
 CORNER_SAMPLES = 6
-"""A corner shows in at most so many samples."""
+"""Most samples in which one corner shows."""
 
 SHORTEST = 2 * CORNER_SAMPLES + 1
-"""Samples of a piece between two corners, at least: what both of them take, and one."""
+"""Fewest samples of a piece between two corners: those in which the two show, and one more."""
 
 MOST_PIECES = 1000
-"""Budget: pieces that are smoothed each by itself."""
+"""Budget: most pieces that are smoothed separately."""
 
 
 @dataclass(frozen=True)
 class Motion:
     """The motion of one recording; every array has the shape of its samples.
 
-    deflection [m], rate [m/s], acceleration [m/s^2]: smoothed as long as the noise and the motion allow
+    deflection [m], rate [m/s], acceleration [m/s^2]: smoothed
     noise: standard deviation [m] of the deflection's reading
     deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
     -1 unloading, kept through holds
@@ -113,9 +113,9 @@ def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
 
 
 def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
-    """Return the pieces of the motion between its corners: a spline across a corner rings on both sides of it.
+    """Return begin and end of the pieces of the motion between its corners; a spline overshoots beside a corner.
 
-    Shorter ones than SHORTEST, and what no corner of a sample explains, stay with their neighbours.
+    Pieces shorter than SHORTEST stay with their neighbours, as do longer unresolved parts, which are not one corner.
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], ~resolved, [False]])))
     cuts = [0]
@@ -131,9 +131,10 @@ def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
 
 
 def branches(deflection: FloatArray, noise: float) -> tuple[FloatArray, FloatArray]:
-    """Return direction and cycle number; a reversal counts beyond six noises [m] and a fiftieth of the span.
+    """Return direction (n,), +1 or -1, and number of the cycle (n,) of a deflection (n,) [m] with this noise [m].
 
-    It is recognised late, but counts from the turning point on.
+    A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of the span; it
+    counts from its turning point on.
     """
     threshold = max(6.0 * noise, 0.02 * float(np.ptp(deflection)))
     turns, sign, best = [0], 1.0, 0
@@ -157,16 +158,16 @@ CUTOFFS = np.pi * np.geomspace(0.02, 2.0, 14)
 """Cut-off frequencies [1/sample]: from a hundred samples to almost the samples themselves."""
 
 WINDOW = 2.0 * CORNER_SAMPLES
-"""Standard deviation [samples] of the window over which splines are weighed: as wide as two corners."""
+"""Standard deviation [samples] of the window over which log p is summed: as wide as two corners."""
 
 WEIGHT_ROUNDS = 6
-"""Rounds in which the splines' shares are found: an expectation and a maximisation each."""
+"""Number of expectation-maximisation steps in which the weights of the splines are found."""
 
 PADDING = 400
-"""Samples that are reflected at each end, so that value and slope go on there."""
+"""Most samples that are reflected at each end, so that value and slope continue there."""
 
 LEVERAGE = 0.97
-"""Upper bound of a spline's leverage: the shortest one would leave no residual to judge it by."""
+"""Upper bound of a spline's leverage: the shortest one would leave no residual to compute log p from."""
 
 
 def smoothed(values: FloatArray, step: float, noise: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -203,7 +204,7 @@ def smoothed(values: FloatArray, step: float, noise: float) -> tuple[FloatArray,
 
 
 def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return each spline's weight at every sample, (splines, n): often used ones have the larger prior."""
+    """Return the weight of each spline at every sample, (splines, n); its mean weight is its prior."""
     scores -= scores.max(axis=0)
     prior = np.full((scores.shape[0], 1), 1.0 / scores.shape[0], dtype=np.float32)
     for _ in range(WEIGHT_ROUNDS):
@@ -214,11 +215,14 @@ def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 SAME = 3.0 * float(np.sqrt(2.0))
-"""Noises by which the misfit before a turn and after it may differ: three standard deviations of a difference."""
+"""Largest difference of the misfit before and after a reversal, in units of the noise: three standard deviations of a
+difference."""
 
 
 def followed_turns(misfit: FloatArray, resolved: BoolArray, noise: float) -> BoolArray:
-    """Return the samples (n,) within turns that leave the misfit as it was before; noise: of a sample."""
+    """Return which samples (n,) lie in reversals with the same misfit before and after; noise: of a sample of the
+    misfit.
+    """
     found = np.zeros(misfit.size, dtype=bool)
     for begin, end in _runs(~resolved):
         if begin < 2 or end > misfit.size - 2:
@@ -233,7 +237,7 @@ def followed_turns(misfit: FloatArray, resolved: BoolArray, noise: float) -> Boo
 def through_turns(
     time: FloatArray, rate: FloatArray, acceleration: FloatArray, turns: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return rate [m/s] and acceleration [m/s^2] where the rate changes evenly within each of the `turns`."""
+    """Return rate [m/s] and acceleration [m/s^2] with a rate that changes linearly within each of the `turns`."""
     rate, acceleration = rate.copy(), acceleration.copy()
     for begin, end in _runs(turns):
         whole = slice(begin - 1, end + 1)

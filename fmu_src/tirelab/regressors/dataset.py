@@ -1,9 +1,9 @@
-"""Recordings brought to the form in which every set of effects is compared with them.
+"""The data with which every set of effects is compared: recordings averaged over blocks.
 
-A recording is averaged over blocks of neighbouring samples, as long as the motion allows. What is averaged is the
-misfit of the baseline tire, which is smoother than the force; the motion is taken in the middle of each block. A block
-whose motion turns within a sample counts only where the misfit is the same before and after the turn. All comparisons
-are made in units of the noise of the averaged misfit.
+A block holds neighbouring samples, as many as the motion allows. The misfit of the baseline tire is averaged, since it
+is smoother than the force; the motion is taken in the middle of each block. A block with a reversal within a sample
+counts only where the misfit is the same before and after the reversal. All comparisons are made in units of the noise
+of the averaged misfit.
 """
 
 from __future__ import annotations
@@ -41,9 +41,11 @@ BoolArray = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Scales:
-    """force [N] peak; travel [m] span of the deflection; duration and interval [s]; rate [m/s] and acceleration [m/s^2]
-    root mean squares over what moves; gauge [m] noise of the deflection's reading; channels: the level of each channel
-    [SI] by its name. All positive.
+    """The scales of the recordings, by which priors are scaled; all positive.
+
+    force [N]: peak; travel [m]: span of the deflection; duration [s]: of the longest recording; interval [s]: between
+    samples; rate [m/s], acceleration [m/s^2]: root mean squares over the counted blocks; gauge [m]: noise of the
+    deflection reading; channels: level of each channel in its SI unit, by its name
     """
 
     force: float
@@ -67,31 +69,32 @@ class Scales:
 
 
 BLOCKS = 4000
-"""Blocks of all recordings together, where the motion allows: signatures and fits cost in proportion."""
+"""Number of blocks of all recordings together, where the motion allows it; signatures and fits cost in proportion."""
 
 MOST_BLOCKS = 40_000
-"""Budget: blocks of all recordings together, whatever the motion asks for."""
+"""Budget: most blocks of all recordings together, even if the motion needs shorter ones."""
 
 FEWEST_BLOCKS = 600
-"""Blocks that a recording keeps at least, where it has as many samples."""
+"""Fewest blocks of a recording that has as many samples."""
 
 TURN = 0.5
-"""Phase p [rad] that a block spans at most, of a motion whose frequency is that of its acceleration over its rate."""
+"""Largest phase [rad] of the motion within a block; its angular frequency is taken as acceleration over rate."""
 
 STEPS_LEFT = 0.3
-"""Part of a gauge's steps that is left of the motion behind them: smooth over a step, no average takes it out."""
+"""Part of a gauge's steps that remains in the deflection after the steps are removed; averaging does not reduce it,
+because it is smooth over a step."""
 
 BY_CHANCE = 0.01
-"""Level of the test that more single samples stand out than the part of all that may."""
+"""Significance level of the test that single outliers are more frequent than RARE."""
 
 RARE = 0.02
-"""Part of all samples below which those that stand out from both their neighbours are spikes."""
+"""Part of all samples below which samples that differ from both their neighbours are outliers, and not noise."""
 
 SECANTS = 40
-"""Parts of the deflection's span over which the stiffness is taken."""
+"""Number of parts of the deflection's span over which the stiffness is computed."""
 
 COUNTED = 0.5
-"""Part of the blocks that must remain, a majority: where the motion is resolved in fewer, all count."""
+"""Least part of the blocks with a resolved motion, a majority; with fewer, all blocks count."""
 
 
 @dataclass(frozen=True)
@@ -99,14 +102,14 @@ class Experiment:
     """One recording in blocks; arrays (n,).
 
     time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
-    baseline [N]: force of the baseline tire there; misfit [N]: force read less the baseline's, averaged over the block
-    counts: whether a block is compared; noise [N]: standard deviation of the averaged misfit's noise
-    least_noise [N]: what the steps of the force's reading leave of it, however smooth they are; resting [N]: the part
-    of it that neighbouring blocks share, where the force rests on a step for longer than a block
-    floor: of the recording as read; gauge [m]: noise of the deflection's reading; size: samples of a block
-    interval [s]: from block to block; reading: noise of the samples [N]
-    measured: the channels that were recorded, by their names, averaged over the blocks
-    left_out [N] (n,): what was taken off the misfit, as blocks leave it out of a response: see `Samples`
+    baseline [N]: force of the baseline tire there; misfit [N]: recorded force minus that of the baseline, averaged over
+    the block; counts: whether a block is compared; noise [N]: standard deviation of the noise of the averaged misfit
+    least_noise [N]: noise that the steps of the force reading cause at least; resting [N]: the part of it that
+    neighbouring blocks have in common, where the force rests on a step for longer than a block
+    floor: noise floor of the samples; gauge [m]: noise of the deflection reading; size: samples of a block
+    interval [s]: between blocks; reading: noise of the samples [N]
+    measured: the recorded channels by their names, averaged over the blocks
+    left_out [N] (n,): distortion by averaging over blocks that was subtracted from the misfit, see `Samples.left_out`
     """
 
     name: str
@@ -145,8 +148,8 @@ class Dataset:
 
     @property
     def rounding_error(self) -> float:
-        """Root mean square of what the steps of the readings leave that neighbouring blocks share, in units of the
-        noise: of the motion behind those of the deflection, and of a force that rests on a step.
+        """Root mean square, in units of the noise, of the rounding errors that neighbouring blocks have in common:
+        those of the deflection's steps, and those of a force that rests on a step.
         """
         count = np.array([e.counts.sum() for e in self.experiments])
         left = [np.hypot(STEPS_LEFT * e.floor.steps, e.resting) / e.noise for e in self.experiments]
@@ -154,7 +157,7 @@ class Dataset:
 
     @property
     def load(self) -> float:
-        """Root mean square force in units of the noise: the baseline's, of a part that pulls the one that was read."""
+        """Root mean square force in units of the noise: of the baseline, or for a two-sided part of the recording."""
         read = self.misfit if self.tire.two_sided else 0.0
         return float(np.sqrt(np.mean((self.stacked([e.baseline for e in self.experiments]) + read) ** 2)))
 
@@ -182,12 +185,14 @@ class Dataset:
         return tuple(KeptStages(e) for e in self.experiments)
 
     def response(self, tire: TireModel) -> FloatArray:
-        """Return what `tire` adds to the force of the baseline tire, in units of the noise (m,)."""
+        """Return the force (m,) of `tire` minus that of the baseline tire, in units of the noise."""
         pairs = zip(self._stages, self.experiments, strict=True)
         return self.stacked([stages.simulate(tire) - e.baseline for stages, e in pairs])
 
     def corrected(self, left_out: Sequence[FloatArray]) -> Dataset:
-        """Return the dataset whose misfit lacks what the blocks leave out [N] of a response."""
+        """Return the dataset with this distortion by its blocks [N] subtracted from the misfit, in place of the
+        last.
+        """
         pairs = zip(self.experiments, left_out, strict=True)
         changed = (replace(e, misfit=e.misfit + e.left_out - own, left_out=own) for e, own in pairs)
         return replace(self, experiments=tuple(changed))
@@ -201,8 +206,8 @@ class Dataset:
         return replace(self, experiments=tuple(found))
 
     def only(self, kept: Sequence[BoolArray]) -> Dataset:
-        """Return the dataset where only blocks count of which all samples are `kept` (n,) of the recordings; the
-        motion is that of the whole recordings.
+        """Return the dataset in which only blocks count whose samples are all in `kept` (n,), one array per recording;
+        the motion is that of the whole recordings.
         """
         found = []
         for e, k in zip(self.experiments, kept, strict=True):
@@ -212,7 +217,7 @@ class Dataset:
 
 
 def _of_samples(averaged: Noise, experiment: Experiment) -> float:
-    """Return the noise [N] of a sample, from that of the averages and what averaging took out of it."""
+    """Return the noise [N] of a sample, from that of the averages and the part that averaging removed."""
     taken_out = max(experiment.reading.level**2 - experiment.noise**2, 0.0)
     return float(np.sqrt(averaged.level**2 + taken_out))
 
@@ -222,9 +227,9 @@ def dataset_of(
     tire: TireModel,
     readings: Sequence[Noise] | None = None,
 ) -> Dataset:
-    """Return the recordings in blocks and what `tire`, the baseline, misses of them.
+    """Return the recordings in blocks, with the misfit of `tire`, the baseline.
 
-    readings: noise of the samples of each recording, if it is known; blocks are as long at least as it remembers
+    readings: noise of the samples of each recording, if it is known; blocks are at least as long as its memory
     """
     total = sum(r.time.size for r in recordings)
     size = max(1, -(-total // BLOCKS))
@@ -256,10 +261,11 @@ class Samples:
         )
 
     def left_out(self, dataset: Dataset, tire: TireModel) -> tuple[FloatArray, ...]:
-        """Return by how much [N] the average of `tire`'s response over the samples of a block is more than it is there.
+        """Return the distortion [N] of `tire`'s response by averaging: its mean over the samples of a block minus the
+        response computed from block to block, one array (n,) for each experiment.
 
-        One array (n,) for each experiment. A delay that is shorter than a block is not what it is from sample to
-        sample, and the average over a knee is not the knee of the average.
+        A delay shorter than a block differs from that between samples, and the average over a knee is not the knee of
+        the average.
         """
         found = []
         for e, motion, baseline in zip(dataset.experiments, self.motions, self.baselines, strict=True):
@@ -272,13 +278,13 @@ class Samples:
 
 
 def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:
-    """Return the samples of the recordings as their blocks are made of them; tire: the baseline."""
+    """Return the samples from which the blocks of the recordings are made; tire: the baseline."""
     motions = tuple(smoothed_motion(r, motion_of(r.time, _read(r)[0])) for r in recordings)
     return Samples(tuple(recordings), motions, tuple(simulate(tire, m, m) for m in motions))
 
 
 def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:
-    """Return `tire` with the effects of these names and values, in the order of the signal's way."""
+    """Return `tire` with the effects of these names and values, in the order of the signal path."""
     chosen = {e.name: (e, v) for e, v in tire.effects} | {n: (CATALOGUE[n], v) for n, v in effects}
     names = list(CATALOGUE)
     order = sorted(chosen.values(), key=lambda p: (PLACES.index(p[0].place), names.index(p[0].name)))
@@ -286,7 +292,7 @@ def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) 
 
 
 def _read(recording: Recorded) -> tuple[FloatArray, float]:
-    """Return the deflection [m] as it is read, without the steps of a gauge, and these [m], 0 where it has none."""
+    """Return the deflection [m] without the steps of its gauge, and the step [m], 0 where there is none."""
     step = staircase_step(recording.deflection)
     read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
     return read, step
@@ -295,7 +301,7 @@ def _read(recording: Recorded) -> tuple[FloatArray, float]:
 def _experiment(
     recording: Recorded, tire: TireModel, sizes: tuple[int, int], reading: Noise | None
 ) -> Experiment:
-    """Return a recording in blocks; sizes: samples of one at least, and at most."""
+    """Return a recording in blocks; sizes: least and most samples of a block; reading: noise of a sample, if known."""
     read, step = _read(recording)
     motion = motion_of(recording.time, read)
     gauge = 0.0 if step > 0.0 else motion.noise
@@ -331,7 +337,7 @@ def _experiment(
     rate, acceleration = through_turns(recording.time, motion.rate, motion.acceleration, turns)
 
     def middle(values: FloatArray) -> FloatArray:
-        # That of an even block lies between two samples: either of them would be a lag of half a sample.
+        # The middle of an even block lies between two samples; taking one of them would be a lag of half a sample.
         return np.asarray(0.5 * (values[before] + values[after]))
 
     measured = {
@@ -345,10 +351,10 @@ def _experiment(
         middle(acceleration),
         measured,
     )
-    # Quick changes that only a model can tell from noise are at the blocks' own rate; see `saturated`.
+    # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
     of_blocks = noise_of(averaged, interval * size, blocks.deflection, blocks.rate, blocks.acceleration)
     noise = min(reading.level * np.sqrt(min(reading.memory / size, 1.0)), of_blocks.level)
-    # A slow force rests on a step for many samples, and their average errs as each of them.
+    # A slow force rests on a step for many samples: averaging does not reduce their rounding error.
     moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
     rounding = force_step * SHARE_OF_STEP
     least_noise = rounding / float(np.sqrt(max(size * moving, 1.0)))
@@ -387,19 +393,19 @@ def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def spikes(misfit: FloatArray) -> BoolArray:
-    """Return where a single sample stands out of both its neighbours."""
+    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction."""
     level = white_level(misfit)
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
     lone[1:-1] = (
         (np.abs(before) > STANDS_OUT * level) & (np.abs(after) > STANDS_OUT * level) & (before * after > 0.0)
     )
-    # What is frequent is noise that not all of the recording has: of a gauge's steps while the tire moves.
+    # Frequent ones are noise of a part of the recording, such as the steps of a gauge while the tire moves.
     return lone if lone.mean() < RARE else np.zeros_like(lone)
 
 
 def _rare(lone: BoolArray) -> bool:
-    """Whether so many single samples stand out by chance where the part RARE does."""
+    """Whether the number of outliers is compatible with a frequency of RARE."""
     return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > BY_CHANCE)
 
 

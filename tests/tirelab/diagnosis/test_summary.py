@@ -7,12 +7,12 @@ from tirelab.diagnosis.confidence import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.diagnosis.summary import summarise
-from tirelab.diagnosis.verdict import Fit
+from tirelab.diagnosis.verdict import FitErrors
 from tirelab.estimation.findings import NamedEffect
 
 NAN = float("nan")
-FELL = Fit(6.0, 26.4, 6.1, 26.5, 6.2, "recordings given")
-STAYED = Fit(6.0, 32.5, 32.5, 32.4, 32.4, "recordings given")
+FELL = FitErrors(6.0, 26.4, 6.1, 26.5, 6.2, "recordings given")
+STAYED = FitErrors(6.0, 32.5, 32.5, 32.4, 32.4, "recordings given")
 FRICTION = NamedEffect("rate_independent_hysteresis", {}, 1.0, 0.9)
 
 
@@ -21,7 +21,7 @@ def regressed(by, repeats, after=6.4, held_out_after=6.5):
 
 
 def test_nothing_missing_does_not_fall():
-    fit = Fit(5.0, 5.1, 5.1, NAN, NAN, "recordings given")
+    fit = FitErrors(5.0, 5.1, 5.1, NAN, NAN, "recordings given")
     told = summarise((), (), (), 0.7, fit)
     assert told == "Nothing is missing. The RMS error is 5.10 N; the noise is 5.00 N. Confidence 70 %."
 
@@ -36,16 +36,18 @@ def test_an_effect_is_stated_with_the_improvement_on_held_out_data():
 
 
 def test_amplified_reading_noise_is_separated_from_the_error_of_the_tire():
-    fit = Fit(6.0, 26.4, 9.1, 26.5, 9.2, "recordings given", 6.2)
+    fit = FitErrors(6.0, 26.4, 9.1, 26.5, 9.2, "recordings given", 6.2)
     assert (
         "With the noise-free deflection as input it is 6.20 N; the remainder is reading noise"
         in summarise((FRICTION,), (), (), 0.85, fit)
     )
-    assert "noise-free" not in summarise((FRICTION,), (), (), 0.85, Fit(6.0, 26.4, 6.1, 26.5, 6.2, "by", 6.1))
+    assert "noise-free" not in summarise(
+        (FRICTION,), (), (), 0.85, FitErrors(6.0, 26.4, 6.1, 26.5, 6.2, "by", 6.1)
+    )
 
 
 def test_a_held_out_error_that_grows_is_not_said_to_fall():
-    told = summarise((FRICTION,), (), (), 0.85, Fit(6.0, 26.4, 6.1, 26.5, 31.0, "recordings given"))
+    told = summarise((FRICTION,), (), (), 0.85, FitErrors(6.0, 26.4, 6.1, 26.5, 31.0, "recordings given"))
     assert "On held-out data it does not fall: it goes from 26.5 N to 31.0 N." in told
 
 
