@@ -112,8 +112,10 @@ def overview(scores: Sequence[Score], title: str) -> Figure:
 
 
 def _over_sizes(axes: Axes) -> None:
-    sizes = [size for line in axes.lines for size in line.get_xdata() if size > 0.0]
-    axes.set(xscale="log", xlim=(0.8, max(150.0, 1.3 * max(sizes, default=0.0))), ylim=(-0.05, 1.05))
+    together = axes.get_shared_x_axes().get_siblings(axes)
+    drawn = [np.asarray(line.get_xdata(), dtype=np.float64) for one in together for line in one.get_lines()]
+    largest = max((float(sizes.max()) for sizes in drawn), default=0.0)
+    axes.set(xscale="log", xlim=(0.8, max(150.0, 1.3 * largest)), ylim=(-0.05, 1.05))
     ticks = [tick for tick in (1, 3, 10, 30, 100, 300, 1000) if tick <= axes.get_xlim()[1]]
     axes.set_xticks(ticks, [str(tick) for tick in ticks])
     axes.minorticks_off()
