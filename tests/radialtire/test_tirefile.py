@@ -170,7 +170,9 @@ def test_parameters_can_be_replaced_by_name() -> None:
 
 
 def test_a_replacement_outside_its_bounds_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"mass = -2 is not allowed; it must lie between 0 and 1e\+06 kg"):
+    with pytest.raises(
+        ParameterError, match=r"mass = -2 is not allowed; it must lie between 0 and 1e\+06 kg"
+    ):
         with_parameters(tire_with(("inertia", (2.0,))), {"inertia.mass": -2.0})
 
 

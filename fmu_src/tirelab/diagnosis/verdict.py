@@ -136,21 +136,7 @@ class Verdict:
             {
                 "schema": SCHEMA,
                 "verdict": {
-                    "effects": [
-                        {
-                            "name": e.name,
-                            "parameters": {
-                                p: {"value": v.value, "std": v.std, "unit": v.unit}
-                                for p, v in e.parameters.items()
-                            },
-                            "share": e.share,
-                            "probability": e.probability,
-                            "grounds": dict(e.grounds),
-                            "size": effect_size(e.name, self.tire, self.baseline, self.recordings),
-                            **({"law": [c.to_dict() for c in self._law()]} if e.name == REFITTED_LAW else {}),
-                        }
-                        for e in self.effects
-                    ],
+                    "effects": [self._effect_to_dict(e) for e in self.effects],
                     "doubted": [{"name": e.name, "probability": e.probability} for e in self.doubted],
                     "confidence": self.confidence,
                     "grounds": dict(self.grounds),
@@ -185,6 +171,23 @@ class Verdict:
                 "data": None,
             }
         )
+
+    def _effect_to_dict(self, effect: NamedEffect) -> dict[str, Any]:
+        """Return an entry of `effects` in diagnosis.json."""
+        entry = {
+            "name": effect.name,
+            "parameters": {
+                name: {"value": e.value, "std": e.std, "unit": e.unit}
+                for name, e in effect.parameters.items()
+            },
+            "share": effect.share,
+            "probability": effect.probability,
+            "grounds": dict(effect.grounds),
+            "size": effect_size(effect.name, self.tire, self.baseline, self.recordings),
+        }
+        if effect.name == REFITTED_LAW:
+            entry["law"] = [change.to_dict() for change in self._law()]
+        return entry
 
     def page_content(self) -> dict[str, Any]:
         """Return what the report shows besides the content of diagnosis.json (see `report.page.write_report`)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,97 +16,108 @@ MOST_PLACES = 6
 """Rows of the table of places."""
 
 
-def print_diagnosis(
-    console: Console,
-    diagnosis: Mapping[str, Any],
-    out: Path,
-) -> None:
+def print_diagnosis(console: Console, diagnosis: Mapping[str, Any], out: Path) -> None:
     """Print the verdict, its alternatives, the errors, the places, the parameters, the next test and the files.
 
-    diagnosis: the content of diagnosis.json
+    diagnosis: the content of diagnosis.json; out: the folder that was written
     """
-    verdict, fit = diagnosis["verdict"], diagnosis["fit"]
+    verdict = diagnosis["verdict"]
     console.print(Text(first_screen.headline(diagnosis), style="bold"))
     console.print(Text(verdict["summary"]))
     console.print()
+    sections: list[Sequence[Table | Text]] = [[_errors(diagnosis)]]
+    if diagnosis["where"]:
+        sections.append([_places(diagnosis)])
+    sections += [_effect(effect, diagnosis["report"]) for effect in verdict["effects"]]
+    if verdict.get("corrections"):
+        sections.append([_regressions(verdict["corrections"])])
+    if verdict.get("alternative_details"):
+        sections.append([_alternatives(verdict["alternative_details"])])
+    for section in sections:
+        console.print(*section, sep="\n")
+        console.print()
+    console.print(_next_step(diagnosis))
+    console.print(Text(f"Written to {printable(str(out))}: {', '.join(_files(diagnosis))}"))
+
+
+def _errors(diagnosis: Mapping[str, Any]) -> Table:
+    fit = diagnosis["fit"]
     errors = _table("RMS error [N]", "before", "after", "noise")
     noise = words.number(fit["noise"])
     errors.add_row("fitted", words.number(fit["before"]), words.number(fit["after"]), noise)
     if fit["held_out_before"] is not None:
         kept = (words.number(fit["held_out_before"]), words.number(fit["held_out_after"]))
-        by = diagnosis.get("held_out_by", "")
-        errors.add_row(f"held-out{words.held_out_part(by)}", *kept, noise)
-    console.print(errors)
-    console.print()
+        errors.add_row(f"held-out{words.held_out_part(diagnosis.get('held_out_by', ''))}", *kept, noise)
+    return errors
 
-    if diagnosis["where"]:
-        places = _table(
-            "where they differ",
-            "with the law refitted" if words.law_apart(verdict) else "",
-            "share of the error",
-            "mean residual [N]",
+
+def _places(diagnosis: Mapping[str, Any]) -> Table:
+    refitted = "with the law refitted" if words.law_apart(diagnosis["verdict"]) else ""
+    places = _table("where they differ", refitted, "share of the error", "mean residual [N]")
+    for place in words.foremost(diagnosis["where"], MOST_PLACES):
+        places.add_row(
+            words.coordinate(place["by"]),
+            printable(words.span(place)),
+            words.percent(place["share"]),
+            words.residual(place["mean_residual"], diagnosis["fit"]["noise"]),
         )
-        for place in words.foremost(diagnosis["where"], MOST_PLACES):
-            mean = words.residual(place["mean_residual"], fit["noise"])
-            places.add_row(
-                words.coordinate(place["by"]),
-                printable(words.span(place)),
-                words.percent(place["share"]),
-                mean,
-            )
-        console.print(places)
-        console.print()
+    return places
 
-    for effect in verdict["effects"]:
-        title = f"{titles.full_title(effect['name'])}, without it {words.percent(effect['share'])} of the error is back"
-        console.print(Text(title, style="dim"))
-        if effect.get("law"):
-            surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
-            for row in map(words.law_row, effect["law"]):
-                surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
-            console.print(surfaces)
-            shape = sum(not words.is_of_a_surface(name) for name in effect["parameters"])
-            if shape:
-                console.print(
-                    Text(f"and {shape} constants of its shape: the curve is in {diagnosis['report']}")
-                )
-        else:
-            parameters = _table("", "", "")
-            parameters.show_header = False
-            for name, e in effect["parameters"].items():
-                value = words.estimate(e["value"], e["std"], e["unit"])
-                parameters.add_row(titles.effect_title(name), value, words.meaning(effect["name"], name))
-            console.print(parameters)
-        console.print()
 
-    if verdict.get("corrections"):
-        regressed = _table(
-            "regression of the remainder over", "RMS error [N]", "held-out [N]", "explained, held-out"
-        )
-        for c in verdict["corrections"]:
-            errors_with = (words.number(c["after"]), words.number(c["held_out_after"]))
-            regressed.add_row(titles.dependence(c["by"]), *errors_with, words.percent(max(c["repeats"], 0.0)))
-        console.print(regressed)
-        console.print()
+def _effect(effect: Mapping[str, Any], report: str) -> list[Table | Text]:
+    """Return an effect with its parameters, or with A and B of each surface; report: file with the rest of the law."""
+    name = effect["name"]
+    title = f"{titles.full_title(name)}, without it {words.percent(effect['share'])} of the error is back"
+    lines: list[Table | Text] = [Text(title, style="dim")]
+    if not effect.get("law"):
+        parameters = _table("", "", "")
+        parameters.show_header = False
+        for parameter, e in effect["parameters"].items():
+            value = words.estimate(e["value"], e["std"], e["unit"])
+            parameters.add_row(titles.effect_title(parameter), value, words.meaning(name, parameter))
+        return [*lines, parameters]
+    surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
+    for row in map(words.law_row, effect["law"]):
+        surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
+    lines.append(surfaces)
+    if shape := sum(not words.is_of_a_surface(parameter) for parameter in effect["parameters"]):
+        lines.append(Text(f"and {shape} constants of its shape: the curve is in {report}"))
+    return lines
 
-    if verdict.get("alternative_details"):
-        others = _table("cannot be ruled out", "probability", "what decides")
-        for other in words.likeliest(verdict["alternative_details"]):
-            chance = "not seen" if other["probability"] is None else words.percent(other["probability"])
-            others.add_row(other["difference"], chance, other["action"] or other["reason"])
-        console.print(others)
-        console.print()
 
+def _regressions(corrections: Sequence[Mapping[str, Any]]) -> Table:
+    regressed = _table(
+        "regression of the remainder over", "RMS error [N]", "held-out [N]", "explained, held-out"
+    )
+    for c in corrections:
+        errors = (words.number(c["after"]), words.number(c["held_out_after"]))
+        regressed.add_row(titles.dependence(c["by"]), *errors, words.percent(max(c["repeats"], 0.0)))
+    return regressed
+
+
+def _alternatives(details: Sequence[Mapping[str, Any]]) -> Table:
+    others = _table("cannot be ruled out", "probability", "what decides")
+    for other in words.likeliest(details):
+        chance = "not seen" if other["probability"] is None else words.percent(other["probability"])
+        others.add_row(other["difference"], chance, other["action"] or other["reason"])
+    return others
+
+
+def _next_step(diagnosis: Mapping[str, Any]) -> Text:
+    verdict = diagnosis["verdict"]
     lacking = [f"{d['reason']}: {d['action']}" for d in verdict.get("alternative_details", []) if d["action"]]
     step = first_screen.next_step(diagnosis, lacking)
     drive = f" Drive {verdict['separating_test']['file']}." if step.drive else ""
-    console.print(Text(f"What to do next: {step.action} {step.why}".rstrip() + drive))
+    return Text(f"What to do next: {step.action} {step.why}".rstrip() + drive)
+
+
+def _files(diagnosis: Mapping[str, Any]) -> list[str]:
+    """Return the names of the files of a diagnosis, without those that it did not write."""
+    test = diagnosis["verdict"]["separating_test"]
     files = [diagnosis["report"], diagnosis["tire"], diagnosis["corrected_fmu"]]
-    files += [(diagnosis.get("correction") or {}).get("system"), "diagnosis.json"]
-    files += [diagnosis["data"]] if diagnosis.get("data") else []
-    if verdict["separating_test"] is not None:
-        files.append(verdict["separating_test"]["file"])
-    console.print(Text(f"Written to {printable(str(out))}: {', '.join(filter(None, files))}"))
+    files += [(diagnosis.get("correction") or {}).get("system"), "diagnosis.json", diagnosis.get("data")]
+    files.append(None if test is None else test["file"])
+    return [name for name in files if name]
 
 
 def printable(text: str) -> str:

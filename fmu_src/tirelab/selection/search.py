@@ -179,6 +179,11 @@ class Evidence:
     sizes: tuple[float, ...]
     variance: float
 
+    @property
+    def log_posterior(self) -> float:
+        """Log posterior of the set, not normalised."""
+        return self.log_likelihood - PRIOR_ODDS * len(self.names)
+
 
 def normal_equations(signatures: Sequence[Signature], misfit: FloatArray) -> NormalEquations:
     """Return the normal equations of the signatures; misfit (n,) in units of the noise."""
@@ -313,10 +318,6 @@ class Selection:
         sizes = {len(e.names): e for e in reversed(self.ranked)}
         return tuple(dict.fromkeys((*self.ranked[:best], *(sizes[k] for k in sorted(sizes)))))
 
-    def posterior(self, evidence: Evidence) -> float:
-        """Return the log posterior of a set."""
-        return evidence.log_likelihood - PRIOR_ODDS * len(evidence.names)
-
 
 def search(equations: NormalEquations, discrepancy: Discrepancy) -> Selection:
     """Return the sets that the search visited."""
@@ -324,33 +325,28 @@ def search(equations: NormalEquations, discrepancy: Discrepancy) -> Selection:
     found: dict[tuple[str, ...], Evidence] = {(): evidence_of((), equations, discrepancy)}
     frontier: list[tuple[str, ...]] = [()]
 
-    def posterior(names: tuple[str, ...]) -> float:
-        return found[names].log_likelihood - PRIOR_ODDS * len(names)
-
-    def polished(names: tuple[str, ...], start: Evidence) -> None:
+    def optimise(names: tuple[str, ...], start: Evidence) -> None:
         found[names] = evidence_of(names, equations, discrepancy, start)
 
     for size in range(1, MOST_CANDIDATES + 1):
         rough: dict[tuple[str, ...], Evidence] = {}
-        for base in frontier:
-            for name in order:
-                names = tuple(sorted({*base, name}, key=order.__getitem__))
-                if name not in base and names not in rough:
-                    rough[names] = evidence_of(names, equations, discrepancy, found[base], polish=False)
+        for base, name in itertools.product(frontier, order):
+            names = tuple(sorted({*base, name}, key=order.__getitem__))
+            if name not in base and names not in rough:
+                rough[names] = evidence_of(names, equations, discrepancy, found[base], polish=False)
         if not rough:
             break
         best = sorted(rough, key=lambda n: -rough[n].log_likelihood)[:POLISHED]
         for names in best:
-            polished(names, rough[names])
-        frontier = sorted(best, key=lambda n: -posterior(n))[:BEAM]
-        if size > 2:  # later candidates may have made an earlier one unnecessary
-            for names in frontier[:2]:
-                for out in names:
-                    less = tuple(n for n in names if n != out)
-                    if less not in found:
-                        polished(less, found[names])
-        top = max(posterior(n) for n in found)
-        if size > 2 and posterior(frontier[0]) < top - LOST:
+            optimise(names, rough[names])
+        frontier = sorted(best, key=lambda n: -found[n].log_posterior)[:BEAM]
+        if size <= 2:
+            continue
+        # Later candidates may have made an earlier one unnecessary.
+        for base, removed in ((names, name) for names in frontier[:2] for name in names):
+            less = tuple(n for n in base if n != removed)
+            if less not in found:
+                optimise(less, found[base])
+        if found[frontier[0]].log_posterior < max(e.log_posterior for e in found.values()) - LOST:
             break
-    ranked = sorted(found.values(), key=lambda e: -(e.log_likelihood - PRIOR_ODDS * len(e.names)))
-    return Selection(tuple(ranked))
+    return Selection(tuple(sorted(found.values(), key=lambda e: -e.log_posterior)))

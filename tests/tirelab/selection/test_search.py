@@ -157,5 +157,5 @@ def test_a_fit_begins_with_the_best_sets_and_the_best_of_each_size() -> None:
     assert starts[:2] == found.ranked[:2]
     assert {len(e.names) for e in starts} == {len(e.names) for e in found.ranked}
     for evidence in starts[2:]:
-        same = [found.posterior(e) for e in found.ranked if len(e.names) == len(evidence.names)]
-        assert found.posterior(evidence) == max(same)
+        same = [e.log_posterior for e in found.ranked if len(e.names) == len(evidence.names)]
+        assert evidence.log_posterior == max(same)
