@@ -75,7 +75,7 @@ DERIVED = (
     "preprocessing/noise.SMALL",
     "preprocessing/noise.STAYS",
     "preprocessing/noise.TRIMMED",
-    "regressors/dataset.BY_CHANCE",
+    "preprocessing/data_checks.BY_CHANCE",
     "regressors/dataset.COUNTED",
     "regressors/excitation.COURSE_DRAWS",
     "regressors/excitation.UNDER_WAY",

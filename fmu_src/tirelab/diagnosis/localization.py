@@ -24,10 +24,9 @@ import numpy as np
 from radialtire import TireModel
 from scipy.stats import chi2
 
-from ..preprocessing.data_checks import compared
+from ..preprocessing.data_checks import compared, spikes
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
-from ..regressors.dataset import spikes
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..regressors.dataset import Dataset, spikes
+from ..preprocessing.data_checks import spikes
+from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
 from ..selection.search import LIKE_NOISE
 from ..simulation.channels import Sampled

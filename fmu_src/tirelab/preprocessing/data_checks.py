@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from radialtire.tracking import PAUSE
-from scipy.stats import t
+from scipy.stats import binom, t
 
 from ..errors import TirelabError
 from .noise import FEWEST_EVENTS, STANDS_OUT, deflection_noise, white_level
@@ -158,6 +158,30 @@ def after_pauses(recording: Recorded) -> BoolArray:
         found[first : first + SETTLING] = True
     own = found[-recording.time.size :]
     return own if own.mean() < MAJORITY else np.zeros_like(own)
+
+
+BY_CHANCE = 0.01
+"""Significance level of the test that single outliers are more frequent than RARE."""
+
+RARE = 0.02
+"""Part of all samples below which samples that differ from both their neighbours are outliers, and not noise."""
+
+
+def spikes(misfit: FloatArray) -> BoolArray:
+    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction."""
+    level = white_level(misfit)
+    lone = np.zeros(misfit.size, dtype=bool)
+    before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
+    lone[1:-1] = (
+        (np.abs(before) > STANDS_OUT * level) & (np.abs(after) > STANDS_OUT * level) & (before * after > 0.0)
+    )
+    # Frequent ones are noise of a part of the recording, such as the steps of a gauge while the tire moves.
+    return lone if lone.mean() < RARE else np.zeros_like(lone)
+
+
+def are_rare(lone: BoolArray) -> bool:
+    """Whether the number of outliers is compatible with a frequency of RARE."""
+    return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > BY_CHANCE)
 
 
 def compared(recordings: Sequence[Recorded]) -> tuple[BoolArray, ...]:

@@ -16,20 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
-from scipy.stats import binom
+from radialtire.model import READING_NOISE
 
-from ..preprocessing.data_checks import compared
-from ..preprocessing.motion import followed_turns, motion_of, through_turns
+from ..preprocessing.data_checks import are_rare, compared, spikes
+from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
 from ..preprocessing.noise import (
     SHARE_OF_STEP,
-    STANDS_OUT,
     Noise,
     NoiseFloor,
+    Scalar,
     destepped,
     noise_floor,
     noise_of,
     staircase_step,
-    white_level,
 )
 from ..preprocessing.samples import Recorded
 from ..simulation.kept_stages import KeptStages
@@ -83,12 +82,6 @@ TURN = 0.5
 STEPS_LEFT = 0.3
 """Part of a gauge's steps that remains in the deflection after the steps are removed; averaging does not reduce it,
 because it is smooth over a step."""
-
-BY_CHANCE = 0.01
-"""Significance level of the test that single outliers are more frequent than RARE."""
-
-RARE = 0.02
-"""Part of all samples below which samples that differ from both their neighbours are outliers, and not noise."""
 
 SECANTS = 40
 """Number of parts of the deflection's span over which the stiffness is computed."""
@@ -240,7 +233,9 @@ def dataset_of(
     )
     gauge = float(np.median([e.gauge for e in experiments]))
     return Dataset(
-        experiments, replace(tire, reading_noise=min(gauge, 0.01)), _scales(experiments, recordings)
+        experiments,
+        replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)),
+        _scales(experiments, recordings),
     )
 
 
@@ -298,87 +293,120 @@ def _read(recording: Recorded) -> tuple[FloatArray, float]:
     return read, step
 
 
+@dataclass(frozen=True)
+class _Blocks:
+    """Blocks of `size` neighbouring samples, `count` of them; the samples that fill no whole block are left out."""
+
+    size: int
+    count: int
+
+    def of(self, values: NDArray[Scalar]) -> NDArray[Scalar]:
+        """Return the values (n,) of the samples as those of the blocks (count, size)."""
+        return values[: self.count * self.size].reshape(-1, self.size)
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Return the mean of the values over each block."""
+        return np.asarray(self.of(values).mean(axis=1))
+
+    def middle(self, values: FloatArray) -> FloatArray:
+        """Return the values in the middle of each block.
+
+        The middle of an even block lies between two samples; taking one of them would be a lag of half a sample.
+        """
+        blocks = self.of(values)
+        return np.asarray(0.5 * (blocks[:, (self.size - 1) // 2] + blocks[:, self.size // 2]))
+
+
 def _experiment(
     recording: Recorded, tire: TireModel, sizes: tuple[int, int], reading: Noise | None
 ) -> Experiment:
     """Return a recording in blocks; sizes: least and most samples of a block; reading: noise of a sample, if known."""
+    time, interval = recording.time, float(np.median(np.diff(recording.time)))
     read, step = _read(recording)
-    motion = motion_of(recording.time, read)
+    motion = motion_of(time, read)
     gauge = 0.0 if step > 0.0 else motion.noise
     moved = smoothed_motion(recording, motion)
-    baseline = simulate(replace(tire, reading_noise=min(gauge, 0.01)), moved, moved)
+    baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
     misfit = recording.force - baseline
-    stiffness = _stiffness(motion.deflection, baseline)
-    force_step = staircase_step(recording.force)
-    lone = spikes(misfit)
-    resolved = motion.resolved & ~lone
-    (followed,) = compared([recording])
-    interval = float(np.median(np.diff(recording.time)))
-    quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
-    slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
     reading = reading or noise_of(misfit, interval, motion.deflection, motion.rate, motion.acceleration)
+    lone = spikes(misfit)
     turns = followed_turns(misfit, motion.resolved, reading.level)
-    turns &= ~(lone & _rare(lone[turns]))
-    floor = noise_floor(reading.level, stiffness, gauge, step, force_step)
-    longest = TURN * slow / max(quick * interval, 1e-300)
-    least, most = sizes
-    # Blocks within the memory of their noise would not be independent of each other.
-    most = max(min(most, recording.time.size // FEWEST_BLOCKS), reading.memory)
-    size = int(max(1, least, min(most, longest)))
-    whole = recording.time.size // size * size
-    good = (resolved | turns)[:whole].reshape(-1, size)
-    counts: BoolArray = np.asarray(good.all(axis=1))
+    turns &= ~(lone & are_rare(lone[turns]))
+    resolved = motion.resolved & ~lone
+    blocks = _blocks(motion, resolved, sizes, interval, reading)
+    counts: BoolArray = np.asarray(blocks.of(resolved | turns).all(axis=1))
     if counts.mean() < COUNTED:
-        good, counts = np.ones_like(good), np.ones_like(counts)
-    counts &= followed[:whole].reshape(-1, size).all(axis=1)
-    averaged = misfit[:whole].reshape(-1, size).mean(axis=1)
-    before, after = np.arange((size - 1) // 2, whole, size), np.arange(size // 2, whole, size)
-
-    rate, acceleration = through_turns(recording.time, motion.rate, motion.acceleration, turns)
-
-    def middle(values: FloatArray) -> FloatArray:
-        # The middle of an even block lies between two samples; taking one of them would be a lag of half a sample.
-        return np.asarray(0.5 * (values[before] + values[after]))
-
-    measured = {
-        name: values[:whole].reshape(-1, size).mean(axis=1) for name, values in moved.measured.items()
-    }
-    blocks = SmoothedMotion(
-        middle(recording.time),
-        middle(motion.deflection),
-        recording.surface_radius[after],
-        middle(rate),
-        middle(acceleration),
+        counts = np.ones_like(counts)
+    (followed,) = compared([recording])
+    counts &= blocks.of(followed).all(axis=1)
+    rate, acceleration = through_turns(time, motion.rate, motion.acceleration, turns)
+    measured = {name: blocks.mean(values) for name, values in moved.measured.items()}
+    averaged = SmoothedMotion(
+        blocks.middle(time),
+        blocks.middle(motion.deflection),
+        blocks.of(recording.surface_radius)[:, blocks.size // 2],
+        blocks.middle(rate),
+        blocks.middle(acceleration),
         measured,
     )
+    averaged_misfit = blocks.mean(misfit)
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
-    of_blocks = noise_of(averaged, interval * size, blocks.deflection, blocks.rate, blocks.acceleration)
-    noise = min(reading.level * np.sqrt(min(reading.memory / size, 1.0)), of_blocks.level)
-    # A slow force rests on a step for many samples: averaging does not reduce their rounding error.
-    moving = float(np.mean(np.abs(np.diff(recording.force)) > 0.5 * force_step))
-    rounding = force_step * SHARE_OF_STEP
-    least_noise = rounding / float(np.sqrt(max(size * moving, 1.0)))
-    resting = rounding * float(np.sqrt(max(1.0 - size * moving, 0.0)))
+    of_blocks = noise_of(
+        averaged_misfit,
+        interval * blocks.size,
+        averaged.deflection,
+        averaged.rate,
+        averaged.acceleration,
+    )
+    noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
+    force_step = staircase_step(recording.force)
+    least_noise, resting = _rounding(recording.force, force_step, blocks.size)
     return Experiment(
         recording.name,
-        blocks.time,
-        blocks.deflection,
-        blocks.rate,
-        blocks.acceleration,
-        blocks.surface_radius,
-        simulate(tire, blocks, blocks),
-        averaged,
+        averaged.time,
+        averaged.deflection,
+        averaged.rate,
+        averaged.acceleration,
+        averaged.surface_radius,
+        simulate(tire, averaged, averaged),
+        averaged_misfit,
         counts,
         max(noise, least_noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
         least_noise,
         resting,
-        floor,
+        noise_floor(reading.level, _stiffness(motion.deflection, baseline), gauge, step, force_step),
         gauge,
-        size,
-        interval * size,
+        blocks.size,
+        interval * blocks.size,
         reading,
         measured,
     )
+
+
+def _blocks(
+    motion: Motion, resolved: BoolArray, sizes: tuple[int, int], interval: float, noise: Noise
+) -> _Blocks:
+    """Return blocks as long as the motion allows; sizes: least and most samples; interval [s]; noise: of a sample."""
+    quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
+    slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
+    longest = TURN * slow / max(quick * interval, 1e-300)
+    least, most = sizes
+    # Blocks within the memory of their noise would not be independent of each other.
+    most = max(min(most, resolved.size // FEWEST_BLOCKS), noise.memory)
+    size = int(max(1, least, min(most, longest)))
+    return _Blocks(size, resolved.size // size)
+
+
+def _rounding(force: FloatArray, step: float, size: int) -> tuple[float, float]:
+    """Return the rounding error [N] of the average over a block of `size` samples of a force read in steps [N], and the
+    part of it that neighbouring blocks have in common.
+
+    A slow force rests on a step for many samples: averaging does not reduce their rounding error.
+    """
+    moving = float(np.mean(np.abs(np.diff(force)) > 0.5 * step))
+    error = step * SHARE_OF_STEP
+    shared = float(np.sqrt(max(1.0 - size * moving, 0.0)))
+    return error / float(np.sqrt(max(size * moving, 1.0))), error * shared
 
 
 def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
@@ -390,23 +418,6 @@ def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
     x, f = (np.bincount(which, v, SECANTS)[held] / count[held] for v in (deflection, force))
     grid = low + span * (np.arange(SECANTS) + 0.5) / SECANTS
     return np.asarray(np.interp(deflection, grid, np.gradient(np.interp(grid, x, f), grid)))
-
-
-def spikes(misfit: FloatArray) -> BoolArray:
-    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction."""
-    level = white_level(misfit)
-    lone = np.zeros(misfit.size, dtype=bool)
-    before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
-    lone[1:-1] = (
-        (np.abs(before) > STANDS_OUT * level) & (np.abs(after) > STANDS_OUT * level) & (before * after > 0.0)
-    )
-    # Frequent ones are noise of a part of the recording, such as the steps of a gauge while the tire moves.
-    return lone if lone.mean() < RARE else np.zeros_like(lone)
-
-
-def _rare(lone: BoolArray) -> bool:
-    """Whether the number of outliers is compatible with a frequency of RARE."""
-    return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > BY_CHANCE)
 
 
 def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:
