@@ -46,7 +46,7 @@ def source(repository: Path) -> Path:
 def page(repository: Path) -> tuple[str, str]:
     """What the page says of an effect, and of one with a channel of its own."""
     text = (repository / "examples" / "docs" / "contributing.md").read_text(encoding="utf-8")
-    without, _, own = text.partition("## How many files")[2].partition("An effect with a channel of its own:")
+    without, _, own = text.partition("## How many files")[2].partition("An effect with a channel of its own ")
     return without, own.partition("Search, ranking")[0]
 
 
@@ -59,7 +59,7 @@ def paths_in(text: str) -> set[str]:
 def test_an_effect_takes_its_file_and_a_line(source: Path, page: tuple[str, str]) -> None:
     found = files_that_name(source, {"inflation_pressure", "INFLATION_PRESSURE"})
     assert found == paths_in(page[0])
-    assert page[0].lstrip().startswith("an effect takes\n\nAn effect: two.")
+    assert page[0].lstrip().startswith("an effect takes\n\nAn effect takes two files.")
 
 
 def test_a_channel_takes_the_files_that_the_page_lists(source: Path, page: tuple[str, str]) -> None:
@@ -68,7 +68,7 @@ def test_a_channel_takes_the_files_that_the_page_lists(source: Path, page: tuple
     assert found == paths_in(page[1])
     assert f"radialtire/effects/{reader}.py" in found
     # and the line of the catalogue
-    assert page[1].lstrip().startswith("twelve.")
+    assert page[1].lstrip().startswith("takes twelve.")
     assert len(found) + 1 == 12
 
 
