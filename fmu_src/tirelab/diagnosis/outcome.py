@@ -144,7 +144,7 @@ def page_content(
                 "effects": list(e.names),
                 "log_evidence": e.log_evidence,
                 "misfit": math.sqrt(max(e.chi_square, 0.0)),
-                "remark": _remark(number, e.log_evidence),
+                "remark": "the verdict" if number == 0 else "",
             }
             for number, e in enumerate(evidence)
         ],
@@ -171,12 +171,6 @@ def split_reason(reason: str) -> tuple[str, str]:
     """Return what the recordings lack, and what to do about it, of sentences such as "no hold: hold 10 s at 15 mm"."""
     parts = [part.partition(": ") for part in reason.split("; ")]
     return "; ".join(lacks for lacks, _, _ in parts), "; ".join(action for _, _, action in parts if action)
-
-
-def _remark(number: int, log_evidence: float) -> str:
-    if number == 0:
-        return "the verdict"
-    return "" if math.isfinite(log_evidence) else "refused: an effect is too small or has the wrong sign"
 
 
 def _regression(found: ResidualModel) -> dict[str, Any]:

@@ -117,10 +117,6 @@ class Store:
             raise TirelabError("there is no such recording; load the page again")
         return found[0]
 
-    def receive(self, name: str, stream: Stream, size: int) -> Upload:
-        """Keep `size` bytes of a stream as a new recording that the user calls `name`: `arrive`, then `keep`."""
-        return self.keep(self.arrive(name, stream, size))
-
     def arrive(self, name: str, stream: Stream, size: int) -> Arrived:
         """Write `size` bytes of a stream aside.
 

@@ -85,15 +85,10 @@ def test_the_page_shows_evidence_reasons_and_the_motion():
     rows = (
         Evidence(("inertia",), 0.0, 1.21, (), 0.95),
         Evidence((), -3.0, 4.0, (), 0.05),
-        Evidence(("force_lag",), -math.inf, 1.0, (), 0.0),
     )
     page = page_content(rows, (Alternative((), 3.0, "one surface", 0.05),), (), test)
-    assert [e["misfit"] for e in page["evidence"]] == pytest.approx([1.1, 2.0, 1.0])
-    assert [e["remark"] for e in page["evidence"]] == [
-        "the verdict",
-        "",
-        "refused: an effect is too small or has the wrong sign",
-    ]
+    assert [e["misfit"] for e in page["evidence"]] == pytest.approx([1.1, 2.0])
+    assert [e["remark"] for e in page["evidence"]] == ["the verdict", ""]
     assert page["reasons"] == ["one surface"]
     assert page["waveform"] == {"time": TIME.tolist(), "deflection": (TIME / 1e3).tolist()}
     assert page_content((), (), (), None)["waveform"] is None

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from tirelab.errors import TirelabError
-from tirelab.local_page.store import Store, clean_name, clean_texts
+from tirelab.local_page.store import Store, Upload, clean_name, clean_texts
 from tirelab.recordings.metadata import read_sidecar
 from tirelab.recordings.recording import read_recording
 
@@ -17,6 +17,10 @@ def store(tmp_path: Path) -> Store:
     made = Store(tmp_path / "desk")
     made.prepare()
     return made
+
+
+def received(store: Store, name: str, content: bytes) -> Upload:
+    return store.keep(store.arrive(name, io.BytesIO(content), len(content)))
 
 
 def files(store: Store) -> set[str]:
@@ -38,7 +42,7 @@ def files(store: Store) -> set[str]:
 def test_a_name_is_kept_as_text_and_the_file_has_a_number(store: Store, name: str, shown: str) -> None:
     assert clean_name(name) == shown
     if name:
-        upload = store.receive(name, io.BytesIO(b"12345"), 5)
+        upload = received(store, name, b"12345")
         assert upload.name == shown
         assert upload.file == store.folder / "uploads" / "0001.csv"
         assert files(store) == {"uploads/0001.csv", "uploads/0001.json", "uploads/0001.toml"}
@@ -66,18 +70,18 @@ def test_a_long_name_keeps_its_suffix() -> None:
 def test_a_suffix_is_kept_where_it_is_a_plain_word_and_none_of_ours(
     store: Store, name: str, file: str
 ) -> None:
-    assert store.receive(name, io.BytesIO(b"12345"), 5).file.name == file
+    assert received(store, name, b"12345").file.name == file
     assert files(store) == {f"uploads/{file}", "uploads/0001.json", "uploads/0001.toml"}
 
 
 def test_what_does_not_arrive_whole_is_not_kept(store: Store) -> None:
     with pytest.raises(TirelabError, match="did not arrive whole"):
-        store.receive("slow.csv", io.BytesIO(b"123"), 5)
+        store.arrive("slow.csv", io.BytesIO(b"123"), 5)
     assert files(store) == set()
 
 
 def test_numbers_go_on_and_a_removed_recording_leaves_nothing(store: Store) -> None:
-    first, second = (store.receive(f"{n}.csv", io.BytesIO(b"1"), 1) for n in "ab")
+    first, second = (received(store, f"{n}.csv", b"1") for n in "ab")
     assert (first.number, second.number) == (1, 2)
     store.settings(second, {"force": "#2"}, {}, "")
     store.remove(second)
@@ -89,14 +93,14 @@ def test_a_recording_is_called_by_its_name_wherever_it_is_read(store: Store) -> 
         b"%d,0.0%d,%d\n" % (i, i, 50 * i) for i in range(9)
     )
     names = ['<b>"slow", 2 bar.csv', "fast.csv", "fast.csv"]
-    uploads = [store.receive(name, io.BytesIO(table), len(table)) for name in names]
+    uploads = [received(store, name, table) for name in names]
     store.settings(uploads[2], {}, {}, "flat")
     read = [read_recording(upload.file, radius="flat").name for upload in uploads]
     assert read == ['<b>"slow", 2 bar', "fast", "fast (3)"]
 
 
 def test_settings_are_the_sidecar_that_the_reader_reads(store: Store) -> None:
-    upload = store.receive("slow.csv", io.BytesIO(b"1"), 1)
+    upload = received(store, "slow.csv", b"1")
     odd = 'Load "cell" \\ Ω'
     store.settings(upload, {"force": odd, "deflection": "-#2"}, {"force": "lbf"}, "25.4 cm")
     told = read_sidecar(upload.file)
@@ -130,7 +134,7 @@ def test_only_files_of_a_diagnosis_are_given_out(store: Store, name: str) -> Non
 
 
 def test_a_use_is_one_of_three(store: Store) -> None:
-    upload = store.receive("slow.csv", io.BytesIO(b"1"), 1)
+    upload = received(store, "slow.csv", b"1")
     store.use(upload, "held-out")
     assert store.upload(1).use == "held-out"
     with pytest.raises(TirelabError, match="a recording is one of"):
