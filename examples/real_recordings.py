@@ -20,12 +20,6 @@ None of them is a tire. A sphere pressed into tissue follows the tire's own law 
 B = 2. All are diagnosed in metres and newtons as they were read, and every figure is printed in the unit of its
 recording. The damper and the piston pull and push: their baseline is a part that is held at both ends, a straight line
 through their readings or a preload alone.
-
-What micrometres and nanonewtons cannot show: series compliance, friction, saturation and a law of another shape have
-bounds in SI that are a tire's (at most 1e-4 m/N; a breakaway distance of at least 1e-5 m; at least 1 N; a reference
-deflection of at least 1e-4 m). The diagnosis leaves them out there, says so beside its verdict, and the lines `not
-shown` name them. Of the indenter's loading, less than a micrometre, it then says that something unknown is
-missing, where a law of another shape would do.
 """
 
 from __future__ import annotations

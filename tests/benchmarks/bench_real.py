@@ -115,34 +115,13 @@ def elastomer(path: Path, slow: Path) -> Real:
     return Real(name, own, whole, whole, tire_of(line, [slowest], name), 1.0, "relaxation")
 
 
-def brain(folder: Path) -> Real:
-    """Approach, hold and half the withdrawal."""
-    found = indentation(folder / "force-save-2021.06.30-12.04.16.071.txt")
+def indented(name: str, path: Path) -> Real:
+    """Approach, hold and half the withdrawal of a sphere pressed into a soft body."""
+    found = indentation(path)
     half = (found.turned + len(found.recording)) // 2
-    return Real(
-        "brain",
-        found.recording,
-        slice(0, half),
-        slice(half, None),
-        law(found.coefficient, 1.5),
-        1e-9,
-        "relaxation, 0.03 (approach and hold)",
-    )
-
-
-def gel(folder: Path) -> Real:
-    """Approach, hold and half the withdrawal."""
-    found = indentation(folder / "force-save-2021.06.30-13.48.08.425.txt")
-    half = (found.turned + len(found.recording)) // 2
-    return Real(
-        "gel",
-        found.recording,
-        slice(0, half),
-        slice(half, None),
-        law(found.coefficient, 1.5),
-        1e-9,
-        "relaxation, 0.03 (approach and hold)",
-    )
+    fitted, kept = slice(0, half), slice(half, None)
+    reference = "relaxation, 0.03 (approach and hold)"
+    return Real(name, found.recording, fitted, kept, law(found.coefficient, 1.5), 1e-9, reference)
 
 
 def indenter(folder: Path) -> Real:
@@ -197,8 +176,8 @@ def reals(root: Path) -> Iterator[Callable[[], Real]]:
         if (slow := loops / f"0d01_{stretch}.csv") != path and slow.exists():
             yield lambda p=path, slow=slow: elastomer(p, slow)  # type: ignore[misc]
     if afm.exists():
-        yield lambda: brain(afm)
-        yield lambda: gel(afm)
+        yield lambda: indented("brain", afm / "force-save-2021.06.30-12.04.16.071.txt")
+        yield lambda: indented("gel", afm / "force-save-2021.06.30-13.48.08.425.txt")
     if (nano := root / "nanoindent_series_compliance_drift").exists():
         yield lambda: indenter(nano)
 
