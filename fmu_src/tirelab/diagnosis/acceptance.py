@@ -7,13 +7,14 @@ effect is always acceptable. Two kinds of effects are not named: on one surface,
 beside a refitted law, where that law without it is nearly as likely; and an effect with a probability below one half,
 where the others leave as little without it.
 
-Recordings given as held-out are used where there are any. Without any, the accepted effects are fitted once more
-without one part of the data, which is then simulated from its true history: a whole recording, the last one first, or
-the end of each recording that holds the last part of the misfit. The part has to be driven like the data that stay
-fitted: on the same surfaces, at depths and speeds and after rests within a factor of two, and where the set explains at
-least half as much; otherwise its error is one of extrapolation and refutes nothing. The set also has to change the
-force in it, or it proves nothing. Where no part fulfils this, the end of each kind of driving is held out, surface by
-surface. The effects were chosen on all of the data; the parameters were fitted without the held-out part.
+Recordings given as held-out are used where there are any; they had a part in the ranking too, though nothing is fitted
+to them (`estimation.ranking`). Without any, the accepted effects are fitted once more without one part of the data,
+which is then simulated from its true history: a whole recording, the last one first, or the end of each recording that
+holds the last part of the misfit. The part has to be driven like the data that stay fitted: on the same surfaces, at
+depths and speeds and after rests within a factor of two, and where the set explains at least half as much; otherwise
+its error is one of extrapolation and refutes nothing. The set also has to change the force in it, or it proves nothing.
+Where no part fulfils this, the end of each kind of driving is held out, surface by surface. The effects were chosen on
+all of the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -274,7 +275,8 @@ Validate = Callable[[Explanation], HeldOut]
 def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, HeldOut]:
     """Return the first set, in the order of the ranking, that is not refused, and its errors on held-out data.
 
-    Each set is replaced before by one with no more effects that leaves clearly less, if there is one.
+    Each set is replaced before by one with no more effects that leaves clearly less, if there is one. The sets without
+    one of its effects are fitted if they were not, and may then precede it.
     validate: returns the errors of a set on held-out data (see `validation_on`)
     """
     order = explanation.in_order(CONSIDERED)
@@ -283,7 +285,8 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
         validation = validate(chosen)
         if not chosen.effects or not is_worse(validation):
             break
-    return chosen, validation
+    whole = chosen.with_parts()
+    return (chosen, validation) if whole is chosen else accept(whole, validate)
 
 
 def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explanation:

@@ -79,7 +79,7 @@ def diagnose(
     refuse_far_zeros(fitted)
     check_recordings(fitted, two_sided=baseline.two_sided)
     data = _Data(fitted, raw_dataset_of(fitted, baseline), [r.force - simulate(baseline, r) for r in fitted])
-    candidates = explain_misfit(fitted, baseline, allowed, report, timed=data.timed)
+    candidates = explain_misfit(fitted, baseline, allowed, report, timed=data.timed, held_out=kept)
     levels = [floor.level for floor in candidates.floors]
     with_simulation = any(getattr(r, "believed_force", None) is not None for r in fitted)
     check_signal(data.samples, [r.name for r in fitted], levels, beside=with_simulation)

@@ -52,7 +52,7 @@ from .findings import (
     remainder_of,
 )
 from .fit import Fit, fitted
-from .ranking import BEGUN, Ranking, corrected, ranked
+from .ranking import BEGUN, Ranking, corrected, held_out_of, ranked, with_parts
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -122,7 +122,15 @@ class Explanation:
         fit = self._ranking.of(frozenset(names))
         if fit is None:
             raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made")
-        own = self._samples, self._ranking, fit, self.excitation, self.hidden, self._like_law
+        return self._by(fit, self._ranking)
+
+    def with_parts(self) -> Explanation:
+        """Return the explanation where every set that lacks one of its effects was fitted; itself where they were."""
+        ranking = with_parts(self._ranking, self.model.fit)
+        return self if ranking is self._ranking else self._by(self.model.fit, ranking)
+
+    def _by(self, fit: Fit, ranking: Ranking) -> Explanation:
+        own = self._samples, ranking, fit, self.excitation, self.hidden, self._like_law
         return _explanation(*own)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
@@ -169,11 +177,13 @@ def explain_misfit(
     progress: Progress,
     *,
     timed: bool = True,
+    held_out: Sequence[Recorded] = (),
 ) -> Explanation:
     """Return what explains the misfit of the `baseline` tire on `recordings`.
 
     catalogue: names of the effects that may be found, of `catalogue_names`; progress: called with a sentence for each
-    stage; timed: whether the times of the samples were measured
+    stage; timed: whether the times of the samples were measured; held_out: recordings to which nothing is fitted, which
+    judge what is
     """
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=timed)
@@ -183,15 +193,17 @@ def explain_misfit(
     allowed = [name for name in candidates() if name in catalogue and name not in impossible]
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
+    rank = partial(ranked, alike=partial(_alike, excitation), held_out=held_out_of(held_out, baseline))
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
-    ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
+    progress("fitting the sets that can win")
+    ranking, signatures = _ranking(dataset, raw, quiet, rank)
     samples = samples_of(recordings, baseline)
     left_out = samples.left_out(quiet, ranking.best.tire)
     if size_of(quiet.stacked(left_out)) > LIKE_NOISE:
         # What blocks leave out of the best set passed for noise, or for something that another effect is.
         quiet = _with_saturated_noise(dataset.corrected(left_out), raw)
-        ranking, signatures = _ranking(dataset, raw, quiet, excitation, progress)
+        ranking, signatures = _ranking(dataset, raw, quiet, rank)
     ranking = corrected(ranking, samples)
     like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
     return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
@@ -213,15 +225,14 @@ def _signatures(
 
 
 def _ranking(
-    dataset: Dataset, raw: Sequence[Signature], quiet: Dataset, excitation: Excitation, progress: Progress
+    dataset: Dataset, raw: Sequence[Signature], quiet: Dataset, rank: Callable[..., Ranking]
 ) -> tuple[Ranking, tuple[Signature, ...]]:
     """Return the ranked sets and the signatures in units of the noise."""
     signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
     rough = discrepancy_of(quiet.misfit, usual_form_error())
     equations = normal_equations(signatures, quiet.misfit)
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
-    progress("fitting the sets that can win")
-    return ranked(quiet, signatures, rough, starts, partial(_alike, excitation)), signatures
+    return rank(quiet, signatures, rough, starts), signatures
 
 
 def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
@@ -337,8 +348,10 @@ def _quiet(dataset: Dataset) -> Dataset:
 def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
     without = ranking.of(frozenset(chosen.names) - {name})
     misfit = chosen.problem.dataset.misfit
-    missed = float(misfit @ misfit) - chosen.residual.size
-    gained = 0.0 if without is None else without.power - chosen.power
+    nothing = ranking.of(frozenset())
+    of_held_out = 0.0 if nothing is None else float(np.sum(nothing.held_out_residual**2))
+    missed = float(misfit @ misfit) + of_held_out - chosen.residual.size - chosen.held_out_residual.size
+    gained = 0.0 if without is None else without.left - chosen.left
     return float(np.clip(gained / max(missed, 1e-12), 0.0, 1.0))
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from radialtire import TireModel
 
 from ..regressors.dataset import Dataset
 from ..regressors.signature import form_error, size_of
-from ..selection.search import Discrepancy
+from ..selection.search import PRIOR_ODDS, Discrepancy
 from .problem import EstimationProblem, Values, form_errors, problem_of, smooth_functions
 
 FloatArray = NDArray[np.float64]
@@ -110,9 +110,9 @@ def minimise(objective: Objective, start: Iterate, rounds: int, enough: float) -
             damping = min(10.0 * damping, DAMPING[2])
         moved, small = new < cost, cost - new < enough
         if moved:
-            foretold = residual + slopes @ step
-            promised = cost - objective.cost(foretold, q + step)
-            updated = slopes + np.outer((left - foretold) / float(step @ step), step)
+            predicted = residual + slopes @ step
+            promised = cost - objective.cost(predicted, q + step)
+            updated = slopes + np.outer((left - predicted) / float(step @ step), step)
             gained, q, residual, cost = cost - new, q + step, left, new
         if exact and small:
             converged, exact = True, not moved
@@ -305,6 +305,7 @@ class Fit:
     forms (m, f): columns of the form errors, scaled
     beyond_forms: sum of squares that form errors and refitted parameters leave
     sizes: root mean square of the response that each effect adds to the others, by its name
+    held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
     """
 
     problem: EstimationProblem
@@ -318,6 +319,13 @@ class Fit:
     beyond_forms: float
     sizes: Mapping[str, float]
     evaluations: int
+    held_out_residual: FloatArray = field(default_factory=lambda: np.zeros(0))
+    log_predictive: float = 0.0
+
+    @property
+    def log_posterior(self) -> float:
+        """Log posterior of the set, not normalised."""
+        return self.log_likelihood + self.log_predictive - PRIOR_ODDS * len(self.names)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -343,6 +351,11 @@ class Fit:
     def power(self) -> float:
         """Sum of squares of the residual, in units of the noise."""
         return float(self.residual @ self.residual)
+
+    @property
+    def left(self) -> float:
+        """Sum of squares of the residual on fitted and on held-out recordings."""
+        return self.power + float(self.held_out_residual @ self.held_out_residual)
 
     @property
     def form_error(self) -> float:

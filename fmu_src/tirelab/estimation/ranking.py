@@ -10,20 +10,62 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE
+from radialtire import CATALOGUE, TireModel
 from scipy.linalg import solve_triangular
 
-from ..regressors.dataset import Dataset, Samples
+from ..preprocessing.samples import Recorded
+from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
 from ..regressors.signature import LAW, Signature, strengthened
-from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
+from ..selection.search import (
+    LOST,
+    MOST_CANDIDATES,
+    PRIOR_ODDS,
+    Discrepancy,
+    discrepancy_of,
+    usual_form_error,
+)
+from ..simulation.simulate import SmoothedMotion, simulate
 from .fit import LEAST_GAIN, Fit, fitted
 from .problem import Values, law_start, with_readings
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class HeldOutRecordings:
+    """Recordings to which nothing is fitted, which take part in the posterior of each set.
+
+    log p(all) = log p(fitted) + log p(held out | fitted), the latter at the fitted parameters.
+    motions: from where each recording begins; dataset: of the recordings; law: of the discrepancy that forms usually
+    leave of their misfit
+    """
+
+    recordings: tuple[Recorded, ...]
+    motions: tuple[SmoothedMotion, ...]
+    dataset: Dataset
+    law: Discrepancy
+
+    def predicted(self, fit: Fit) -> Fit:
+        """Return a fit with its residual on these recordings and the log likelihood of that at the best V."""
+        pairs = zip(self.recordings, self.motions, strict=True)
+        left = [r.force - simulate(fit.tire, m, m)[-r.force.size :] for r, m in pairs]
+        residual = self.dataset.stacked(self.dataset.averaged(left))
+        likelihood, _ = self.law.profile(float(residual @ residual))
+        return replace(fit, held_out_residual=residual, log_predictive=likelihood)
+
+
+def held_out_of(recordings: Sequence[Recorded], baseline: TireModel) -> HeldOutRecordings | None:
+    """Return the held-out recordings with what the predictive likelihood needs; None where there are none."""
+    if not recordings:
+        return None
+    dataset = dataset_of(recordings, baseline)
+    law = discrepancy_of(dataset.misfit, usual_form_error()).blurred(dataset.rounding_error)
+    motions = samples_of([getattr(r, "whole", r) for r in recordings], baseline).motions
+    return HeldOutRecordings(tuple(recordings), motions, dataset, law)
 
 
 @dataclass(frozen=True)
@@ -140,11 +182,16 @@ GAIN_ERROR = 8.0
 
 @dataclass(frozen=True)
 class Ranking:
-    """Fits and their log posteriors (not normalised), the likeliest first; discrepancy: of their evidence."""
+    """Fits by their log posterior, the likeliest first; discrepancy: of their evidence; held_out: for what is added."""
 
     fits: tuple[Fit, ...]
-    posteriors: tuple[float, ...]
     discrepancy: Discrepancy
+    held_out: HeldOutRecordings | None = None
+
+    @property
+    def posteriors(self) -> tuple[float, ...]:
+        """Log posterior of each fit, not normalised."""
+        return tuple(fit.log_posterior for fit in self.fits)
 
     @property
     def best(self) -> Fit:
@@ -157,9 +204,7 @@ class Ranking:
 
     def behind(self, fit: Fit) -> float:
         """Return how far a fit is behind the best, in log posterior."""
-        return self.posteriors[0] - next(
-            p for f, p in zip(self.fits, self.posteriors, strict=True) if f is fit
-        )
+        return self.best.log_posterior - fit.log_posterior
 
     def weights(self) -> FloatArray:
         """Return the probability of each fit, tempered."""
@@ -181,6 +226,7 @@ class _State:
     signatures: Mapping[str, Signature]
     noise: Discrepancy
     discrepancy: Discrepancy
+    held_out: HeldOutRecordings | None
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
@@ -202,15 +248,17 @@ class _State:
         return True
 
     def posterior(self, names: frozenset[str]) -> float:
-        return self.fits[names].log_likelihood - PRIOR_ODDS * len(names)
+        return self.fits[names].log_posterior
 
     def best(self) -> frozenset[str]:
         return max(self.fits, key=self.posterior)
 
     def fit(self, starts: Sequence[Values], variance: float) -> Fit:
         key = frozenset(starts[0])
-        wanted = self.posterior(self.best()) + PRIOR_ODDS * len(key) if self.fits else -np.inf
+        best = self.fits[self.best()] if self.fits else None
+        wanted = -np.inf if best is None else best.log_likelihood + PRIOR_ODDS * (len(key) - len(best.names))
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
+        found = _predicted(self.held_out, found)
         self.count += 1
         self.times[key] += 1
         if key not in self.fits or found.log_likelihood > self.fits[key].log_likelihood:
@@ -237,15 +285,17 @@ def ranked(
     discrepancy: Discrepancy,
     starts: Sequence[tuple[float, Mapping[str, FloatArray]]],
     alike: Callable[[str], Sequence[str]],
+    held_out: HeldOutRecordings | None = None,
 ) -> Ranking:
     """Return the sets that can still win, fitted and ranked.
 
     starts: sets to begin with, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
     alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
     them in its place
+    held_out: recordings that take part in the posterior
     """
     noise = discrepancy_of(dataset.misfit, 0.0)
-    state = _State(dataset, {s.name: s for s in signatures}, noise, discrepancy)
+    state = _State(dataset, {s.name: s for s in signatures}, noise, discrepancy, held_out)
     state.fit([{}], discrepancy.highest)
     nothing_fitted = np.zeros((dataset.misfit.size, 0))
     for variance, parts in starts:
@@ -270,12 +320,30 @@ def ranked(
         for other in alike(name):
             if less is not None and other in state.signatures and other not in best_names:
                 state.add(less, other)
-    return _in_order(state.fits.values(), state.discrepancy)
+    return Ranking(_in_order(state.fits.values()), state.discrepancy, held_out)
 
 
-def _in_order(fits: Iterable[Fit], discrepancy: Discrepancy) -> Ranking:
-    pairs = sorted(((f.log_likelihood - PRIOR_ODDS * len(f.names), f) for f in fits), key=lambda p: -p[0])
-    return Ranking(tuple(f for _, f in pairs), tuple(p for p, _ in pairs), discrepancy)
+def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:
+    return tuple(sorted(fits, key=lambda f: -f.log_posterior))
+
+
+def _predicted(held_out: HeldOutRecordings | None, fit: Fit) -> Fit:
+    """Return a fit with its residual on held-out recordings, where there are any."""
+    return fit if held_out is None else held_out.predicted(fit)
+
+
+def with_parts(ranking: Ranking, fit: Fit) -> Ranking:
+    """Return the ranking with each set fitted that lacks one candidate of a fit, to know what the candidate explains.
+
+    The search may have ended before it fitted them. Where it did fit them, the same ranking is returned.
+    """
+    found = []
+    for name in fit.names:
+        if ranking.of(frozenset(fit.names) - {name}) is None:
+            start = {n: v for n, v in fit.values.items() if n != name}
+            less = fitted(fit.problem.dataset, [start], ranking.discrepancy, fit.variance, -np.inf)
+            found.append(_predicted(ranking.held_out, less))
+    return replace(ranking, fits=_in_order([*ranking.fits, *found])) if found else ranking
 
 
 def corrected(ranking: Ranking, samples: Samples) -> Ranking:
@@ -287,12 +355,12 @@ def corrected(ranking: Ranking, samples: Samples) -> Ranking:
     """
     winning = [frozenset(f.names) for f in ranking.fits if ranking.behind(f) < LOST]
     found = (
-        _corrected(f, samples, ranking.discrepancy)
+        _predicted(ranking.held_out, _corrected(f, samples, ranking.discrepancy))
         if any(names.issuperset(f.names) for names in winning)
         else f
         for f in ranking.fits
     )
-    return _in_order(found, ranking.discrepancy)
+    return replace(ranking, fits=_in_order(found))
 
 
 def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:

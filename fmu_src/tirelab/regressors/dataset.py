@@ -168,6 +168,11 @@ class Dataset:
         """Return any values (n,) of each experiment at the counted blocks in a row."""
         return np.concatenate([v[e.counts] for e, v in zip(self.experiments, values, strict=True)])
 
+    def averaged(self, values: Sequence[FloatArray]) -> list[FloatArray]:
+        """Return the means over the blocks of values at each sample of the recordings."""
+        pairs = zip(values, self.experiments, strict=True)
+        return [_Blocks(e.size, e.time.size).mean(v) for v, e in pairs]
+
     def apart(self, values: FloatArray) -> list[FloatArray]:
         """Return values at the counted blocks (m,) recording by recording."""
         ends = np.cumsum([int(e.counts.sum()) for e in self.experiments])

@@ -240,6 +240,9 @@ class Made:
     def model(self) -> Any:
         return SimpleNamespace(tire=self.tire, baseline=TireModel(), names=self.names)
 
+    def with_parts(self) -> Made:
+        return self
+
     @property
     def residuals(self) -> tuple[Any, ...]:
         return (np.full(FITTED.time.size, self.left),)

@@ -169,7 +169,7 @@ def test_two_simulations_are_refused(tmp_path: Path) -> None:
     assert "both name a simulation" in done.stderr
 
 
-SPRING, DAMPER, OFFSET, DRIFT, NOISE = 1e5, 300.0, -0.0015, 8.0, 4.0
+SPRING, DAMPER, OFFSET, DRIFT, NOISE = 1e5, 300.0, 0.0015, 8.0, 4.0
 
 FOREIGN_MODELS = Path(__file__).parents[1] / "fmu" / "foreign_models.py"
 
