@@ -71,5 +71,5 @@ SATURATION = Effect(
     imitators=("series_compliance", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: load cell rated at 4480 N; limits are set by the rig",
     traits=("static", "localized", "reading"),
-    form_error=0.024,
+    form_error=0.0015,
 )
