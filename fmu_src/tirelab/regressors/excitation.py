@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
+from ..preprocessing.motion import branches
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
@@ -224,7 +225,7 @@ def of_deflection(name: str) -> bool:
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
     """Return what the motion of all recordings can show; the speeds of recordings on one surface are taken together."""
     visits = [_visits(e) for e in dataset.experiments]
-    returns = [_share_within(v.time, v.cell) for v in visits]
+    returns = [_returns(e) for e in dataset.experiments]
     together: dict[float, list[_Visits]] = {}
     for experiment, own in zip(dataset.experiments, visits, strict=True):
         together.setdefault(float(np.median(experiment.surface_radius)), []).append(own)
@@ -238,40 +239,48 @@ def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
 
 @dataclass(frozen=True)
 class _Visits:
-    """The samples of one recording that move: time [s], speed [m/s], and the cell of deflection and direction."""
+    """The samples of one recording that move: speed [m/s], and the cell of deflection and direction."""
 
-    time: FloatArray
     speed: FloatArray
     cell: NDArray[np.int_]
 
 
 def _visits(e: Experiment) -> _Visits:
-    # In a hold, relaxation looks like a slow effect: only visits while the tire moves count.
     moving = _moving(e)
-    cell = _cells(e, float(e.deflection.min()), float(e.deflection.max()))
-    return _Visits(e.time[moving], np.abs(e.rate[moving]), cell[moving])
+    cell = _cells(e, e.rate, float(e.deflection.min()), float(e.deflection.max()))
+    return _Visits(np.abs(e.rate[moving]), cell[moving])
+
+
+def _returns(e: Experiment) -> float:
+    """Return the part of the variance of time that is between visits of the same deflection and direction.
+
+    A visit lasts from one reversal to the next: in a hold, where the deflection may creep, relaxation looks like a slow
+    effect. Only samples that move count.
+    """
+    direction, cycle = branches(e.deflection, e.gauge)
+    moving = _moving(e)
+    cell = _cells(e, direction, float(e.deflection.min()), float(e.deflection.max()))[moving]
+    visit = (cycle[moving] * 2 * CELLS + cell).astype(int)
+    time = e.time[moving]
+    mean = np.bincount(visit, time) / np.maximum(np.bincount(visit), 1)
+    return _within(mean[visit], cell) / max(float(np.var(time)), 1e-300) if time.size else 0.0
 
 
 def _moving(e: Experiment, part: float = STILL) -> NDArray[np.bool_]:
     return np.asarray(np.abs(e.rate) > part * float(np.sqrt(np.mean(e.rate**2))))
 
 
-def _cells(e: Experiment, low: float, high: float) -> NDArray[np.int_]:
-    """Return the cell of deflection, between two ends [m], and direction of each block."""
+def _cells(e: Experiment, direction: FloatArray, low: float, high: float) -> NDArray[np.int_]:
+    """Return the cell of deflection, between two ends [m], and sign of the direction of each block."""
     span = (e.deflection - low) / max(high - low, 1e-300)
-    return np.asarray(np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (e.rate > 0.0))
+    return np.asarray(np.minimum((span * CELLS).astype(int), CELLS - 1) + CELLS * (direction > 0.0))
 
 
 def _common_cells(experiments: Sequence[Experiment]) -> list[NDArray[np.int_]]:
     """Return the cells of every recording's blocks on one scale of the deflection; -1 where the tire turns."""
     low = min(float(e.deflection.min()) for e in experiments)
     high = max(float(e.deflection.max()) for e in experiments)
-    return [np.where(_moving(e, UNDER_WAY), _cells(e, low, high), -1) for e in experiments]
-
-
-def _share_within(values: FloatArray, cell: NDArray[np.int_]) -> float:
-    """Return the part of the variance of the values that is within the cells."""
-    return _within(values, cell) / max(float(np.var(values)), 1e-300) if values.size else 0.0
+    return [np.where(_moving(e, UNDER_WAY), _cells(e, e.rate, low, high), -1) for e in experiments]
 
 
 def _spread_within(values: FloatArray, cell: NDArray[np.int_]) -> float:
