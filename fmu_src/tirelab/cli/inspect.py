@@ -13,10 +13,12 @@ from click.core import ParameterSource
 
 from ..errors import TirelabError
 from ..recordings.reading import Reading
-from .options import FILE, SentenceCommand, check_files, reading_options
+from .options import FILE, SentenceCommand, check_files, reading_options, whole_command
 from .output import Output, echo, example, output_options
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from rich.console import Console
 
     from ..recordings.inspection import Inspection
@@ -52,7 +54,7 @@ def command(
     for other in skipped:
         output.note(str(other))
     found: list[Inspection] = []
-    refused: list[str] = []
+    refused: dict[Path, TirelabError] = {}
     for file in files:
         output.stage(f"reading {file.name}")
         try:
@@ -63,7 +65,7 @@ def command(
                 _flush(console)
             if len(files) == 1:
                 raise
-            refused.append(_refusal(file, error))
+            refused[file] = error
             continue
         if not output.as_json:
             _show(console, found[-1])
@@ -83,7 +85,8 @@ def command(
     }
     output.result(lines, content)
     if refused:
-        raise TirelabError("\n".join([f"{len(refused)} of {len(files)} files cannot be read:", *refused]))
+        said = _refusals(refused, len(files), recordings)
+        raise TirelabError("\n".join([f"{len(refused)} of {len(files)} files cannot be read:", *said]))
 
 
 def _given(output: Output) -> Path | None:
@@ -147,11 +150,19 @@ def _show_assumed(console: Console, file: Path, reading: Reading, error: Tirelab
     _show(console, found, assumed=True)
 
 
-def _refusal(file: Path, error: TirelabError) -> str:
-    words = getattr(error, "words", None)
-    if words is None:
-        return f"- {error}"
-    return f"- {error}\n  {shlex.join(['tirelab', 'inspect', str(file), *words()])}"
+def _refusals(refused: Mapping[Path, TirelabError], files: int, given: Sequence[Path]) -> list[str]:
+    """Return why files cannot be read, each reason once, and one command for those that lack the same options."""
+    alike: dict[tuple[str, ...], list[Path]] = {}
+    for file, error in refused.items():
+        words = getattr(error, "words", None)
+        alike.setdefault(tuple(words()) if words else (), []).append(file)
+    said: list[str] = []
+    for added, ones in alike.items():
+        said += dict.fromkeys(f"- {refused[one]}" for one in ones)
+        if added:
+            of = ones if len(ones) < files else []
+            said.append(f"  {whole_command(click.get_current_context(), added, of, given)}")
+    return said
 
 
 def _show(console: Console, one: Inspection, *, assumed: bool = False) -> None:

@@ -60,9 +60,19 @@ def _sentence(ctx: click.Context, error: Exception) -> str:
     words = getattr(error, "words", None)
     if words is None:
         return str(error)
-    added = words()
-    command = shlex.join(["tirelab", str(ctx.info_name), *_without(ctx.meta[WORDS], added), *added])
-    return f"{error}\nThe whole command, with guesses to check: {command}"
+    return f"{error}\nThe whole command, with guesses to check: {whole_command(ctx, words())}"
+
+
+def whole_command(
+    ctx: click.Context, added: Sequence[str], of: Sequence[Path] = (), given: Sequence[Path] = ()
+) -> str:
+    """Return the command line as it was given, with options added or replaced.
+
+    of: the files it is to read, in place of all that were `given`; none: it reads the same ones
+    """
+    names = {str(path) for path in given} if of else set()
+    kept = [word for word in _without(ctx.meta[WORDS], added) if word not in names]
+    return shlex.join(["tirelab", str(ctx.info_name), *map(str, of), *kept, *added])
 
 
 def _without(given: Sequence[str], added: Sequence[str]) -> list[str]:

@@ -137,8 +137,8 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     x0 = 1e-3 * fit.value("x0")
     if abs(x0) > LARGEST_OFFSET:
         raise TirelabError(
-            f"the force begins at {1e3 * x0:.3g} mm, and a tire file holds at most "
-            f"{1e3 * LARGEST_OFFSET:g} mm; shift the gauge's zero before the export"
+            f"the force begins at {1e3 * x0:.3g} mm, and a tire file holds at most {1e3 * LARGEST_OFFSET:g} mm; give "
+            "what the gauge reads there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
         )
     exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
     scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm

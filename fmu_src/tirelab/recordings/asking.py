@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -16,7 +17,7 @@ from .matching import Match, columns_listed
 from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units
-from .units import meant_unit, measures
+from .units import is_unit, meant_unit, measures
 from .vocabulary import begins_like, counts_rows, is_strained
 
 FloatArray = NDArray[np.float64]
@@ -27,6 +28,8 @@ PULLS = 0.1
 OF_A_PART = (
     " (the force has both signs: a damper or another part has none, `tirelab inspect FILE --part` keeps that)"
 )
+
+_AXIS = re.compile(r"(?:^|[\W_])[a-z]?(?P<axis>[xyz])(?=$|[\W_])", re.IGNORECASE)
 
 MOST_COLUMNS = 16
 """So many columns are looked at for one that may be a channel."""
@@ -88,9 +91,10 @@ def asked(
     strained = [quoted(h.text) for h in headers if is_strained(h.name)]
     if strained and {"deflection", "force"} & set(lacking.columns) - set(guessed):
         return RecordingError(
-            f"{origin}: no column for {', '.join(lacking.columns)}: {listed(strained)} say strain or stress, which are "
-            "neither deflection nor force; export the readings of the travel and the load cell, or multiply the strain "
-            "by the gauge length and the engineering stress by the cross-section"
+            f"{origin}: no column for {', '.join(lacking.columns)}: {listed(strained)} "
+            f"{'says' if len(strained) == 1 else 'say'} strain or stress, which are neither deflection nor force; "
+            "export the readings of the travel and the load cell, or multiply the strain by the gauge length and the "
+            "engineering stress by the cross-section"
         )
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
@@ -217,6 +221,14 @@ def rises(values: FloatArray) -> bool:
     return bool(steps.min() > 0.0) and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
 
 
+def may_count_time(header: Header) -> bool:
+    """Whether a column may be a clock by what it states: it is no counter, and has no unit of anything else."""
+    if counts_rows(header.name):
+        return False
+    stated = {name for name, si in UNIT_OF.items() if measures(unit_of_column(header, name) or "", si)}
+    return "time" in stated if stated else header.unit is None or not is_unit(header.unit)
+
+
 def driven(values: FloatArray) -> bool:
     """Whether numbers go up and down by even steps, as what a drive moves does and a force does not."""
     steps = np.abs(np.diff(values[np.isfinite(values)]))
@@ -228,6 +240,12 @@ def _states(header: Header, name: str) -> bool:
     return measures(unit_of_column(header, name) or "", UNIT_OF[name]) or bool(
         meant_unit(header.unit or "", UNIT_OF[name])
     )
+
+
+def _axis(header: Header) -> str:
+    """Return the axis that a name says, z of `Fz_N` and of `disp z [mm]`; "" where it says none."""
+    found = _AXIS.search(header.name)
+    return found["axis"].lower() if found else ""
 
 
 def stating_time(headers: Sequence[Header], taken: Collection[int]) -> list[int]:
@@ -248,15 +266,16 @@ def _guessed_columns(
     """Return a likely column for each channel that has none: time rises, others go by their unit, else by the beginning
     of their name ("forc"), else by their size.
 
-    A unit tells where one column alone states a fitting one, the mass on a scale a force; of two columns without, the
-    one that a drive moves evenly is the deflection, else the smaller. A counter, a strain and a stress are neither.
+    A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
+    other channel, disp_z beside Fz; of two columns without, the one that a drive moves evenly is the deflection, else
+    the smaller. A counter, a strain and a stress are neither.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
     free = [i for i in free if not is_strained(headers[i].name) or _states(headers[i], "deflection")]
     guessed: dict[str, int] = {}
     if "time" in missing:
-        clocks = [i for i in free if rises(values[i]) and not counts_rows(headers[i].name)]
+        clocks = [i for i in free if rises(values[i]) and may_count_time(headers[i])]
         stated = stating_time(headers, taken)
         clocks = [i for i in clocks if i in stated] or stated or clocks
         if clocks:
@@ -264,6 +283,8 @@ def _guessed_columns(
             free = [i for i in free if i != clocks[0]]
     for name in ("deflection", "force"):
         fits = [i for i in free if _states(headers[i], name)]
+        axes = {_axis(headers[matches[other].index]) for other in ("deflection", "force") if other in matches}
+        fits = fits if len(fits) < 2 else [i for i in fits if _axis(headers[i]) in axes - {""}]
         if name in missing and len(fits) == 1:
             guessed[name] = fits[0]
             free.remove(fits[0])

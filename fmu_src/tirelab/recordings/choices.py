@@ -30,8 +30,8 @@ class Choices:
     part: bool = False
     zero: Mapping[str, str] = field(default_factory=dict)
 
-    def words(self) -> list[str]:
-        """Return the words of a command line that read recordings in the same way."""
+    def words(self, inspecting: bool = False) -> list[str]:
+        """Return the words of a command line that read recordings in the same way; inspecting: of `tirelab inspect`."""
         from .channels import assignments_text
 
         words = []
@@ -41,7 +41,8 @@ class Choices:
         if self.radius is not None:
             words += ["--radius", self.radius if isinstance(self.radius, str) else _with_unit(self.radius)]
         elif self.part:
-            words += ["--radius", "flat"]  # not every command has a word for a part
+            # not every command has a word for a part
+            words += ["--part"] if inspecting else ["--radius", "flat"]
         if self.sampling is not None:
             sampling = self.sampling if isinstance(self.sampling, str) else f"{self.sampling!r}Hz"
             words += ["--sampling", sampling]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .asking import Lacking, asked, rises, stating_time
+from .asking import Lacking, asked, may_count_time, rises, stating_time
 from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column
 from .counting import Counted, count_from_zero
 from .formats import Columns, Header, RecordingError, Table, Wanted
@@ -30,7 +30,6 @@ from .units import (
     parse_quantity,
     parse_radius,
 )
-from .vocabulary import counts_rows
 
 FloatArray = NDArray[np.float64]
 
@@ -164,7 +163,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         not no_time,
         found.trials,
         constants,
-        {name: option_name(table.headers, match.index) for name, match in matches.items()},
+        {name: option_name(looked_at.headers, match.index) for name, match in of_test.items()},
         settings,
     )
 
@@ -306,7 +305,7 @@ def _may_hold_time(table: Table, matches: Mapping[str, Match]) -> bool:
     free = [i for i in range(len(table.headers)) if i not in taken]
     if stating_time(table.headers, taken):
         return True
-    for index in [i for i in free if not counts_rows(table.headers[i].name)][:MOST_LOOKED_AT]:
+    for index in [i for i in free if may_count_time(table.headers[i])][:MOST_LOOKED_AT]:
         try:
             if rises(table.read((Wanted(index, "time"),)).values[0]):
                 return True

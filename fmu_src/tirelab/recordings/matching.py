@@ -21,6 +21,8 @@ from .formats.table import listed, quoted
 from .origin import Origin
 from .units import measures
 
+_COUNTED_AGAIN = re.compile(r"^(?:compressive|tensile) ")
+
 _NUMBER = re.compile(r"[+-]?\s*#(\d{1,6})", re.ASCII)
 
 
@@ -198,7 +200,15 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
         found = [i for i, header in columns if named(header, channel)]
         if found:
             break
+    found = _without_counted_again(headers, found)
     return _in_fitting_units(headers, channel, found) if channel.required or len(found) == 1 else []
+
+
+def _without_counted_again(headers: Sequence[Header], found: list[int]) -> list[int]:
+    """Return columns without those that are another counted another way: `Compressive extension` beside `Extension`."""
+    names = {i: " ".join(headers[i].name.lower().split()) for i in found}
+    again = [i for i, name in names.items() if _COUNTED_AGAIN.sub("", name) in set(names.values()) - {name}]
+    return [i for i in found if i not in again]
 
 
 def _in_fitting_units(headers: Sequence[Header], channel: Channel, found: list[int]) -> list[int]:

@@ -102,16 +102,19 @@ def doubts_of(
     loops += tuple(
         _placed(where(name, None), sentence) for name, sentence in _state_doubts(values, units, part)
     )
-    if part:
-        return Doubts(loops)
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]
+    zero = force_begins(x, f, radius)
+    if part:
+        # what is slack or centred elsewhere is the part's own; farther than any slack it is likely the gauge's
+        off = zero is not None and zero.far and zero.seen
+        begun = (_placed(where("deflection", None), gauges.doubt(zero)),) if zero is not None and off else ()
+        return Doubts((*begun, *loops))
     found = [
         _placed(where("radius", step * at), sentence)
         for at, sentence in _radius_doubts(origin, radius, units.get("radius", ""))
     ]
-    zero = force_begins(x, f, radius)
     size = _size_doubt(origin, x, f, units)
     if size:
         found.append(_placed(where("force", step * int(np.argmax(f))), size))

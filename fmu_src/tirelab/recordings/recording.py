@@ -290,7 +290,7 @@ class Understood:
 
 def understand(path: Path | str, how: Choices) -> Understood:
     """Return the recording in a file, or in a piece of it, and how it was understood. Errors: as `read_recording`."""
-    said = (str(path), *replace(how, zero={}).words())
+    said = (str(path), *replace(how, zero={}).words(inspecting=True))
     path, piece = split_piece(path)
     sidecar = read_sidecar(path, how.settings, piece.trial, piece.sheet)
     skip_rows = sidecar.skip_rows if how.skip_rows is None else how.skip_rows

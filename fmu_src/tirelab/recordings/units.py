@@ -4,7 +4,7 @@ import difflib
 import math
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,11 +15,20 @@ from ..errors import TirelabError
 if TYPE_CHECKING:
     import pint
 
+MOST_TEXTS = 4096
+"""So many texts are remembered as units or none: the tables of a workbook ask of the same ones again and again."""
+
 STANDARD_ATMOSPHERE = 101_325.0
 """Ambient pressure [Pa] taken off an absolute pressure (ISO 2533:1975, sea level)."""
 
 QUANTITIES = {"s": "time", "m": "length", "N": "force", "Pa": "pressure", "K": "temperature", "m/s": "speed"}
 """The SI units the tool works in, and what each one measures."""
+
+OF_A_SPECIMEN = {
+    "m": ("percent", "a strain times the length of the specimen is one"),
+    "N": ("Pa", "a stress times the cross-section of the specimen is one"),
+}
+"""What a test of a material states in place of a length and of a force: a unit of it, and how one becomes the other."""
 
 _COMMON = {
     "s": ("s", "ms", "us", "min", "h"),
@@ -136,6 +145,7 @@ def conversion(unit: str, si: str) -> Conversion:
     gauge = _GAUGE.match(text) if si == "Pa" else None
     absolute = gauge is not None and gauge["kind"].startswith("a")
     spelled = gauge["unit"] if gauge else _SPELLINGS.get((si, text), text)
+    spelled = "percent" if spelled == "%" else spelled
     registry = _registry()
     try:
         if not all(_UNIT.fullmatch(word) for word in _JOINT.split(spelled)):
@@ -146,7 +156,13 @@ def conversion(unit: str, si: str) -> Conversion:
         what = f"unknown unit {unit[:40]!r} of {quantity}; {_advice(text, si)}"
         raise UnitError(what, _likely(text, si)) from None
     if known != registry.Unit(si).dimensionality or "delta_" in spelled:
-        what = f"{unit[:40]!r} is not a unit of {quantity}; {_advice(text, si, known=True)}"
+        measured, becomes = OF_A_SPECIMEN.get(si, ("", ""))
+        # an angle has no dimension either
+        of_specimen = known == registry.Unit(measured).dimensionality and (
+            known or text == "%" or "/" in text
+        )
+        advice = becomes if measured and of_specimen else _advice(text, si, known=True)
+        what = f"{unit[:40]!r} is not a unit of {quantity}; {advice}"
         raise UnitError(what, _likely(text, si, known=True))
     zero, one = registry.Quantity(0.0, parsed), registry.Quantity(1.0, parsed)
     factor = float((one - zero).to(si).magnitude)
@@ -157,6 +173,7 @@ def conversion(unit: str, si: str) -> Conversion:
     return Conversion(unit, si, 1.0 if divisor > 1 else factor, float(divisor), offset, absolute)
 
 
+@lru_cache(maxsize=MOST_TEXTS)
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of anything that pint knows, or of a share: V, deg, N/mm, %."""
     words = _JOINT.split(text.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").strip())
@@ -171,6 +188,7 @@ def is_unit(text: str) -> bool:
     return True
 
 
+@lru_cache(maxsize=MOST_TEXTS)
 def measures(unit: str, si: str) -> bool:
     """Whether a text is a unit of what the SI unit measures."""
     try:

@@ -56,7 +56,7 @@ def test_what_a_drive_moves_evenly_is_the_deflection_however_large(tmp_path: Pat
 def test_strain_and_stress_are_neither_and_said_to_be(tmp_path: Path, header: str) -> None:
     path = write_rows(tmp_path / "a.csv", header, *loading())
     with pytest.raises(
-        RecordingError, match="say strain or stress, which are neither deflection nor force"
+        RecordingError, match=r"says? strain or stress, which are neither deflection nor force"
     ) as caught:
         understand(path, Choices(part=True))
     assert not isinstance(caught.value, IncompleteRecording)
@@ -67,3 +67,33 @@ def test_a_strain_that_is_a_length_may_be_the_deflection(tmp_path: Path) -> None
     assert understand(path, Choices(part=True)).plan.matches["deflection"].index == 1
     path = write_rows(tmp_path / "b.csv", "Time (s),Strain 1 (mm),Load (N)", *loading())
     assert proposed(path) == ["--columns", "deflection=#2"]
+
+
+AXES = "disp_x_mm,disp_y_mm,disp_z_mm,Rx_deg,Ry_deg,Rz_deg,Fx_N,Fy_N,Fz_N"
+
+
+def test_a_column_in_millimetres_is_no_clock_however_evenly_it_rises(tmp_path: Path) -> None:
+    """A spine sheared by a robot: nine columns of six axes and no time, the first of which rises all the way."""
+    rising = np.linspace(0.02, 1.05, 60)
+    small = np.sin(np.arange(60.0))
+    rows = (
+        rising,
+        0.1 * small,
+        0.3 * rising**2,
+        small,
+        small,
+        small,
+        80.0 * rising**1.5,
+        small,
+        9.0 * rising,
+    )
+    assert proposed(write_rows(tmp_path / "a.csv", AXES, *rows)) == ["--columns", "deflection=#3"]
+
+
+def test_the_deflection_is_along_the_axis_of_the_force(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    rows = (time, 3.0 * time, deflection, force)
+    assert proposed(write_rows(tmp_path / "a.csv", "time [s],pose x [mm],pose z [mm],Fz [N]", *rows)) == [
+        "--columns",
+        "deflection=#3",
+    ]

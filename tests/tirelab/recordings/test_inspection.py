@@ -1,5 +1,6 @@
 """What is understood of a file is shown and kept, and read again the same from what was kept."""
 
+import shlex
 import sys
 from pathlib import Path
 
@@ -163,6 +164,15 @@ class TestCommand:
         assert list(tomllib.loads((tmp_path / "recording.toml").read_text(encoding="utf-8"))["files"]) == [
             "press.csv"
         ]
+
+    def test_files_that_lack_the_same_are_told_one_command(self, press: Path, tmp_path: Path) -> None:
+        bad = [write_rows(tmp_path / f"bad{n}.csv", "time [s],x,force [N]", *loading()) for n in (1, 2)]
+        done = CliRunner().invoke(main, ["inspect", "--part", *map(str, [press, *bad])])
+        assert done.exit_code == 2
+        words = f"{bad[0]} {bad[1]} --part --columns deflection=x --units deflection=mm".split()
+        told = done.stderr.splitlines()[-1]
+        assert shlex.split(told)[:5] == ["tirelab", "inspect", *words[:3]]
+        assert CliRunner().invoke(main, shlex.split(told)[1:]).exit_code == 0
 
     def test_guesses_are_shown_and_not_written(self, tmp_path: Path) -> None:
         bad = write_rows(tmp_path / "bad.csv", "time,deflection,force", *loading())

@@ -24,6 +24,17 @@ class TestColumns:
         chosen = read_recording(path, radius="flat", columns={"deflection": "#3"})
         assert chosen.deflection.max() == pytest.approx(0.05)
 
+    def test_what_a_machine_counts_again_as_compression_is_not_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "Time (s),Extension (cm),Load (N),Compressive extension (cm),Compressive load (N)"
+        path = write_rows(tmp_path / "a.csv", header, time, -deflection, -force, deflection, force)
+        found = read_recording(path, radius="flat")
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+        assert (
+            "deflection taken from 'Extension (cm)'; not from 'Compressive extension (cm)' (#4)"
+            in found.notes
+        )
+
     def test_volts_beside_the_reading_they_stand_for_are_not_chosen(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         header = "time [s],force (V),force (N),stroke (V),stroke (mm),temp (V),temp (C)"

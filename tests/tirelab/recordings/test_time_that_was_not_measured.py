@@ -99,3 +99,16 @@ def test_a_sampling_goes_over_a_column_and_says_so(rig: Path) -> None:
     recording = read_recording(rig, sampling="1s")
     assert recording.duration == 100.0
     assert "time made of samples 1 s apart, as given, not taken from its column" in recording.notes
+
+
+def test_a_blank_line_above_a_header_that_is_written_again_is_no_sample(tmp_path: Path) -> None:
+    """As controllers part the blocks of an acquisition: the next block goes on with the next sample."""
+    block = "\n\nData Acquisition,Time,{}\nstroke [mm],force [N]\nmm,N\n"
+    rows = [f"{0.1 * i:.1f},{2.0 * i:.1f}" for i in range(90)]
+    text = "".join(block.format(10 * n) + "\n".join(rows[30 * n : 30 * (n + 1)]) for n in range(3))
+    path = tmp_path / "a.csv"
+    path.write_text(text.lstrip() + "\n\n", encoding="utf-8")
+    found = read_recording(path, radius="flat", sampling="10 Hz")
+    np.testing.assert_allclose(found.time, 0.1 * np.arange(90), atol=1e-12)
+    assert [note for note in found.notes if "gap" in note or "empty" in note] == []
+    assert any(note.startswith("header written again") for note in found.notes)

@@ -89,7 +89,7 @@ def test_an_absolute_pressure_loses_the_standard_atmosphere(value: float, unit: 
         ("V", "Pa", "write Pa"),
         ("9**9**9", "m", "unknown"),
         ("", "s", "unknown"),
-        ("%", "N", "unknown"),
+        ("%", "N", "not a unit of force"),
         ("delta_degC", "K", "degC"),
     ],
 )
@@ -157,3 +157,19 @@ def test_a_radius_is_flat_or_a_length(text: str | float, metres: float) -> None:
 def test_what_is_no_radius_is_refused(text: str | float) -> None:
     with pytest.raises(UnitError, match=r"radius|not a unit of length"):
         parse_radius(text)
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "advice"),
+    [
+        ("%", "m", "a strain times the length of the specimen"),
+        ("mm/mm", "m", "a strain times the length of the specimen"),
+        ("N/mm^2", "N", "a stress times the cross-section of the specimen"),
+        ("deg", "m", "write m, cm, mm, in or ft"),
+    ],
+)
+def test_what_is_measured_of_a_specimen_is_told_how_to_become_a_length_or_a_force(
+    unit: str, si: str, advice: str
+) -> None:
+    with pytest.raises(UnitError, match=advice):
+        conversion(unit, si)

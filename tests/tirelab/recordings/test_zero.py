@@ -16,7 +16,7 @@ from tirelab.identification.identify import identify
 from tirelab.recordings.choices import Choices
 from tirelab.recordings.inspection import inspect_recording
 from tirelab.recordings.reading import Reading
-from tirelab.recordings.recording import Recording, read_recording
+from tirelab.recordings.recording import Recording, read_recording, understand
 from tirelab.recordings.settings_file import settings_text
 from tirelab.recordings.zero import FARTHEST, parse_zeros, refuse_far_zeros
 
@@ -179,3 +179,17 @@ def test_python_refuses_what_it_does_not_know(tmp_path: Path) -> None:
         read_recording(file, radius="flat", zeros={})  # type: ignore[call-arg]
     with pytest.raises(TypeError, match=r"'skip_rows'; beside those of the signature: sampling, zero"):
         Recording.from_dataframe(pl.read_csv(file), radius="flat", skip_rows=0)  # type: ignore[call-arg]
+
+
+def test_a_part_that_is_reached_far_away_is_told_the_zero_of_its_gauge(tmp_path: Path) -> None:
+    """A crosshead that counts the separation of its tools, which falls; slack of some millimetres is the part's own."""
+    travel = np.linspace(0.0, 3.0, 200)
+    force = 2.0 * np.maximum(travel - 1.0, 0.0) ** 2
+    for start, begins in ((14.0, 13.0), (3.0, 2.0)):
+        path = write_rows(
+            tmp_path / "a.csv", "t [s],separation [mm],force [N]", travel, start - travel, force
+        )
+        how = Choices({"deflection": "-separation [mm]", "force": "+force [N]"}, part=True)
+        doubts = understand(path, how).recording.doubts
+        assert len(doubts) == (begins > 10.0)
+        assert all(f"--part --zero deflection={begins:g}" in doubt for doubt in doubts)

@@ -60,7 +60,8 @@ class RowReader:
         self.text_rows = TextRows(path.name, layout.headers, layout.separator, layout.spaced)
 
     def read(self, source: Iterable[str], first_line: int) -> Rows:
-        """The rows in some lines of the file; a blank cell is NaN, an empty line a row of NaN.
+        """The rows in some lines of the file; a blank cell is NaN, an empty line a row of NaN unless it is beside a row
+        of text, from which it parts the numbers.
 
         Errors: RecordingError naming row, column and value for text in a number, too many fields, two kinds
         of decimal mark, a quote left open.
@@ -75,6 +76,7 @@ class RowReader:
         ]
         rows = csv.reader(source, delimiter=self.layout.separator)
         line = first_line
+        blank_before, beside_text = 0, False
         try:
             for row in rows:
                 start, line = line, first_line + rows.line_num
@@ -85,7 +87,14 @@ class RowReader:
                     cells = self._cells_of(row, start, targets)
                 except RecordingError as fault:
                     self.text_rows.take(start, row_without_units(row, self.layout.cell_units), fault)
+                    for taken in (lines, *columns):
+                        del taken[len(taken) - blank_before :]
+                    blank_before, beside_text = 0, True
                     continue
+                blank = len(row) < 2 and not any(map(str.strip, row))
+                if blank and beside_text:
+                    continue
+                blank_before, beside_text = blank_before + 1 if blank else 0, False
                 if (self.text_rows.open or not self.text_rows.begins) and any(map(str.strip, row)):
                     self.text_rows.numbers(start)
                 lines.append(start)

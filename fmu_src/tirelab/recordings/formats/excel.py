@@ -5,15 +5,16 @@ same columns, as testing machines write one for each specimen, are tests side by
 """
 
 import datetime
+import io
 import re
 import shlex
+import threading
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,12 @@ MOST_ROWS = 1_048_576
 
 MOST_SHEETS = 200
 """So many sheets of a workbook are looked at."""
+
+KEPT = 4
+"""Of so many workbooks the tables are remembered."""
+
+MOST_KEPT = 64 * 2**20
+"""A workbook of up to this size [B] is kept open for the next test in it."""
 
 OTHERS = (".xls", ".xlsb", ".ods")
 """The workbooks that openpyxl cannot read, and calamine can."""
@@ -83,26 +90,15 @@ class ExcelTable:
     def __init__(self, path: Path, sheet: str = "") -> None:
         self.path = path
         self.one = sheet
-        other = path.suffix.lower() in OTHERS
-        self.library = (
-            load_library(path, "python_calamine", "python-calamine")
-            if other
-            else load_library(path, "openpyxl", "openpyxl")
-        )
-        found: list[Sheet] = []
-        with reading_with(path, "a workbook"), _opened(path, self.library) as book:
-            titles = [_titled(path, book.titles, sheet)] if sheet else book.titles[:MOST_SHEETS]
-            for title in titles:
-                head = [list(row) for row in islice(book.rows(title), SEARCHED)]
-                if any(map(_holds_any, head)):
-                    found.append(_sheet(path, title, head))
+        with reading_with(path, "a workbook"):
+            found = _tables(_Version.of(path), sheet)
         if not found:
             what = f", sheet {quoted(sheet)}" if sheet else ""
             raise RecordingError(
                 f"{path.name}{what}: holds no header and no numbers; export the workbook anew"
             )
-        # of sheets with the same channels the longest: one of results has a row for each specimen
-        chosen = max(found, key=lambda sheet: (_channels(sheet.headers), sheet.rows))
+        # of sheets with the same channels the longest: one of results has a row for each specimen, or a single one
+        chosen = max(found, key=lambda sheet: (sheet.rows > 1, _channels(sheet.headers), sheet.rows))
         if not chosen.header_row:
             raise RecordingError(
                 f"{path.name}, row {chosen.first_row} is no header; put a row above the numbers that names "
@@ -138,8 +134,8 @@ class ExcelTable:
         columns = [array("d") for _ in wanted]
         lines = array("q")
         empty: list[int] = []
-        with reading_with(self.path, "a workbook"), _opened(self.path, self.library) as book:
-            for line, row in enumerate(book.rows(sheet.title), 1):
+        with reading_with(self.path, "a workbook"):
+            for line, row in enumerate(_opened(_Version.of(self.path)).rows(sheet.title), 1):
                 if line > MOST_ROWS:
                     raise RecordingError(
                         f"{self.path.name}: has more than {MOST_ROWS} rows; export it as CSV"
@@ -243,17 +239,49 @@ class _OfCalamine:
         yield from self.book.get_sheet_by_name(title).to_python(skip_empty_area=False)
 
 
-@contextmanager
-def _opened(path: Path, library: ModuleType) -> Iterator[_OfOpenpyxl | _OfCalamine]:
-    with path.open("rb") as stream:
-        if path.suffix.lower() in OTHERS:
-            yield _OfCalamine(library.CalamineWorkbook.from_filelike(stream))
-            return
-        book = library.load_workbook(stream, read_only=True, data_only=True)
-        try:
-            yield _OfOpenpyxl(book)
-        finally:
-            book.close()
+@dataclass(frozen=True)
+class _Version:
+    """A file as it is now, for one thread: what was read of it holds until it is written again."""
+
+    path: Path
+    written: int
+    size: int
+    thread: int
+
+    @classmethod
+    def of(cls, path: Path) -> "_Version":
+        """Return the file's version of this moment."""
+        stat = path.stat()
+        return cls(path.absolute(), stat.st_mtime_ns, stat.st_size, threading.get_ident())
+
+
+def _opened(version: _Version) -> _OfOpenpyxl | _OfCalamine:
+    """Return a workbook, opened once for all the tests in it unless it is too large to be kept."""
+    return _kept(version) if version.size <= MOST_KEPT else _loaded(version.path)
+
+
+@lru_cache(maxsize=1)
+def _kept(version: _Version) -> _OfOpenpyxl | _OfCalamine:
+    return _loaded(version.path)
+
+
+def _loaded(path: Path) -> _OfOpenpyxl | _OfCalamine:
+    """Return a workbook that does not hold its file open."""
+    stream = io.BytesIO(path.read_bytes())
+    if path.suffix.lower() in OTHERS:
+        calamine = load_library(path, "python_calamine", "python-calamine")
+        return _OfCalamine(calamine.CalamineWorkbook.from_filelike(stream))
+    openpyxl = load_library(path, "openpyxl", "openpyxl")
+    return _OfOpenpyxl(openpyxl.load_workbook(stream, read_only=True, data_only=True))
+
+
+@lru_cache(maxsize=KEPT)
+def _tables(version: _Version, sheet: str) -> tuple[Sheet, ...]:
+    """Return the tables of the sheets of a workbook that hold anything, or of the one that is named."""
+    book = _opened(version)
+    titles = [_titled(version.path, book.titles, sheet)] if sheet else book.titles[:MOST_SHEETS]
+    heads = {title: [list(row) for row in islice(book.rows(title), SEARCHED)] for title in titles}
+    return tuple(_sheet(title, head) for title, head in heads.items() if any(map(_holds_any, head)))
 
 
 def _titled(path: Path, titles: Sequence[str], name: str) -> str:
@@ -271,7 +299,7 @@ def _titled(path: Path, titles: Sequence[str], name: str) -> str:
     )
 
 
-def _sheet(path: Path, title: str, head: Sequence[Sequence[Any]]) -> Sheet:
+def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     """Return the table of a sheet that holds anything, from its first rows."""
     width = max(len(_trimmed(row)) for row in head)
     lines = ["\t".join(map(_text, [*row, *[None] * width][:width])) + "\n" for row in head]

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from one_recording import COLUMNS, HEADERS, SAMPLES, TIME, assert_the_recording, refusal
+from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.choices import Choices
 from tirelab.recordings.files import recording_files
 from tirelab.recordings.inspection import inspect_recording
@@ -224,3 +225,69 @@ def test_an_open_document_is_read_as_the_others_are(tmp_path: Path) -> None:
     recording = read_recording(tmp_path / "a.ods", radius="flat")
     np.testing.assert_allclose(recording.force, 9.0 * np.arange(30))
     np.testing.assert_allclose(recording.deflection, 2e-4 * np.arange(30))
+
+
+def of_tests(path: Path, tests: int, header: list[str]) -> Path:
+    """Return a workbook with a sheet of results of one row, and a sheet for each of several tests."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    results = book.active
+    results.append(["", "Fmax", "dL at Fmax"])
+    results.append(["", "N", "mm"])
+    results.append(["test 1", 25.3, 8.4])
+    for test in range(1, tests + 1):
+        sheet = book.create_sheet(f"test {test}")
+        sheet.append(header)
+        for i in range(30):
+            sheet.append([0.1 * i, 0.2 * i, 10.0 * test * i])
+    book.save(path)
+    book.close()
+    return path
+
+
+def test_a_workbook_of_many_tests_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    path = of_tests(tmp_path / "a.xlsx", 5, ["time [s]", "stroke [mm]", "load [N]"])
+    opened: list[Any] = []
+    load = openpyxl.load_workbook
+
+    def counted(stream: Any, **options: Any) -> Any:
+        opened.append(stream)
+        return load(stream, **options)
+
+    monkeypatch.setattr(openpyxl, "load_workbook", counted)
+    files, _ = recording_files([path])
+    forces = [inspect_recording(file, Choices(part=True)).recording.force[-1] for file in files]
+    assert forces == [290.0 * test for test in range(1, 6)]
+    assert len(opened) == 1
+    of_tests(path, 2, ["time [s]", "stroke [mm]", "load [kN]"])
+    assert read_recording(f"{path}@trial2", radius="flat").force[-1] == pytest.approx(580e3)
+
+
+def test_a_row_of_results_is_not_the_recording_that_is_asked_about(tmp_path: Path) -> None:
+    path = of_tests(tmp_path / "a.xlsx", 1, ["Time [s]", "strain [%]", "stress [N/mm^2]"])
+    assert "'strain [%]', 'stress [N/mm^2]' say strain or stress" in refusal(path, radius="flat")
+
+
+def test_the_columns_of_tests_side_by_side_are_called_as_in_one(tmp_path: Path) -> None:
+    """So that one command reads them all: of a separation that falls nobody knows which way the rig counts."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for test in (1, 2):
+        sheet = book.create_sheet(f"test {test}") if test > 1 else book.active
+        sheet.append(["time [s]", "tool separation [mm]", "force [N]"])
+        for i in range(30):
+            sheet.append([0.1 * i, 13.0 - 0.1 * i, 2.0 * test * i])
+    book.save(tmp_path / "a.xlsx")
+    book.close()
+    files, _ = recording_files([tmp_path / "a.xlsx"])
+    commands = set()
+    for file in files:
+        with pytest.raises(IncompleteRecording) as caught:
+            inspect_recording(file, Choices(part=True))
+        commands.add(tuple(caught.value.words()))
+    assert commands == {("--columns", "deflection=-tool separation [mm],force=+force [N]")}
+    signs = {"deflection": "-tool separation [mm]", "force": "+force [N]"}
+    told = inspect_recording(files[1], Choices(signs, part=True))
+    assert told.recording.force[-1] == 116.0
+    assert told.settings["columns"]["deflection"] == "-tool separation [mm]"
