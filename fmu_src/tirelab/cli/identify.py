@@ -91,8 +91,8 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
     if found is None:
-        given = [*map(str, recordings), *reading.words()]
-        _part(output, console, read, (part, options["name"]), given)
+        given = [*map(str, recordings)], reading.words()
+        _part(output, console, dict(zip(files, read, strict=True)), (part, options["name"]), given)
         return
     beside = out.parent / f"{out.stem}.identification.json"
     with staged(out.parent) as folder:
@@ -112,18 +112,24 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
 
 
 def _part(
-    output: Output, console: Console, recordings: list[Recording], chosen: tuple[str, str], given: list[str]
+    output: Output,
+    console: Console,
+    found: dict[Path, Recording],
+    chosen: tuple[str, str],
+    given: tuple[list[str], list[str]],
 ) -> None:
     """Print what the laws leave of recordings of a part; write the tire file of the law that is chosen.
 
-    chosen: the law, or "compare", and the tire's name; given: the recordings and how they are read, as words of a
+    chosen: the law, or "compare", and the tire's name; given: the recordings, and how they are read, as words of a
     command
     """
     part, name = chosen
+    recordings = list(found.values())
     from ..computing.staging import staged
     from ..identification.misfit import misfit_sentence
-    from ..identification.part_laws import best_writable, fit_laws, reading_noise, tire_of
+    from ..identification.part_laws import best_writable, fit_laws, reading_noise, tire_of, way_to_a_hold
     from ..identification.table import law_table
+    from ..recordings.formats.table import listed
 
     fits = fit_laws(recordings)
     tire = None if part == "compare" else output.out
@@ -134,8 +140,18 @@ def _part(
             write_tire(model, folder / tire.name)
     else:
         law = min(fits, key=lambda fit: fit.rmse)
-    command = shlex.join(["tirelab", "diagnose", *given, "--tire", str(output.out)])
+    command = shlex.join(["tirelab", "diagnose", *given[0], "--tire", str(output.out), *given[1]])
     misfit = misfit_sentence(law.rmse, reading_noise(recordings), command)
+    ways = {path: None if "@" in path.name else way_to_a_hold(recording) for path, recording in found.items()}
+    if tire is not None and any(ways.values()):
+        pieces = [f"{path}@{way[0]:.4g}s:{way[1]:.4g}s" if way else str(path) for path, way in ways.items()]
+        identified = shlex.join(
+            ["tirelab", "identify", *pieces, "--part", part, "--out", str(tire), *given[1]]
+        )
+        misfit = (
+            f"nearly all of {listed([path.name for path, way in ways.items() if way])} is a hold, in which the force "
+            f"may relax, and this is its law, of no spring: identify the way there, `{identified}`, then `{command}`"
+        )
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]
         output.result((), {"laws": laws, "tire": None if tire is None else str(tire)})
@@ -148,7 +164,9 @@ def _part(
             console.print(f"- {misfit}", markup=False, soft_wrap=True)
         console.print(f"tire: {tire}", soft_wrap=True)
     elif best := best_writable(fits, recordings):
-        command = shlex.join(["tirelab", "identify", *given, "--part", best, "--out", str(output.out)])
+        command = shlex.join(
+            ["tirelab", "identify", *given[0], "--part", best, "--out", str(output.out), *given[1]]
+        )
         console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
         if misfit:
             console.print(f"- {misfit} then", markup=False, soft_wrap=True)

@@ -55,6 +55,10 @@ IN_GAP = 0.1
 TWO_SIDED = ("constant", "linear", "power", "power_preload")
 """Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
 
+AT_REST, MOSTLY_HELD = 0.02, 0.9
+"""A recording that is within this part of its stroke of one deflection for more than this part of its samples is a
+hold."""
+
 LEAST_SPRING = 1e-3
 """Least coefficient A [N/cm^B] that a tire file holds: a part without a spring, such as a damper, has this one."""
 
@@ -180,8 +184,8 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
     if value + SURE * deviation < 0.0:
         raise TirelabError(
             f"the law {fit.name} has {symbol} = {value:.3g}, a force that falls as the deflection grows, which a tire "
-            "file cannot hold; check the signs of force and deflection, or for a part without a spring, such as a "
-            "damper, give --part constant"
+            f"file cannot hold; {_of_a_hold(recordings) or 'check the signs of force and deflection, or '}for a part "
+            "without a spring, such as a damper, give --part constant"
         )
     if scale * value <= LEAST_SPRING:
         return _without_spring(_constant(_samples(recordings)).value("F0"))
@@ -189,11 +193,37 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
     least, most = EXPONENT_BOUNDS
     if not least <= exponent <= most:
         raise TirelabError(
-            f"the law {fit.name} has B = {exponent:.3g}, and a tire file holds {least:g} to {most:g}; for a part "
-            "without a spring, such as a damper, give --part constant"
+            f"the law {fit.name} has B = {exponent:.3g}, and a tire file holds {least:g} to {most:g}; "
+            f"{_of_a_hold(recordings)}for a part without a spring, such as a damper, give --part constant"
         )
     preload = 0.0 if fit.name == "power" else fit.value("F0")
     return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
+
+
+def way_to_a_hold(recording: Recording) -> tuple[float, float] | None:
+    """Return the times [s] between which a recording goes to a deflection at which it then stays; None where it does
+    not stay.
+
+    In a hold the force relaxes and the deflection is one: a law that is fitted to it says nothing of a spring.
+    """
+    deflection = recording.deflection
+    near = np.abs(deflection - np.median(deflection)) < AT_REST * np.ptp(deflection)
+    begun = float(recording.time[int(np.argmax(near))])
+    held = recording.timed and float(np.mean(near)) > MOSTLY_HELD and begun > recording.time[0]
+    return (float(recording.time[0]), begun) if held else None
+
+
+def _of_a_hold(recordings: Sequence[Recording]) -> str:
+    """Return what to identify where the first recording that is nearly all a hold cannot be; "" where there is none."""
+    for recording in recordings:
+        way = way_to_a_hold(recording)
+        if way is not None:
+            name = recording.name if recording.source is None else recording.source.name
+            return (
+                f"nearly all of {name} is a hold, so identify the law from the way there, "
+                f"{name}@{way[0]:.4g}s:{way[1]:.4g}s, and diagnose the whole with it; "
+            )
+    return ""
 
 
 def _without_spring(preload: float) -> TireModel:

@@ -16,10 +16,13 @@ from .matching import Match
 from .metadata import Settings
 from .origin import Origin
 from .plausibility import force_begins
-from .sign_convention import Signs, compressive_signs
+from .sign_convention import Signs, compressive_signs, mass_alike, work_share
 from .zero import ZEROED, Gauges, quantity_text, zero_in_si
 
 FloatArray = NDArray[np.float64]
+
+MOST_MOVED = 20.0
+"""So much [kg] may move between a part and the cell that measures its force: a rod, clamps, a plate."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,7 @@ def count_from_zero(
 
     A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are,
     but for both being negative under load, as of a part that is loaded the other way and then relaxes or breaks.
+    Where a mass that moves may be why the force falls, nothing is turned without asking.
     Errors: RecordingError for a zero that is no quantity of its channel.
     """
     zeros = {name: zero_in_si(name, text, f"{origin}, zero") for name, text in settings.zero.items()}
@@ -66,6 +70,17 @@ def count_from_zero(
     of_part = settings.part and bool(signs.doubt) and not signs.falls
     if len(given) == 2 or (of_part and not (signs.negative and not given)):
         return Counted(gauges, tuple(notes))
+    mass = (
+        mass_alike(values["time"], values["deflection"], values["force"]) if settings.part and turned else 0.0
+    )
+    if len(turned) == 1 and not given and 0.0 < mass < MOST_MOVED:
+        # what little work is done tells which way round it is not put in
+        likely = Signs(1, -1 if work_share(values["deflection"], values["force"]) < 0.0 else 1)
+        why = (
+            "the force falls as the deflection rises: a spring counted the other way has it so, and so has the mass "
+            f"of a rod and clamps, {mass:.2g} kg at this speed"
+        )
+        return Counted(gauges, tuple(notes), _asked(values, gauges, likely, why, settings))
     if (signs.doubt and not of_part) or turned & given:
         why = signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned"
         return Counted(gauges, tuple(notes), _asked(values, gauges, signs, why, settings))

@@ -12,6 +12,10 @@ ROUNDING = 1e-11
 """A spread below this share of the sum of squares is what roundings leave of a constant, and no evidence."""
 
 
+PASSED = 0.1
+"""A passage of the middle counts where the deflection goes on beyond it by this part of its stroke."""
+
+
 @dataclass(frozen=True)
 class Signs:
     """The factors, 1 or -1, that make deflection and force positive in compression, and why they are in doubt.
@@ -97,3 +101,25 @@ def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> f
     middle = 0.5 * (read[1:] + read[:-1])
     with np.errstate(all="ignore"):
         return float((middle @ way) / np.sum(np.abs(middle - middle.mean()) * np.abs(way)))
+
+
+def mass_alike(
+    time: NDArray[np.float64], deflection: NDArray[np.float64], force: NDArray[np.float64]
+) -> float:
+    """Return the mass [kg] that has a force fall with the deflection as this one does, driven as this one is.
+
+        m = -k / w^2,    k the slope of the force over the deflection, w from the usual time between two passages of
+                         the middle
+
+    Infinite where the force does not fall, or the part is not driven to and fro. `time` [s], `deflection` [m],
+    `force` [N], of shape (samples,).
+    """
+    beyond = (deflection - np.median(deflection)) / max(float(np.ptp(deflection)), np.finfo(float).tiny)
+    far = np.flatnonzero(np.abs(beyond) > PASSED)
+    passages = time[far[1:]][np.diff(np.sign(beyond[far])) != 0.0]
+    x = deflection - deflection.mean()
+    fall = -float(x @ (force - force.mean()))
+    if passages.size < 2 or fall <= 0.0:
+        return float("inf")
+    rate = np.pi / float(np.median(np.diff(passages)))
+    return fall / float(x @ x) / rate**2

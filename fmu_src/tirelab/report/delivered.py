@@ -30,7 +30,9 @@ def delivered_of(diagnosis: Mapping[str, Any]) -> Delivered:
     found = diagnosis.get("delivered") or diagnosis.get("correction")
     if not (isinstance(found, Mapping) and "simulation" in found):
         files = (("Tire", diagnosis.get("tire")), ("FMU", diagnosis.get("corrected_fmu")))
-        kind = "part" if (diagnosis.get("baseline_tire") or {}).get("two_sided") else "tire"
+        baseline = diagnosis.get("baseline_tire") or {}
+        # one that holds no air is no tire, also where it is loose before a gap and so has one side
+        kind = "part" if baseline.get("two_sided") or baseline.get("inflated") is False else "tire"
         return Delivered(
             "the tire", kind, "Nothing: use this tire.", "Nothing: use the baseline tire.", files
         )

@@ -150,7 +150,8 @@ def draw_where(at: Located, places: Sequence[Mapping[str, Any]], noise: float, m
         for branch, marker in ((loads, "^"), (~loads, "v")):
             axes.plot(*_means(mm[branch], at.residual[branch]), color=PAGE.ink, marker=marker, ms=2.6, lw=1.3)
         title = "Recorded − simulated (▲ loading, ▼ unloading)"
-        axes.set(xlim=frame.across, ylim=frame.up, ylabel="force [N]", title=title)
+        axes.set(xlim=frame.across, ylim=frame.up, ylabel="force [N]")
+        axes.set_title(title, loc="right")  # it is as wide as the picture
         axes.set_xlabel("deflection [mm]", loc="left")
         legend = [Patch(color=PAGE.band, label="noise"), Line2D([], [], color=PAGE.ink, lw=1.3, label="mean")]
         figure.legend(handles=legend, **LEGEND)

@@ -202,14 +202,16 @@ def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> 
     """Return the first `most` entries of `where`; more than `of_one` over one coordinate only to fill up.
 
     Dropped is what shows the same as another place: the elastic force beside the deflection, one single rate beside the
-    direction.
+    direction, no acceleration beside rest.
     """
     by = {place["by"] for place in where}
+    held = any(map(is_at_rest, where))
     shown = [
         place
         for place in where
         if not (place["by"] == "force" and "deflection" in by)
         and not (is_one_rate(place) and "direction" in by)
+        and not (held and place["by"] == "acceleration" and place["from"] <= 0.0 <= place["to"])
     ]
     counts: Counter[str] = Counter()
     first: list[int] = []
@@ -232,9 +234,23 @@ def is_one_rate(place: Mapping[str, Any]) -> bool:
     return bool(abs(stop - start) < ONE_RATE * max(abs(start), abs(stop)))
 
 
+REST = 1e-7
+"""Up to this rate [m/s] nothing moves: what is read of it is the gauge's noise."""
+
+
+def is_at_rest(place: Mapping[str, Any]) -> bool:
+    """Return whether a place over the rate is where the deflection is held."""
+    start, stop = place["from"], place["to"]
+    if place["by"] != "rate" or isinstance(start, str) or isinstance(stop, str):
+        return False
+    return bool(-REST < start <= 0.0 <= stop < REST)
+
+
 def span(place: Mapping[str, Any]) -> str:
     """Return the span of an entry of `where` in words."""
     by, start, stop, unit = (place[key] for key in ("by", "from", "to", "unit"))
+    if is_at_rest(place):
+        return "at rest"
     if by == "radius" and start == stop:
         return surface(start)
     if place.get("label"):
@@ -253,7 +269,7 @@ def span(place: Mapping[str, Any]) -> str:
 def where_phrase(place: Mapping[str, Any], *, coordinate_too: bool = True) -> str:
     """Return an entry of `where` for a sentence: "deflection 14.1 to 31.0 mm", "while loading", "on flat ground"."""
     lead = {"direction": "while", "radius": "on"}.get(place["by"], coordinate(place["by"]))
-    return f"{lead} {span(place)}" if coordinate_too else span(place)
+    return f"{lead} {span(place)}" if coordinate_too and not is_at_rest(place) else span(place)
 
 
 def _edges(start: float | str, stop: float | str, factor: float) -> tuple[str, str]:

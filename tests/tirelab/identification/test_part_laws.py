@@ -277,3 +277,26 @@ def test_one_surface_at_a_time() -> None:
     bump = Recording("bump", flat.time, X, np.full(X.size, 0.25), flat.force)
     with pytest.raises(TirelabError, match="on 2 surfaces; the laws are compared on one surface"):
         fit_laws([flat, bump])
+
+
+@pytest.mark.parametrize("law", ["power", "linear"])
+def test_the_law_of_a_ramp_that_is_held_is_identified_from_the_ramp(tmp_path: Path, law: str) -> None:
+    """A tendon pulled for 8 s and held for 3 minutes, in which the force falls by half: F = k x, 4 N/mm.
+
+    Where the law of the hold falls no tire file holds it, and the refusal says the same.
+    """
+    time = np.arange(0.0, 188.0, 0.1)
+    x = 0.7 * np.minimum(time / 8.0, 1.0) - 1e-4 * (time > 8.0) * (law == "linear") * np.exp(8.0 - time)
+    force = 4.0 * x * (1.0 - 0.5 * np.where(time > 8.0, 1.0 - np.exp(-(time - 8.0) / 20.0), 0.0))
+    rows = np.column_stack([time, x, force + 1e-3 * np.random.default_rng(3).standard_normal(time.size)])
+    file = tmp_path / "tendon.csv"
+    np.savetxt(file, rows, delimiter=",", header="time [s],extension [mm],load [N]", comments="")
+    words = ["identify", str(file), "--columns", "deflection=+extension [mm],force=+load [N]"]
+    said = CliRunner().invoke(main, [*words, "--part", law, "--out", str(tmp_path / "part.json")]).output
+    assert "nearly all of tendon.csv is a hold" in said
+    assert "tendon.csv@0s:7.9s" in said
+    ramp = ["identify", f"{file}@0s:7.9s", *words[2:], "--part", law, "--out", str(tmp_path / "part.json")]
+    done = CliRunner().invoke(main, ramp)
+    assert done.exit_code == 0, done.output
+    assert "is a hold" not in done.output
+    assert read_tire(tmp_path / "part.json").law.coefficient == pytest.approx(40.0, rel=0.01)  # type: ignore[attr-defined]

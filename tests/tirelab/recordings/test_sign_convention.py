@@ -8,9 +8,11 @@ import pytest
 from click.testing import CliRunner
 from house_form import loading, refusal, write_rows
 from tirelab.cli import main
+from tirelab.recordings.asking import IncompleteRecording
+from tirelab.recordings.choices import Choices
 from tirelab.recordings.reading import Reading
-from tirelab.recordings.recording import RecordingError, read_recording
-from tirelab.recordings.sign_convention import compressive_signs, work_share
+from tirelab.recordings.recording import RecordingError, read_recording, understand
+from tirelab.recordings.sign_convention import compressive_signs, mass_alike, work_share
 
 
 class TestSigns:
@@ -142,3 +144,37 @@ def test_loops_that_run_backwards_are_doubted_and_the_turned_force_is_not(tmp_pa
 
 
 SIGNED = {"deflection": "+deflection [cm]", "force": "+force [N]"}
+
+
+@pytest.mark.parametrize("rests", [0.0, 3.0])
+def test_a_mass_is_found_by_the_force_that_falls_with_its_way(rests: float) -> None:
+    """F = m a of a sine is -m w^2 x, also where the motion rests between its cycles."""
+    moving = np.arange(0.0, 2.0, 1e-3)
+    x = 0.012 * np.sin(2.0 * np.pi * 5.0 * moving)
+    still = np.zeros(int(1e3 * rests))
+    deflection = np.concatenate([x, still, x])
+    time = 1e-3 * np.arange(len(deflection))
+    force = -1.7 * (2.0 * np.pi * 5.0) ** 2 * deflection
+    assert mass_alike(time, deflection, force) == pytest.approx(1.7, rel=0.02)
+    assert mass_alike(time, deflection, -force) == np.inf
+
+
+@pytest.mark.parametrize(("rate", "asked"), [(5.0, True), (0.05, False)])
+@pytest.mark.parametrize("part", [True, False])
+def test_a_part_that_is_driven_so_fast_that_a_mass_does_it_is_not_turned_unasked(
+    tmp_path: Path, rate: float, asked: bool, part: bool
+) -> None:
+    """A cell with a rod on it and some damping, which hangs at -18 N; slow, the same force is a spring's."""
+    time = np.arange(0.0, 4.0 / rate, 0.005 / rate)
+    phase = 2.0 * np.pi * rate * time
+    force = -18.0 - 15.0 * np.sin(phase) + 1.0 * np.cos(phase)
+    path = write_rows(
+        tmp_path / "a.csv", "t [s],position [mm],force [N]", time, 12.0 + 12.0 * np.sin(phase), force
+    )
+    how = Choices(part=part, radius="flat")
+    if not (asked and part):
+        assert any("force turned in sign" in note for note in understand(path, how).recording.notes)
+        return
+    with pytest.raises(IncompleteRecording, match=r"1\.3 kg at this speed") as caught:
+        understand(path, how)
+    assert caught.value.words()[1] == "deflection=+position [mm],force=+force [N]"

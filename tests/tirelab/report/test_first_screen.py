@@ -366,6 +366,7 @@ def test_beside_a_simulation_it_is_told_what_to_do_with_that(
     )
 
 
-def test_a_part_held_at_both_ends_is_no_tire() -> None:
-    unknown = diagnosis({}, 0.95, unexplained=True) | {"baseline_tire": {"two_sided": True}}
+@pytest.mark.parametrize("baseline", [{"two_sided": True}, {"inflated": False}])
+def test_a_part_is_no_tire_whether_it_is_held_at_both_ends_or_loose(baseline: dict[str, bool]) -> None:
+    unknown = diagnosis({}, 0.95, unexplained=True) | {"baseline_tire": baseline}
     assert first_screen.next_step(unknown).action == "Repeat one recording with another part."

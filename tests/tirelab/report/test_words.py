@@ -181,3 +181,15 @@ def test_no_line_ends_between_a_number_and_its_unit() -> None:
         said.replace("\N{NO-BREAK SPACE}", "_")
         == "It falls from 103_N to 13.2_N in 8 of 10 meters: 33_%, at 8.4_mm/s, 10_s at 32_mm."
     )
+
+
+def test_a_hold_is_told_as_rest_and_not_as_a_rate_and_an_acceleration_of_nothing() -> None:
+    """Of a fascicle that was held for three minutes: what the gauge's noise makes of a rate that is none."""
+    held = {"by": "rate", "from": -2.8e-8, "to": 1.5e-8, "unit": "m/s", "label": ""}
+    still = {"by": "acceleration", "from": -1.6e-9, "to": 2.7e-8, "unit": "m/s^2", "label": ""}
+    started = still | {"from": 0.4, "to": 1.2}
+    assert words.where_phrase(held) == words.span(held) == "at rest"
+    assert words.foremost([still, held, started], 3) == [held, started]
+    assert words.foremost([still], 3) == [still]
+    slow = held | {"from": -2.0e-6, "to": 0.0}
+    assert words.where_phrase(slow) == "rate of deflection −0.00200 to 0 mm/s"
