@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from radialtire import CATALOGUE
-
 from .assignments import assignments
 from .channels import UNIT_OF, known_channel
 from .formats import RecordingError
@@ -23,14 +21,8 @@ EXAMPLE = "deflection=30mm"
 EARLY, EARLY_PART = 2e-3, 0.08
 """The force begins at another deflection than zero where it is farther away than this [m], this part of the stroke."""
 
-FARTHEST = max(
-    max(abs(parameter.minimum), abs(parameter.maximum))
-    for effect in CATALOGUE.values()
-    if effect.place == "deflection"
-    for parameter in effect.parameters
-    if parameter.unit == UNIT_OF["deflection"]
-)
-"""The largest shift [m] of the deflection that an effect of the catalogue holds."""
+FARTHEST = 0.01
+"""A tire's zero is not farther off than this [m]: beyond, the gauge was not set to zero."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +122,7 @@ class Gauges:
         if not zero.far:
             return ""
         return (
-            f"{zero.sentence()}, and no effect holds more than {_mm(FARTHEST)} of a zero; give the zero: "
+            f"{zero.sentence()}, and what is farther off than {_mm(FARTHEST)} is the gauge's zero; give it: "
             f"{self.origin.zero(self.at_zero(zero.readings()))}"
         )
 

@@ -96,7 +96,7 @@ def test_a_zero_that_the_diagnosis_can_find_is_left_to_it(tmp_path: Path) -> Non
     recording = read_recording(file, radius="flat")
     assert recording.doubts[0].endswith("--zero deflection=5mm`, or let the diagnosis find the offset")
     refuse_far_zeros([recording])
-    assert pytest.approx(0.01) == FARTHEST  # bounds of the offset in its file
+    assert pytest.approx(0.01) == FARTHEST
 
 
 def test_what_goes_on_before_the_first_reading_is_no_beginning(tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_what_goes_on_before_the_first_reading_is_no_beginning(tmp_path: Path) -
 
 def test_a_zero_that_no_effect_holds_is_refused_by_what_judges(tmp_path: Path) -> None:
     file = press(tmp_path, 150.0, 200.0)
-    with pytest.raises(TirelabError, match=r"no effect holds more than 10\.0 mm of a zero; give the zero: `"):
+    with pytest.raises(TirelabError, match=r"farther off than 10\.0 mm is the gauge's zero; give it: `"):
         identify([read_recording(file, radius="flat")])
     for command in ("compare", "diagnose"):
         done = CliRunner().invoke(
