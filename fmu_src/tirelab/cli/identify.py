@@ -140,7 +140,7 @@ def _part(
             write_tire(model, folder / tire.name)
     else:
         law = min(fits, key=lambda fit: fit.rmse)
-    command = shlex.join(["tirelab", "diagnose", *given[0], "--tire", str(output.out), *given[1]])
+    command = shlex.join(["tirelab", "diagnose", *given[0], *given[1], "--tire", str(output.out)])
     misfit = misfit_sentence(law.rmse, reading_noise(recordings), command)
     ways = {path: None if "@" in path.name else way_to_a_hold(recording) for path, recording in found.items()}
     if tire is not None and any(ways.values()):
@@ -165,7 +165,7 @@ def _part(
         console.print(f"tire: {tire}", soft_wrap=True)
     elif best := best_writable(fits, recordings):
         command = shlex.join(
-            ["tirelab", "identify", *given[0], "--part", best, "--out", str(output.out), *given[1]]
+            ["tirelab", "identify", *given[0], *given[1], "--part", best, "--out", str(output.out)]
         )
         console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
         if misfit:
