@@ -52,8 +52,8 @@ STAGES = MappingProxyType(
     type=FILE,
     multiple=True,
     metavar="RECORDING",
-    help="Recording that is not fitted, only used to check the correction, or a range of the one RECORDING: 20s:30s; "
-    "may be repeated.",
+    help="Recording used only to check the correction, not fitted, or a range of the one RECORDING: 20s:30s; may be "
+    "repeated.",
 )
 @click.option(
     "--fit", metavar="RANGE", help="Part of the one RECORDING that is fitted: 0s:20s (time), 100:2000 (rows)."
@@ -63,13 +63,13 @@ STAGES = MappingProxyType(
 @click.option(
     "--believed-force",
     metavar="COLUMN",
-    help="Look for effects beside a simulation: the recordings' column of its force.",
+    help="Diagnose your own simulation: the column of the recordings with its force.",
 )
-@click.option("--rig", type=FILE, help="TOML file of your rig's limits, for the test that it recommends.")
+@click.option("--rig", type=FILE, help="TOML file with the limits of your rig, for the recommended test.")
 @click.option(
     "--fmu",
     type=FILE,
-    help="Look for effects beside a simulation: its FMU, whoever made it. Native code: use one that you trust.",
+    help="Diagnose your own simulation: its FMU, made by any tool. Native code: use one that you trust.",
 )
 @fmu_options
 @click.option("--native", is_flag=True, help="Write DIR/native/BicycleTire.fmu too, which needs no Python.")

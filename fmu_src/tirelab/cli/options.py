@@ -92,20 +92,24 @@ def _without(given: Sequence[str], added: Sequence[str]) -> list[str]:
 
 _READING = (
     click.option(
-        "--columns", metavar="NAME=COLUMN,...", help="Which of the file's columns is which quantity."
+        "--columns", metavar="NAME=COLUMN,...", help="The column of each quantity, by name or #number."
     ),
-    click.option("--units", metavar="NAME=UNIT,...", help="Units of quantities, over what the file says."),
+    click.option(
+        "--units", metavar="NAME=UNIT,...", help="Units of quantities, in place of those in the file."
+    ),
     click.option(
         "--zero",
         multiple=True,
         metavar="NAME=VALUE",
-        help="What a gauge reads when nothing is loaded, which is subtracted: deflection=30mm; may be repeated.",
+        help="Reading of a gauge without load, which is subtracted: deflection=30mm; may be repeated.",
     ),
     click.option(
         "--radius", metavar="R", help="Surface of a recording without a radius column: flat, 25.4cm, ..."
     ),
     click.option(
-        "--sampling", metavar="RATE", help="Samples of a recording without a time column: 10Hz, 0.1s."
+        "--sampling",
+        metavar="RATE",
+        help="Sampling rate or interval where there is no time column: 10Hz, 0.1s.",
     ),
     click.option(
         "--skip-rows",
@@ -114,13 +118,15 @@ _READING = (
         help="Rows of text above the table.  [default: found]",
     ),
     click.option(
-        "--from", "start", metavar="BOUND", help="Read from this time (10s) or row (100) on, of every file."
+        "--from", "start", metavar="BOUND", help="Read every file from this time (10s) or row (100) on."
     ),
-    click.option("--to", "stop", metavar="BOUND", help="Read up to this time, without it, or row, with it."),
+    click.option(
+        "--to", "stop", metavar="BOUND", help="Read up to this time (exclusive) or row (inclusive)."
+    ),
     click.option(
         "--settings",
         type=FILE,
-        help="Read this file of settings, not the recording.toml beside each recording.",
+        help="Settings file, in place of the recording.toml beside each recording.",
     ),
 )
 _NAMES = ("columns", "units", "zero", "radius", "sampling", "skip_rows", "start", "stop", "settings")

@@ -101,7 +101,7 @@ class Passage:
     "terrain",
     Terrain,
     click.option("--columns", metavar="s=COLUMN,z=COLUMN", help="Which of PROFILE's columns are s and z."),
-    click.option("--units", metavar="s=UNIT,z=UNIT", help="Their units, over what the file says."),
+    click.option("--units", metavar="s=UNIT,z=UNIT", help="Their units, in place of those in the file."),
     click.option(
         "--iso-class", type=click.Choice(list("ABCDEFGH")), help="Random ground of this ISO 8608 class."
     ),

@@ -10,7 +10,7 @@ from radialtire import CATALOGUE
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
-from ..report.words import DECIDED, SURE, confidence_word, told
+from ..report.words import DECIDED, SURE, confidence_word, whole_percent
 from .acceptance import NO_WORSE
 from .confidence import Alternative
 from .discriminating_test import DiscriminatingTest
@@ -38,12 +38,14 @@ def summarise(
     """
     names = [e.name for e in effects]
     left = more_than_noise(fit.left, fit.noise)
-    undecided = bool(alternatives) and told(confidence) < DECIDED
+    undecided = bool(alternatives) and whole_percent(confidence) < DECIDED
     doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
-    told_likelier = any(
-        told(a.probability) > told(confidence) for a in alternatives if math.isfinite(a.probability)
+    alternative_is_likelier = any(
+        whole_percent(a.probability) > whole_percent(confidence)
+        for a in alternatives
+        if math.isfinite(a.probability)
     )
-    likeliest = "no explanation is likely" if told_likelier else "this is the likeliest explanation"
+    likeliest = "no explanation is likely" if alternative_is_likelier else "this is the likeliest explanation"
     said = [f"Undecided; {likeliest}."] if undecided else []
     said.append(headline(names, bool(regressions), doubted, left))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]

@@ -13,20 +13,20 @@ from . import titles, words
 from .delivered import delivered_of
 
 MOST = 70
-"""Characters of a headline at most."""
+"""Most characters of a headline."""
 
 SURE = 0.9
 """From this confidence on a tire whose error is noise can be used as it is."""
 
 LONGEST_LEAD = 100
-"""Characters of the sentences on two effects; more is told of the larger one alone."""
+"""Most characters of the sentences on two effects; if they are longer, only that on the larger effect is shown."""
 
 WORSE = 1.05
-"""A held-out error that grows by more than this factor is told as worse."""
+"""A held-out error that grows by more than this factor is reported as worse."""
 
 
 NOISE_FREE = {"after": "after_noise_free", "held_out_after": "held_out_noise_free"}
-"""Of an error, the name of the one with the noise-free deflection."""
+"""For each error, the name of the one with the noise-free deflection."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def headline(diagnosis: Mapping[str, Any]) -> str:
 
 def undecided(verdict: Mapping[str, Any]) -> bool:
     """Return whether the recordings do not decide between the verdict and its alternatives."""
-    return bool(verdict["alternatives"]) and words.told(verdict["confidence"]) < words.DECIDED
+    return bool(verdict["alternatives"]) and words.whole_percent(verdict["confidence"]) < words.DECIDED
 
 
 def sureness(verdict: Mapping[str, Any]) -> str:
@@ -75,8 +75,8 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
     if undecided(verdict):
         sure = [words.sentence(CATALOGUE[name].statement) for name in _sure(verdict) if name in CATALOGUE]
         if sure:
-            return f"{sure[0]} What else acts, these recordings cannot tell; the likeliest is shown."
-        return "These recordings cannot tell the explanations apart; the likeliest one is shown."
+            return f"{sure[0]} These recordings cannot decide what else acts; the likeliest is shown."
+        return "These recordings cannot decide between the explanations; the likeliest one is shown."
     if physics:
         both = " ".join(physics[:2])
         return both if len(both) <= LONGEST_LEAD else physics[0]
@@ -86,12 +86,12 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
         return "Other coefficients of the elastic law explain part of the error; what is left is more than the noise."
     if names:
         if delivered_of(diagnosis).beside:
-            return "The part is as elastic as the simulation's law with other coefficients: no physics is missing."
-        return "The tire is elastic as the law says, with other coefficients: no physics is missing."
+            return "The simulation's law fits the part with other coefficients: no physics is missing."
+        return "The law fits the tire with other coefficients: no physics is missing."
     if verdict.get("not_compared"):
         return "Where the gauges follow, the difference between simulation and recordings is noise."
     if _left_over(diagnosis):
-        return "But for single samples that stand out, the difference between simulation and recordings is noise."
+        return "Apart from single outliers, the difference between simulation and recordings is noise."
     return "The difference between simulation and recordings is noise."
 
 
@@ -102,12 +102,12 @@ def figures(diagnosis: Mapping[str, Any]) -> list[Figure]:
     if verdict["effects"]:
         shown = [
             Figure("Error before", fit["before"]),
-            Figure("Error after", fit["after"], *_told(fit, "after")),
+            Figure("Error after", fit["after"], *_alarm_and_note(fit, "after")),
         ]
     else:
         shown = [Figure("Error", fit["before"], _left(fit["before"], noise))]
     if fit["held_out_after"] is not None:
-        (alarm, own), was = _told(fit, "held_out_after"), fit["held_out_before"]
+        (alarm, own), was = _alarm_and_note(fit, "held_out_after"), fit["held_out_before"]
         if was is not None and fit["held_out_after"] > WORSE * was:
             alarm = "worse than before"
         note = f"from {words.number(was)} N" if was is not None and verdict["effects"] else ""
@@ -126,7 +126,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
         e for e in (_beside_reading(fit, "after"), _beside_reading(fit, "held_out_after")) if e is not None
     ]
     clean = not verdict["unexplained"] and not titles.more_than_noise(max(errors), fit["noise"])
-    if words.told(verdict["confidence"]) >= SURE and clean:
+    if words.whole_percent(verdict["confidence"]) >= SURE and clean:
         surer = f"To be surer still, drive {test['file']}." if test else ""
         said = [_left_in_order(verdict), *verdict.get("not_compared", []), surer]
         return NextStep(given.use if verdict["effects"] else given.leave, " ".join(filter(None, said)))
@@ -146,7 +146,7 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     if not clean:
         return NextStep(
             f"Repeat one recording with another {given.kind}.",
-            "The error left is more than the noise: if the same comes back, the rig causes it.",
+            "The remaining error is larger than the noise: if it comes back, the rig causes it.",
         )
     return NextStep(given.use if verdict["effects"] else given.leave, _as_good(verdict))
 
@@ -157,7 +157,7 @@ def _as_good(verdict: Mapping[str, Any]) -> str:
         return ""
     force = "the corrected force" if verdict["effects"] else "the baseline's force"
     either = "either" if len(verdict["alternatives"]) == 1 else "any of them"
-    return f"No motion of this rig tells the alternatives apart; {force} is as good with {either}."
+    return f"No motion of this rig decides between the alternatives; {force} is equally good with {either}."
 
 
 def _left_in_order(verdict: Mapping[str, Any]) -> str:
@@ -166,9 +166,7 @@ def _left_in_order(verdict: Mapping[str, Any]) -> str:
     by = [titles.dependence(d["by"]) for d in left.get("depends_on", [])]
     if not by:
         return ""
-    return (
-        f"What it leaves beside the noise, {left['size']:.2g} times as large, depends on {titles.listed(by)}."
-    )
+    return f"The remainder, {left['size']:.2g} times the noise, depends on {titles.listed(by)}."
 
 
 def actions(reasons: Sequence[str]) -> list[str]:
@@ -232,7 +230,9 @@ def _by_size(effects: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 def _sure(verdict: Mapping[str, Any]) -> list[str]:
     """Return the effects that are as good as certain by themselves, whatever acts beside them."""
     return [
-        e["name"] for e in _by_size(verdict["effects"]) if words.told(e.get("probability") or 0.0) >= SURE
+        e["name"]
+        for e in _by_size(verdict["effects"])
+        if words.whole_percent(e.get("probability") or 0.0) >= SURE
     ]
 
 
@@ -270,12 +270,12 @@ def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]
     yield f"{found}; undecided what else acts"
 
 
-def _told(fit: Mapping[str, Any], error: str) -> tuple[str, str]:
+def _alarm_and_note(fit: Mapping[str, Any], error: str) -> tuple[str, str]:
     """Return the alarm of an error, and a note where it is noise of the reading alone."""
     noise = fit["noise"]
     noise_free = _beside_reading(fit, error)
     if _left(fit[error], noise) and not _left(noise_free, noise) and noise_free is not None:
-        return "", f"{words.number(noise_free)} N but for the reading's noise"
+        return "", f"{words.number(noise_free)} N without the noise of the reading"
     return _left(noise_free, noise), ""
 
 

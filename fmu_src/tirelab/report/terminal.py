@@ -67,7 +67,7 @@ def _places(diagnosis: Mapping[str, Any]) -> Table:
 def _effect(effect: Mapping[str, Any], report: str) -> list[Table | Text]:
     """Return an effect with its parameters, or with A and B of each surface; report: file with the rest of the law."""
     name = effect["name"]
-    title = f"{titles.full_title(name)}, without it {words.percent(effect['share'])} of the error is back"
+    title = f"{titles.full_title(name)}, without it {words.percent(effect['share'])} of the error comes back"
     lines: list[Table | Text] = [Text(title, style="dim")]
     if not effect.get("law"):
         parameters = _table("", "", "")

@@ -167,8 +167,8 @@ def likeliest(details: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     return sorted(details, key=lambda d: math.inf if d["probability"] is None else -float(d["probability"]))
 
 
-def told(confidence: float) -> float:
-    """Return a confidence as it is told, to whole percents, so that words and decisions agree with the number."""
+def whole_percent(confidence: float) -> float:
+    """Return a confidence rounded to whole percents, as it is shown, so that words and decisions agree with it."""
     return round(100.0 * confidence) / 100.0
 
 
@@ -182,7 +182,7 @@ SURE = "sure"
 def confidence_word(confidence: float) -> str:
     """Return how sure that is, in words."""
     for limit, word in ((0.9, SURE), (0.7, "fairly sure"), (0.5, "more likely than not")):
-        if told(confidence) >= limit:
+        if whole_percent(confidence) >= limit:
             return word
     return "one of several possibilities"
 

@@ -82,7 +82,7 @@ def test_where_the_recordings_cannot_decide_that_is_the_headline() -> None:
     doubtful = {"alternatives": [["viscous_damping"]]}
     assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.49, **doubtful)).startswith("Undecided: ")
     assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.51, **doubtful)).startswith("Inertia, ")
-    assert "cannot tell" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful))
+    assert "cannot decide" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful))
 
 
 def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
@@ -99,7 +99,7 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     first["probability"] = 0.97
     assert first_screen.headline(told) == "Relaxation; undecided: refitted law or inertia"
     assert first_screen.lead(told).startswith("The force relaxes")
-    assert "What else acts" in first_screen.lead(told)
+    assert "cannot decide what else acts" in first_screen.lead(told)
     first["probability"] = 0.6
     assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
 
@@ -181,21 +181,21 @@ def test_one_thing_to_do_next(given: dict[str, Any], reasons: list[str], action:
             [["force_lag"]],
             "Undecided: inertia or force lag",
             "Nothing: use this tire.",
-            "the corrected force is as good with either.",
+            "the corrected force is equally good with either.",
         ),
         (
             {"inertia": 9.0},
             [["force_lag"], ["viscous_damping"]],
             "Undecided: inertia, force lag or viscous damping",
             "Nothing: use this tire.",
-            "the corrected force is as good with any of them.",
+            "the corrected force is equally good with any of them.",
         ),
         (
             {},
             [["force_offset"]],
             "Undecided: nothing missing or force offset",
             "Nothing: use the baseline tire.",
-            "the baseline's force is as good with either.",
+            "the baseline's force is equally good with either.",
         ),
     ],
 )
@@ -207,7 +207,7 @@ def test_an_undecided_verdict_says_why_there_is_nothing_to_do(
     step = first_screen.next_step(given)
     assert (step.action, step.why) == (
         action,
-        f"No motion of this rig tells the alternatives apart; {why}",
+        f"No motion of this rig decides between the alternatives; {why}",
     )
 
 
@@ -253,10 +253,7 @@ def test_a_tire_that_can_be_used_tells_what_it_leaves_in_order() -> None:
     given["verdict"]["remainder"] = remainder
     step = first_screen.next_step(given)
     assert step.action == "Nothing: use this tire."
-    assert (
-        step.why
-        == "What it leaves beside the noise, 0.8 times as large, depends on the rate of deflection and time."
-    )
+    assert step.why == "The remainder, 0.8 times the noise, depends on the rate of deflection and time."
     given["verdict"]["remainder"] = {**remainder, "depends_on": []}
     assert first_screen.next_step(given).why == ""
 
@@ -282,7 +279,7 @@ def test_samples_that_were_not_compared_are_told() -> None:
 def test_single_samples_that_stand_out_are_told() -> None:
     given = diagnosis({}, 0.95)
     given["fit"]["after"] = 1.6 * given["fit"]["noise"]
-    assert first_screen.lead(given).startswith("But for single samples that stand out, the difference")
+    assert first_screen.lead(given).startswith("Apart from single outliers, the difference")
 
 
 def test_the_noise_of_the_reading_is_no_error_of_the_tire() -> None:
@@ -295,7 +292,7 @@ def test_the_noise_of_the_reading_is_no_error_of_the_tire() -> None:
         "held_out_noise_free": 9.8,
     }
     after, held_out = first_screen.figures(given)[1:3]
-    assert (after.alarm, after.note) == ("", "6.50 N but for the reading's noise")
+    assert (after.alarm, after.note) == ("", "6.50 N without the noise of the reading")
     assert held_out.alarm == "1.6 × the noise"
     given["fit"]["held_out_noise_free"] = 6.4
     assert first_screen.next_step(given).action == "Nothing: use this tire."

@@ -157,9 +157,9 @@ def page_text(page: str) -> str:
 def test_alternatives_have_reasons_and_a_test(pages: dict[str, str]) -> None:
     page = Elements(pages["alternatives"])
     cells = [" ".join(text.split()) for text in page.texts["tbody"]]
-    assert "Not told apart: no hold. What decides: Hold 10 s at 14 mm. + series spring7 %" in cells
+    assert "Not decided: no hold. What decides: Hold 10 s at 14 mm. + series spring7 %" in cells
     assert (
-        "Not told apart: one speed only. What decides: Repeat at 30 mm/s. viscous damping instead of friction loop30 %"
+        "Not decided: one speed only. What decides: Repeat at 30 mm/s. viscous damping instead of friction loop30 %"
         in cells
     )
     text = page.texts["main"][0]

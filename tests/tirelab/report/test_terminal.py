@@ -33,7 +33,7 @@ def test_every_kind_begins_with_its_verdict_and_ends_with_its_files(kinds: dict[
 
 def test_parameters_are_printed_with_their_meaning(kinds: dict[str, Any]) -> None:
     text = printed(kinds["two"].diagnosis)
-    assert "refitted law, without it 61 % of the error is back" in text
+    assert "refitted law, without it 61 % of the error comes back" in text
     assert "with the law refitted" in text
     assert "slip force 30.10 ± 0.60 N friction whatever the load: half the loop's height" in text
 
