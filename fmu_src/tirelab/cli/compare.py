@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 )
 @click.argument("recording", type=FILE)
 @click.option(
-    "--fmu", type=FILE, help="The simulation as an FMU, made by any tool: native code, use one that you trust."
+    "--fmu",
+    type=FILE,
+    help="The simulation as an FMU, made by any tool: native code, use one that you trust.",
 )
 @click.option(
     "--tire", type=FILE, help="The tire as a tire file, instead of an FMU.  [default: the article's tire]"
