@@ -29,6 +29,7 @@ WORDS_ONLY = (
 
 BESIDE = (
     "diagnosis/confidence.FASTER",
+    "diagnosis/confidence.HOLD_DEPTH",
     "diagnosis/confidence.LONG_ENOUGH",
     "diagnosis/confidence.USUAL_SPEED",
     "diagnosis/binning",

@@ -268,6 +268,9 @@ MOST_LISTED = 10
 LONG_ENOUGH = 1.0
 """Shortest rest [s] that counts as a hold."""
 
+HOLD_DEPTH = 0.65
+"""Deflection of a recommended hold, as a part of the largest one recorded."""
+
 FASTER = 10.0
 """Factor between a recorded speed and another one that is recommended."""
 
@@ -380,7 +383,7 @@ def insufficient_excitation(
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
     held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
     if timed and held < LONG_ENOUGH:
-        level = 650.0 * dataset.max_deflection
+        level = 1e3 * HOLD_DEPTH * dataset.max_deflection
         lacks.append(f"no hold: hold 10 s at {level:.{'0f' if level >= 1.0 else '2g'}} mm")
     if max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
         lacks.append("no repeated cycle: drive each cycle twice")
