@@ -1,12 +1,12 @@
-"""Calibrate the stated probabilities: blind trials on worlds wider than the catalogue, and a logistic regression.
+"""Calibrate the stated probabilities: blind trials, also with physics outside the catalogue, and a logistic regression.
 
 Run: python -m tirelab.validation.calibrate --seed SEED --trials N [--out FILE]
 
 Every trial is drawn, diagnosed and scored; its grounds (`diagnosis.confidence`) and whether it was right are kept. The
-weights are those of highest posterior under independent normal priors of standard deviation 1 on grounds of standard
-deviation 1; the weights of `LOWERING` are at most zero, those of `RAISING` at least. The skill is stated for ten parts,
-each judged by the weights of the other nine. Written is a file of the form of `diagnosis/calibration.json`, which is
-what a diagnosis reads.
+weights maximise the posterior under independent normal priors of standard deviation 1, for grounds of standard
+deviation 1; the weights of `LOWERING` are at most zero, those of `RAISING` at least zero. The skill is computed by
+ten-fold cross-validation. The file that is written has the form of `diagnosis/calibration.json`, which a diagnosis
+reads.
 """
 
 from __future__ import annotations

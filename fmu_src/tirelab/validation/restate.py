@@ -1,11 +1,10 @@
-"""State the confidences of a proof by the present weights: what a calibration changed, on trials that it did not use.
+"""Recompute the confidences of a proof with the present weights, to judge a calibration on trials that it did not use.
 
 Run: python -m tirelab.validation.restate DIR
 
-DIR is that of a finished `tirelab prove`. The verdicts stay as they were; each has its grounds in diagnosis.json, from
-which `diagnosis.confidence` makes its probability anew, no surer than the effects that it names, or leaves out as
-doubted, were stated then.
-Printed are the Brier skill and how often verdicts of each class held (`wide_kinds.holds`).
+DIR is the folder of a finished `tirelab prove`. The verdicts stay as they were. From the grounds of each in its
+diagnosis.json, `diagnosis.confidence` recomputes the probability, limited by the probabilities of its effects as they
+were stated then. It prints the Brier skill and how often verdicts of each class held (`wide_kinds.holds`).
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ def restated_scores(folders: Folders) -> list[Score]:
 @click.command()
 @click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
 def main(folder: Path) -> None:
-    """State the confidences of the proof in DIR by the present weights."""
+    """Recompute the confidences of the proof in DIR with the present weights."""
     scores = restated_scores(Folders(folder))
     if not scores:
         raise click.ClickException(f"{folder} holds no scores; finish `tirelab prove` there first")
