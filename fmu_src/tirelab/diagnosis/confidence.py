@@ -385,7 +385,9 @@ def insufficient_excitation(
     if timed and held < LONG_ENOUGH:
         level = 1e3 * HOLD_DEPTH * dataset.max_deflection
         lacks.append(f"no hold: hold 10 s at {level:.{'0f' if level >= 1.0 else '2g'}} mm")
-    if max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
+    if len({float(d) for e in dataset.experiments for d in np.unique(e.motion.direction)}) == 1:
+        lacks.append("no way back: release it as slowly as it was loaded, and load it again")
+    elif max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
         lacks.append("no repeated cycle: drive each cycle twice")
     return lacks
 

@@ -19,7 +19,7 @@ from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor, noise_of
 from ..preprocessing.samples import Recorded
 from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
-from ..regressors.excitation import AS_GOOD, Excitation, excitation_of
+from ..regressors.excitation import AS_GOOD, Excitation, excitation_of, of_deflection
 from ..regressors.signature import (
     LAW,
     Signature,
@@ -27,6 +27,7 @@ from ..regressors.signature import (
     in_other_noise,
     law_signature,
     signatures_of,
+    single_valued,
     size_of,
 )
 from ..selection.search import (
@@ -59,6 +60,9 @@ BoolArray = NDArray[np.bool_]
 
 
 Progress = Callable[[str], None]
+
+LIKE_LAW = "it depends on the deflection only in this motion: unload as well, and load at another speed"
+"""Why an effect cannot be shown that no law depends on elsewhere."""
 
 NEAR = 4.0
 """Log posterior odds of a set over the median set, or over a part of it, up to which the latter is preferred."""
@@ -196,6 +200,9 @@ def explain_misfit(
     rank = partial(ranked, alike=partial(_alike, excitation), held_out=held_out_of(held_out, baseline))
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
+    like_laws = [name for name in single_valued(raw, dataset) if not of_deflection(name)]
+    raw = tuple(s for s in raw if s.name not in like_laws)
+    hidden |= dict.fromkeys(like_laws, LIKE_LAW)
     progress("fitting the sets that can win")
     ranking, signatures = _ranking(dataset, raw, quiet, rank)
     samples = samples_of(recordings, baseline)

@@ -193,6 +193,45 @@ def size_of(curve: FloatArray) -> float:
     return float(np.sqrt(np.mean(curve**2)))
 
 
+PARTS = 10 * HEIGHTS
+"""Parts of the deflection's span, ten between two heights of a law: within one a function of the deflection is
+straight."""
+
+
+def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozenset[str]:
+    """Return the effects that are functions of deflection and surface on this motion, as a law is: friction without a
+    reversal, for instance.
+
+    Of most drawn responses the root mean square about a straight line in each part of the deflection, surface by
+    surface, is below the form error.
+    """
+    many = dataset.experiments
+    x, radius = (dataset.gathered([getattr(e, c) for e in many]) for c in ("deflection", "surface_radius"))
+    noise = dataset.gathered([np.full(e.time.size, e.noise) for e in many])
+    _, surface = np.unique(radius, return_inverse=True)
+    place = np.minimum(PARTS * (x - x.min()) / max(float(np.ptp(x)), 1e-300), PARTS - 1).astype(int)
+    part = surface * PARTS + place
+    return frozenset(
+        s.name
+        for s in signatures
+        if s.name != LAW
+        and float(np.median([_beside_lines(curve * noise, x, part) for curve in s.curves]))
+        < form_error(s.name)
+    )
+
+
+def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> float:
+    """Return the root mean square of values (m,) about the straight line over x in each part, over that of all."""
+    count = np.maximum(np.bincount(part), 1)
+
+    def centred(v: FloatArray) -> FloatArray:
+        return np.asarray(v - (np.bincount(part, v) / count)[part])
+
+    over, own = centred(x), centred(values)
+    slope = np.bincount(part, over * own) / np.maximum(np.bincount(part, over**2), 1e-300)
+    return size_of(own - slope[part] * over) / max(size_of(values), 1e-300)
+
+
 def signature_of(name: str, dataset: Dataset) -> Signature | None:
     """Return the signature of an effect, or None where it has no response on these recordings."""
     effect = CATALOGUE[name]

@@ -36,6 +36,7 @@ from tirelab.regressors.signature import (
     quantile,
     signature_of,
     signatures_of,
+    single_valued,
     size_of,
 )
 from tirelab.simulation.simulate import simulate
@@ -255,3 +256,33 @@ def test_in_other_noise_a_signature_explains_the_same_newtons(dataset: Dataset) 
     np.testing.assert_allclose(
         other.curves * other.sizes[:, None] * 2.0, signature.curves * signature.sizes[:, None], rtol=1e-9
     )
+
+
+def driven(*corners: tuple[float, float]) -> Dataset:
+    """A motion through corners of time [s] and deflection [m], and a law that is 5 % off, beside 2 N of noise."""
+    time = np.arange(0.0, corners[-1][0], 0.01)
+    x = np.interp(time, *zip(*corners, strict=True))
+    silent = Recording("corners", time, x, np.full(time.size, np.inf), np.zeros(time.size))
+    force = 1.05 * simulate(TireModel(), silent) + NOISE * np.random.default_rng(5).normal(size=time.size)
+    return dataset_of([replace(silent, force=force)], TireModel())
+
+
+LOOPS = ("rate_independent_hysteresis", "viscous_damping", "viscoelastic_relaxation")
+
+
+@pytest.mark.parametrize(
+    ("corners", "expected"),
+    [
+        # Each deflection is passed once: no loop can show.
+        ([(0.0, 0.0), (20.0, 0.02)], set(LOOPS)),
+        # A hold shows what decays and what falls to 0 in it; friction stays, and is a function of the way in.
+        ([(0.0, 0.0), (10.0, 0.02), (40.0, 0.02)], {"rate_independent_hysteresis"}),
+        ([(0.0, 0.0), (10.0, 0.02), (20.0, 0.0)], set()),
+    ],
+    ids=["a ramp", "a ramp and a hold", "a triangle"],
+)
+def test_an_effect_that_is_a_function_of_the_deflection_in_this_motion_is_like_a_law(
+    corners: list[tuple[float, float]], expected: set[str]
+) -> None:
+    data = driven(*corners)
+    assert single_valued(signatures_of(LOOPS, data), data) == expected
