@@ -367,14 +367,21 @@ def _residuals(tire: TireModel, recordings: Sequence[Recorded]) -> tuple[FloatAr
 
 
 def _with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
-    """Return the dataset with the noise of the blocks that the saturated model leaves."""
+    """Return the dataset with the noise of the blocks that the saturated model leaves.
+
+    By how much that is more than the noise of the readings is no noise but what the recordings contradict each other,
+    or what no effect explains: it counts alike in all of them, or the one that is fitted best would count most.
+    """
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(dataset.misfit - _saturated(equations))
     found = []
     for e, own in zip(dataset.experiments, left, strict=True):
         noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
         found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
-    return dataset.with_noise(found)
+    read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
+    more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
+    shared = np.sqrt(np.minimum(levels, read) ** 2 + more)
+    return dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
 
 
 def _saturated(equations: NormalEquations) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,10 @@ import pytest
 from drives import damped, flat_force, read, ride, triangle
 from radialtire import TireModel
 from rivals import rivals
+from tirelab.estimation import explanation
 from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
+from tirelab.preprocessing.noise import Noise
+from tirelab.regressors.dataset import dataset_of
 
 RIDES = (damped(1, samples=3000), damped(2, samples=3000))
 
@@ -171,3 +175,24 @@ def test_friction_at_one_speed_is_told_from_damping_by_how_it_breaks_away(
     assert found.model.names == ("rate_independent_hysteresis",)
     assert "viscous_damping" in found.excitation.alike("rate_independent_hysteresis")
     assert (("viscous_damping",) in found.confounded) == alike
+
+
+@pytest.mark.parametrize(
+    ("levels", "expected"),
+    [
+        # (2^2 - 1 + 10^2 - 1) / 2 more than the readings' variance in each of two recordings of one length.
+        ((2.0, 10.0), (np.sqrt(52.0), np.sqrt(52.0))),
+        ((0.5, 0.8), (0.5, 0.8)),
+        ((0.5, 3.0), (np.sqrt(0.25 + 4.0), np.sqrt(1.0 + 4.0))),
+    ],
+)
+def test_what_no_effect_explains_in_one_recording_weighs_alike_in_all(
+    levels: tuple[float, float], expected: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Levels of what the saturated model leaves, over the noise of the readings."""
+    left = itertools.cycle(levels)
+    monkeypatch.setattr(explanation, "noise_of", lambda *_: Noise(next(left), 1))
+    found = explain_misfit(RIDES, TireModel(), ["viscous_damping"], lambda stage: None)
+    read = [e.noise for e in dataset_of(RIDES, TireModel()).experiments]
+    noises = [e.noise for e in found.model.fit.problem.dataset.experiments]
+    assert np.array(noises) / read == pytest.approx(expected, rel=0.03)
