@@ -127,6 +127,7 @@ EFFORT = (
     "regressors/signature.DRAWS",
     "regressors/signature.ENERGY",
     "regressors/signature.MOST_SURFACES",
+    "regressors/signature.BLOCKS_OF_PART",
     "regressors/signature.PARTS",
     "regressors/signature.LEAST_DRAWN",
     "selection/search.LOST",

@@ -193,9 +193,9 @@ def size_of(curve: FloatArray) -> float:
     return float(np.sqrt(np.mean(curve**2)))
 
 
-PARTS = 10 * HEIGHTS
-"""Parts of the deflection's span, ten between two heights of a law: within one a function of the deflection is
-straight."""
+PARTS, BLOCKS_OF_PART = 10 * HEIGHTS, 8
+"""Most parts of the deflection's span, ten between two heights of a law, in which a function of the deflection is
+straight; and the mean number of blocks of one at least, four for each number of a straight line."""
 
 
 def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozenset[str]:
@@ -209,8 +209,9 @@ def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozense
     x, radius = (dataset.gathered([getattr(e, c) for e in many]) for c in ("deflection", "surface_radius"))
     noise = dataset.gathered([np.full(e.time.size, e.noise) for e in many])
     _, surface = np.unique(radius, return_inverse=True)
-    place = np.minimum(PARTS * (x - x.min()) / max(float(np.ptp(x)), 1e-300), PARTS - 1).astype(int)
-    part = surface * PARTS + place
+    parts = max(min(PARTS, x.size // (BLOCKS_OF_PART * (int(surface.max()) + 1))), 1)
+    place = np.minimum(parts * (x - x.min()) / max(float(np.ptp(x)), 1e-300), parts - 1).astype(int)
+    part = surface * parts + place
     return frozenset(
         s.name
         for s in signatures
@@ -221,7 +222,9 @@ def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozense
 
 
 def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> float:
-    """Return the root mean square of values (m,) about the straight line over x in each part, over that of all."""
+    """Return the standard deviation of values (m,) about the straight line over x in each part, over their root mean
+    square.
+    """
     count = np.maximum(np.bincount(part), 1)
 
     def centred(v: FloatArray) -> FloatArray:
@@ -229,7 +232,9 @@ def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> 
 
     over, own = centred(x), centred(values)
     slope = np.bincount(part, over * own) / np.maximum(np.bincount(part, over**2), 1e-300)
-    return size_of(own - slope[part] * over) / max(size_of(values), 1e-300)
+    freedom = max(int(np.sum(np.maximum(count - 2, 0))), 1)
+    beside = float(np.sum((own - slope[part] * over)[count[part] > 2] ** 2)) / freedom
+    return float(np.sqrt(beside)) / max(size_of(values), 1e-300)
 
 
 def signature_of(name: str, dataset: Dataset) -> Signature | None:

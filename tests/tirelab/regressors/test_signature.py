@@ -25,6 +25,7 @@ from tirelab.regressors.signature import (
     EXPONENT,
     FACTOR,
     LAW,
+    PARTS,
     REFERENCE,
     SHAPE,
     at_reading,
@@ -258,9 +259,9 @@ def test_in_other_noise_a_signature_explains_the_same_newtons(dataset: Dataset) 
     )
 
 
-def driven(*corners: tuple[float, float]) -> Dataset:
+def driven(*corners: tuple[float, float], step: float = 0.01) -> Dataset:
     """A motion through corners of time [s] and deflection [m], and a law that is 5 % off, beside 2 N of noise."""
-    time = np.arange(0.0, corners[-1][0], 0.01)
+    time = np.arange(0.0, corners[-1][0], step)
     x = np.interp(time, *zip(*corners, strict=True))
     silent = Recording("corners", time, x, np.full(time.size, np.inf), np.zeros(time.size))
     force = 1.05 * simulate(TireModel(), silent) + NOISE * np.random.default_rng(5).normal(size=time.size)
@@ -286,3 +287,10 @@ def test_an_effect_that_is_a_function_of_the_deflection_in_this_motion_is_like_a
 ) -> None:
     data = driven(*corners)
     assert single_valued(signatures_of(LOOPS, data), data) == expected
+
+
+def test_in_few_long_blocks_a_loop_is_no_function_of_the_deflection() -> None:
+    """A triangle in fewer blocks than twice the parts of the deflection: a line meets any two of them."""
+    data = driven((0.0, 0.0), (20.0, 0.02), (40.0, 0.0), step=0.5)
+    assert data.misfit.size < 2 * PARTS
+    assert single_valued(signatures_of(LOOPS, data), data) == set()
