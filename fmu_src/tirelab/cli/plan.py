@@ -150,7 +150,8 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
             for number, drive in enumerate(plan.drives, 1)
         ),
         f"{told} of {asked} pairs are told apart in 19 of 20 tests at {100.0 * plan.size:g} % of the peak force; "
-        f"all motions of the menu together tell {possible}",
+        f"the menu can tell {possible}",
+        *_beside(plan),
         "",
     ]
     lines += _table(plan, [f"{100.0 * size:g} %" for size in SIZES])
@@ -169,6 +170,19 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
             "2bar,3bar"
         )
     return [*lines, f"written: {out / PLAN}, {out / 'plan.png'} and the drive files"]
+
+
+def _beside(plan: RecordingPlan) -> list[str]:
+    """Return the line on effects beside another one, where they were asked for."""
+    from ..planning.separation import LOUDER
+
+    told, possible, asked = plan.told_beside
+    if not asked:
+        return []
+    return [
+        f"{told} of {asked} are named beside another effect that is {LOUDER:g} times as large; the menu can tell "
+        f"{possible}"
+    ]
 
 
 def _table(plan: RecordingPlan, sizes: list[str]) -> list[str]:

@@ -70,7 +70,7 @@ class Menu:
 @dataclass(frozen=True)
 class Choice:
     """Indices of the chosen motions in the order in which they were chosen; answers: to each question after them;
-    possible: whether each question is answered by all motions of the menu together.
+    possible: whether each question is answered by them, by all motions of the menu together, or by one of them alone.
     """
 
     chosen: tuple[int, ...]
@@ -80,12 +80,14 @@ class Choice:
 
 def chosen_of(menu: Menu, seconds: float, progress: Callable[[str], None]) -> Choice:
     """Return the motions to drive within a time [s]."""
-    best = menu.answers(range(len(menu.grams)))
-    possible = best >= TOLD
+    every = range(len(menu.grams))
+    alone = [menu.answers([i]) for i in every]
+    possible = np.any([menu.answers(every) >= TOLD, *(own >= TOLD for own in alone)], axis=0)
     left, chosen = seconds, list[int]()
     answers = menu.answers(chosen)
     # gains per second, the largest first; at which length of the plan each was computed
-    heap = [(-np.inf, i, -1) for i in range(len(menu.grams))]
+    heap = [(-_gain(answers, own) / menu.seconds[i], i, 0) for i, own in enumerate(alone)]
+    heapq.heapify(heap)
     while heap and np.any(possible & (answers < TOLD)):
         bound, i, known = heapq.heappop(heap)
         if menu.seconds[i] > left + 1e-9:
@@ -101,8 +103,8 @@ def chosen_of(menu: Menu, seconds: float, progress: Callable[[str], None]) -> Ch
         left -= menu.seconds[i]
         answers = menu.answers(chosen)
         heapq.heappush(heap, (bound, i, -1))  # it may be driven again
-    chosen, answers = _pruned(menu, chosen, answers, possible)
-    return Choice(tuple(chosen), answers, possible)
+    chosen, answers = _pruned(menu, chosen, answers)
+    return Choice(tuple(chosen), answers, possible | (answers >= TOLD))
 
 
 def _between_loops(question: Question) -> bool:
@@ -118,15 +120,13 @@ def _gain(before: FloatArray, after: FloatArray) -> float:
     return float(np.sum(np.minimum(after, TOLD) - np.minimum(before, TOLD)))
 
 
-def _pruned(
-    menu: Menu, chosen: list[int], answers: FloatArray, possible: BoolArray
-) -> tuple[list[int], FloatArray]:
+def _pruned(menu: Menu, chosen: list[int], answers: FloatArray) -> tuple[list[int], FloatArray]:
     """Leave out what every question that is answered can do without, the longest first."""
-    told = possible & (answers >= TOLD)
     for i in sorted(set(chosen), key=lambda i: -menu.seconds[i]):
         less = list(chosen)
         less.remove(i)
         fewer = menu.answers(less)
+        told = answers >= TOLD
         if np.all(fewer[told] >= TOLD) and _gain(fewer, answers) < LEAST_GAIN * len(answers):
             chosen, answers = less, fewer
     return chosen, answers

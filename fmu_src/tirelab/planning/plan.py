@@ -16,7 +16,7 @@ from .choice import TOLD, Choice, Menu, chosen_of
 from .menu import LENGTHS, SLOW, Drive, drive_of, menu
 from .responses import Responses, responses_of
 from .rig import Rig
-from .separation import Question, probabilities, questions_of
+from .separation import Question, probabilities, questions_beside, questions_of
 
 FloatArray = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ class Answer:
 class RecordingPlan:
     """Drives in the order in which they were chosen, and what is told after them.
 
-    size: for which the drives were chosen; peak [N]: the tire's largest force within the limits
+    answers: of each effect by itself; beside: of each effect beside another one; size: for which the drives were chosen; peak [N]: the tire's largest force within the limits
     """
 
     rig: Rig
@@ -65,6 +65,7 @@ class RecordingPlan:
     answers: tuple[Answer, ...]
     silent: tuple[str, ...]
     peak: float
+    beside: tuple[Answer, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -74,8 +75,12 @@ class RecordingPlan:
     @property
     def told(self) -> tuple[int, int, int]:
         """How many of the questions are answered, how many the whole menu would answer, how many there are."""
-        told = sum(a.probability >= TOLD for a in self.answers)
-        return told, sum(a.possible for a in self.answers), len(self.answers)
+        return _told(self.answers)
+
+    @property
+    def told_beside(self) -> tuple[int, int, int]:
+        """The same of the questions for an effect beside another one; three zeros where none was asked."""
+        return _told(self.beside)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of plan.json."""
@@ -127,7 +132,20 @@ class RecordingPlan:
                 }
                 for a in self.answers
             ],
+            "beside": [
+                {
+                    "true": a.question.truth,
+                    "beside": a.question.beside,
+                    "probability": a.probability,
+                    "possible": a.possible,
+                }
+                for a in self.beside
+            ],
         }
+
+
+def _told(answers: Sequence[Answer]) -> tuple[int, int, int]:
+    return sum(a.probability >= TOLD for a in answers), sum(a.possible for a in answers), len(answers)
 
 
 def file_name(number: int, drive: Drive) -> str:
@@ -150,7 +168,7 @@ def plan_recordings(
     Raises TirelabError where no motion fits into the rig's limits.
     """
     responses = responses_of(motions_within(rig), tire, rig, progress)
-    questions = questions_of(responses.names, size)
+    questions = (*questions_of(responses.names, size), *questions_beside(responses.names, size))
     return planned(tire, rig, responses, offered(responses, questions, len(responses.drives)), progress)
 
 
@@ -188,15 +206,17 @@ def planned(
     progress("working out what is told")
     gram = options.gram(choice.chosen)
     pairs = zip(questions, choice.answers.tolist(), choice.possible.tolist(), strict=True)
+    answers = tuple(Answer(*pair) for pair in pairs)
     return RecordingPlan(
         rig,
         tire.name,
         max(q.size for q in questions),
         (*(drives[i] for i in choice.chosen), *missing),
         _rows(questions, choice, gram, responses),
-        tuple(Answer(*pair) for pair in pairs),
+        tuple(a for a in answers if not a.question.beside),
         responses.silent,
         responses.peak,
+        tuple(a for a in answers if a.question.beside),
     )
 
 
@@ -212,6 +232,9 @@ def _rows(
     questions: Sequence[Question], choice: Choice, gram: FloatArray, responses: Responses
 ) -> tuple[Row, ...]:
     named: dict[str, list[float]] = {}
+    asked = zip(questions, choice.answers.tolist(), choice.possible.tolist(), strict=True)
+    alone = [own for own in asked if not own[0].beside]
+    questions = [q for q, _, _ in alone]
     for size in SIZES:
         resized = [replace(q, size=size) for q in questions]
         found = probabilities(gram, responses.places, resized)
@@ -220,11 +243,7 @@ def _rows(
             named.setdefault(truth, []).append(float(np.mean(np.prod(own, axis=0))))
     rows = []
     for truth, values in named.items():
-        missed = [
-            (_against(q), bool(possible))
-            for q, p, possible in zip(questions, choice.answers, choice.possible, strict=True)
-            if q.truth == truth and p < TOLD
-        ]
+        missed = [(_against(q), bool(possible)) for q, p, possible in alone if q.truth == truth and p < TOLD]
         if (LAW, False) in missed:  # a refitted law follows it, so it does beside every other effect too
             missed = [(LAW, False)]
         confused = tuple(dict.fromkeys(name for name, _ in missed))

@@ -52,12 +52,19 @@ PRIOR_OF_LAW = "prior of the law"
 PRIOR_OF_GAIN = "prior of the gain"
 """The column of a standard deviation of the gain with the pressure, which is there where several are held."""
 
+SLOW_NOISE = "slow noise"
+"""The column of the slow part of the noise. It is like no response: what counts is its sum of squares."""
+
+SLOW_BELOW = 1.0
+"""Frequency [Hz] below which an amplifier's noise rises as 1 / f over its white noise."""
+
 
 @dataclass(frozen=True)
 class Responses:
     """Products (n, n) of all columns on each drive, in units of the noise.
 
-    places: of each effect its draws, at the size 1 (largest response: the peak force), and of the law its prior
+    places: of each effect its draws, at the size 1 (largest response: the peak force), of the law its prior, and of the
+    slow noise one column
     silent: effects that have no response within these limits; peak [N]: the largest force
     mixed: whether each drive passes its deflections at more than one speed
     """
@@ -72,7 +79,8 @@ class Responses:
     @property
     def names(self) -> tuple[str, ...]:
         """Effects that respond, and the law."""
-        return tuple(name for name in self.places if name not in (PRIOR_OF_LAW, PRIOR_OF_GAIN))
+        others = (PRIOR_OF_LAW, PRIOR_OF_GAIN, SLOW_NOISE)
+        return tuple(name for name in self.places if name not in others)
 
 
 def responses_of(
@@ -85,8 +93,7 @@ def responses_of(
     peak = peak_force(drives, tire)
     dataset = Dataset(tuple(experiments), tire, _scales(experiments, rig, peak))
     progress("sizing the effects")
-    first = [e for e in experiments if e.surface_radius[0] == rig.surfaces[0]]
-    sets = _sized_sets(_of_motion(), replace(dataset, experiments=tuple(first)), peak)
+    sets = _sized_sets(_of_motion(), dataset, peak)
     held = _of_held(drives, bare, rig, dataset) if more else None
     if held is not None:
         sets |= _sized_sets((HELD.name,), held, peak)
@@ -96,7 +103,7 @@ def responses_of(
     changes = _law_draws(prior, dataset, peak)
     widths = {name: len(values) for name, values in sets.items()}
     widths |= {LAW: changes.shape[1], PRIOR_OF_LAW: prior.shape[1]} | ({PRIOR_OF_GAIN: 1} if more else {})
-    places = _places(widths)
+    places = _places(widths | {SLOW_NOISE: 1})
     grams, begin = [], 0
     for number, experiment in enumerate(experiments):
         part = replace(dataset, experiments=(experiment,))
@@ -109,12 +116,27 @@ def responses_of(
             columns += [of.response(arranged(of.tire, [(name, values)])) / size for values, size in found]
         gain = [part.response(other) for other in more]
         whole = np.column_stack([*columns, changes[begin:end], prior[begin:end], *gain])
-        grams.append(whole.T @ whole)
+        own = np.zeros((whole.shape[1] + 1,) * 2)
+        own[:-1, :-1] = whole.T @ whole
+        own[-1, -1] = slow_noise(experiment)
+        grams.append(own)
         begin = end
     silent = tuple(name for name in _of_motion() if name not in sets)
     parts = (replace(dataset, experiments=(e,)) for e in experiments)
     mixed = tuple(not excitation_of(part).one_speed for part in parts)
     return Responses(tuple(drives), tuple(grams), places, silent, peak, mixed)
+
+
+def slow_noise(experiment: Experiment) -> float:
+    """Return the sum of squares of the slow noise over the samples compared, in units of the noise of one.
+
+    An amplifier's noise has the power of white noise times 1 + SLOW_BELOW / f at each frequency f from that of the
+    whole recording up to half the sampling rate. Averaged over a row, slow noise stays while the rest falls.
+    """
+    step = experiment.interval / experiment.size
+    duration = experiment.interval * experiment.time.size
+    part = 2.0 * step * SLOW_BELOW * np.log(duration / (2.0 * step))
+    return float(part * experiment.size * experiment.counts.sum())
 
 
 def _at_pressures(tire: TireModel, rig: Rig) -> tuple[TireModel, tuple[TireModel, ...]]:

@@ -8,9 +8,14 @@ What the rival cannot follow of c,
 
 is twice the log likelihood ratio that is to be expected: the T-optimal criterion (A. C. Atkinson, V. V. Fedorov,
 Biometrika 62, 57 (1975)), averaged over the draws of c (J. Lopez-Fidalgo et al., J. R. Stat. Soc. B 69, 231 (2007)).
-V = 1 + f^2 |c|^2 / e is the variance, in units of the noise, of what the forms miss: f of the response, in e effective
-samples, as in `selection.search`. f is the form error of the true effect, which is the best set's: what its forms
-usually miss, under which a diagnosis judges all sets (`estimation.ranking`).
+V = 1 + (n + sum_k f_k^2 |c_k|^2) / e is the variance, in units of the noise, of what a diagnosis cannot explain, in e
+effective samples, as in `selection.search`: n is the sum of squares of the slow part of the noise, f_k the form error
+of each true effect, which are the best set's: what its forms usually miss, under which a diagnosis judges all sets
+(`estimation.ranking`). Both grow with every recording, so information does not add up: what tells two effects apart is
+how large it is beside what all true effects may miss, over all that is recorded.
+
+An effect seldom acts alone. It is asked for by itself and beside each other effect, which is LOUDER times as large,
+stands in the true model and in the rival, and is refitted in the latter.
 
 Two models of equal standing: the log likelihood ratio is normal with mean S^2/2 and variance S^2, so the right one is
 the likelier one with probability Phi(S/2). A rival within the true model, M without i: twice the ratio is noncentral
@@ -24,6 +29,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,12 +38,20 @@ from scipy.stats import ncx2
 
 from ..regressors.signature import LAW, form_error
 from ..selection.search import EFFECTIVE, PRIOR_ODDS
-from .responses import HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW
+from .responses import HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW, SLOW_NOISE
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
 FAR = 1e4
 """Noncentrality above which the chi-squared law is a normal one to all digits that are shown."""
+
+
+LOUDER = 2.5
+"""An effect beside which another one is asked for is so many times as large: the factor between two sizes that are drawn
+evenly over the logarithm between one and thirty is this in the median, 30^(1 - sqrt(1/2)) = 2.7, and 2.5 from the middle
+size of a plan's table to its largest.
+"""
 
 
 @dataclass(frozen=True)
@@ -45,12 +59,14 @@ class Question:
     """Whether `truth` is told from the model of the names in `rival`; size: largest response over the peak force.
 
     nested: whether the rival is the true model without `truth`, else the rival stands in its place
+    beside: an effect that acts too, LOUDER times as large, and stands in the rival; "": none
     """
 
     truth: str
     rival: frozenset[str]
     size: float
     nested: bool
+    beside: str = ""
 
 
 def questions_of(names: Sequence[str], size: float) -> tuple[Question, ...]:
@@ -72,6 +88,15 @@ def questions_of(names: Sequence[str], size: float) -> tuple[Question, ...]:
     return tuple(found)
 
 
+def questions_beside(names: Sequence[str], size: float) -> tuple[Question, ...]:
+    """Return every effect beside every other one, against that one and a refitted law."""
+    effects = [name for name in names if name not in (LAW, HELD.name)]
+    return tuple(
+        Question(truth, frozenset({LAW, beside}), size, nested=True, beside=beside)
+        for truth, beside in permutations(effects, 2)
+    )
+
+
 def probabilities(
     gram: FloatArray, places: Mapping[str, slice], questions: Sequence[Question]
 ) -> list[FloatArray]:
@@ -80,18 +105,36 @@ def probabilities(
     gram (n, n): products of all columns over the motions, in units of the noise; places: of their columns
     """
     found: list[FloatArray] = [np.zeros(0)] * len(questions)
-    groups: dict[tuple[frozenset[str], float, bool], list[int]] = {}
+    nested: dict[int, _Gain] = {}
+    groups: dict[tuple[frozenset[str], float, str, bool], list[int]] = {}
     for number, question in enumerate(questions):
-        key = question.rival, question.size, question.truth != HELD.name
+        key = question.rival, question.size, question.beside, question.truth != HELD.name
         groups.setdefault(key, []).append(number)
-    for (rival, size, gain), numbers in groups.items():
-        weights = _weights(rival, size, places, gram.shape[0])
+    for (rival, size, beside, gain), numbers in groups.items():
+        weights = _weights(rival, size, beside, places, gram.shape[0])
         if gain and PRIOR_OF_GAIN in places:
             weights[places[PRIOR_OF_GAIN]] = 1.0
         model = _Model(gram, weights)
-        for number in numbers:
-            found[number] = _of(questions[number], model, places)
+        own = [questions[number] for number in numbers]
+        for number, answer in zip(numbers, _of(own, model, places), strict=True):
+            if isinstance(answer, _Gain):
+                nested[number] = answer
+            else:
+                found[number] = answer
+    for number, answer in zip(nested, _named(list(nested.values())), strict=True):
+        found[number] = answer
     return found
+
+
+@dataclass(frozen=True)
+class _Gain:
+    """Twice the log likelihood ratio of an effect over a rival without it, noncentral chi-squared: its noncentrality
+    for each draw, its degrees of freedom, and what it has to exceed.
+    """
+
+    separation: FloatArray
+    freedom: float
+    needed: float
 
 
 class _Model:
@@ -99,16 +142,16 @@ class _Model:
 
     def __init__(self, gram: FloatArray, weights: FloatArray) -> None:
         self.gram = gram
+        self.powers = np.diag(gram)
         on = np.flatnonzero(weights)
         values, vectors = np.linalg.eigh(weights[on, None] * gram[np.ix_(on, on)] * weights[on])
         self.values = np.maximum(values, 0.0)
         self.turned = vectors.T @ (weights[on, None] * gram[on])
 
-    def left(self, place: slice, variance: FloatArray) -> FloatArray:
-        """Return c' (V + W W')^-1 c of each column c at `place`, with its own V."""
-        total = np.diag(self.gram)[place]
-        taken = np.sum(self.turned[:, place] ** 2 / (variance + self.values[:, None]), axis=0)
-        return np.asarray(np.maximum((total - taken) / variance, 0.0))
+    def left(self, columns: IntArray, variance: FloatArray) -> FloatArray:
+        """Return c' (V + W W')^-1 c of each of the columns c, with its own V."""
+        taken = np.sum(self.turned[:, columns] ** 2 / (variance + self.values[:, None]), axis=0)
+        return np.asarray(np.maximum((self.powers[columns] - taken) / variance, 0.0))
 
     def between(self, place: slice, variance: float) -> FloatArray:
         """Return the products of the columns at `place` with each other, as `left` has those with themselves."""
@@ -117,29 +160,62 @@ class _Model:
         return np.asarray((self.gram[place, place] - taken) / variance)
 
 
-def _weights(rival: frozenset[str], size: float, places: Mapping[str, slice], count: int) -> FloatArray:
+def _weights(
+    rival: frozenset[str], size: float, beside: str, places: Mapping[str, slice], count: int
+) -> FloatArray:
     weights = np.zeros(count)
     for name in rival:
         if name == LAW:
             weights[places[PRIOR_OF_LAW]] = 1.0
         else:
             place = places[name]
-            weights[place] = size / np.sqrt(place.stop - place.start)
+            weights[place] = (LOUDER if name == beside else 1.0) * size / np.sqrt(place.stop - place.start)
     return weights
 
 
-def _of(question: Question, model: _Model, places: Mapping[str, slice]) -> FloatArray:
-    place, size = places[question.truth], question.size
-    power = size**2 * np.diag(model.gram)[place]
-    variance = 1.0 + form_error(question.truth) ** 2 * power / EFFECTIVE
-    separation = size**2 * model.left(place, variance)
-    if not question.nested:
-        return np.asarray(ndtr(0.5 * np.sqrt(separation)))
-    draws = place.stop - place.start
-    forms = size**2 / draws * model.between(place, float(np.mean(variance)))
+def _of(
+    questions: Sequence[Question], model: _Model, places: Mapping[str, slice]
+) -> list[FloatArray | _Gain]:
+    """Return the probabilities of questions of one size, and beside one effect, against one model; of a nested one what
+    they follow from.
+    """
+    size, beside = questions[0].size, questions[0].beside
+    owns = [places[question.truth] for question in questions]
+    columns = np.concatenate([np.arange(own.start, own.stop) for own in owns])
+    errors = np.repeat([form_error(q.truth) for q in questions], [own.stop - own.start for own in owns])
+    missed = float(model.powers[places[SLOW_NOISE]].sum()) if SLOW_NOISE in places else 0.0
+    if beside:
+        missed += (form_error(beside) * LOUDER * size) ** 2 * float(np.mean(model.powers[places[beside]]))
+    variance = 1.0 + (missed + (errors * size) ** 2 * model.powers[columns]) / EFFECTIVE
+    separation = size**2 * model.left(columns, variance)
+    alike = ndtr(0.5 * np.sqrt(separation))
+    found, begin = list[FloatArray | _Gain](), 0
+    for question, own in zip(questions, owns, strict=True):
+        part = slice(begin, begin + own.stop - own.start)
+        begin = part.stop
+        if question.nested:
+            forms = model.between(own, float(np.mean(variance[part])))
+            found.append(_gain(separation[part], size**2 / (own.stop - own.start) * forms))
+        else:
+            found.append(alike[part])
+    return found
+
+
+def _gain(separation: FloatArray, forms: FloatArray) -> _Gain:
+    """Return the law of the gain of an effect; forms: products of its draws beyond the rival."""
     values = np.maximum(np.linalg.eigvalsh(forms), 0.0)
     freedom = max(float(np.sum(values / (1.0 + values))), 1e-3)
-    needed = 2.0 * PRIOR_ODDS + float(np.sum(np.log1p(values)))
+    return _Gain(separation, freedom, 2.0 * PRIOR_ODDS + float(np.sum(np.log1p(values))))
+
+
+def _named(gains: Sequence[_Gain]) -> list[FloatArray]:
+    """Return the probability that each effect is named, for each of its draws: all in one call, which is quick."""
+    if not gains:
+        return []
+    counts = [gain.separation.size for gain in gains]
+    separation = np.concatenate([gain.separation for gain in gains])
+    freedom = np.repeat([gain.freedom for gain in gains], counts)
+    needed = np.repeat([gain.needed for gain in gains], counts)
     normal = ndtr((freedom + separation - needed) / np.sqrt(2.0 * freedom + 4.0 * separation))
     exact = ncx2.sf(needed, freedom, np.minimum(separation, FAR))
-    return np.asarray(np.where(separation > FAR, normal, exact))
+    return np.split(np.where(separation > FAR, normal, exact), np.cumsum(counts)[:-1])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,15 +50,23 @@ def readable_rate(limits: Limits) -> float:
 
 
 def rounded(make: Waveform) -> Waveform:
-    """Return a motion with round corners; it is nowhere deeper or faster than before."""
+    """Return a motion with round corners, as deep as the limits all the same: what begins at the end of the stroke, a
+    stop or a saturated gauge, shows nowhere else. It is no faster than before.
+    """
 
     def made(limits: Limits) -> FloatArray:
-        path = make(limits)
-        weights = np.hanning(CORNER + 3)[1:-1]
-        around = np.pad(path, CORNER // 2, mode="edge")
-        return np.asarray(np.convolve(around, weights / weights.sum(), "valid"))
+        path = _without_corners(make(limits))
+        lost = limits.deepest - float(path.max())
+        deeper = _without_corners(make(replace(limits, deepest=limits.deepest + lost)))
+        return np.minimum(deeper, limits.deepest)
 
     return made
+
+
+def _without_corners(path: FloatArray) -> FloatArray:
+    weights = np.hanning(CORNER + 3)[1:-1]
+    around = np.pad(path, CORNER // 2, mode="edge")
+    return np.asarray(np.convolve(around, weights / weights.sum(), "valid"))
 
 
 def sample_times(limits: Limits) -> FloatArray:
