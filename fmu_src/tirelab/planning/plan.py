@@ -54,7 +54,8 @@ class Answer:
 class RecordingPlan:
     """Drives in the order in which they were chosen, and what is told after them.
 
-    answers: of each effect by itself; beside: of each effect beside another one; size: for which the drives were chosen; peak [N]: the tire's largest force within the limits
+    answers: of each effect by itself; beside: of each effect beside another one
+    size: for which the drives were chosen; peak [N]: the tire's largest force within the limits
     """
 
     rig: Rig

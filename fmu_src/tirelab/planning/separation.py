@@ -48,9 +48,9 @@ FAR = 1e4
 
 
 LOUDER = 2.5
-"""An effect beside which another one is asked for is so many times as large: the factor between two sizes that are drawn
-evenly over the logarithm between one and thirty is this in the median, 30^(1 - sqrt(1/2)) = 2.7, and 2.5 from the middle
-size of a plan's table to its largest.
+"""An effect beside which another one is asked for is so many times as large: from the middle size of a plan's table to
+its largest. Two sizes drawn evenly over the logarithm between one and thirty noises differ by 30^(1 - sqrt(1/2)) = 2.7
+in the median.
 """
 
 

@@ -57,8 +57,8 @@ def rounded(make: Waveform) -> Waveform:
     def made(limits: Limits) -> FloatArray:
         path = _without_corners(make(limits))
         lost = limits.deepest - float(path.max())
-        deeper = _without_corners(make(replace(limits, deepest=limits.deepest + lost)))
-        return np.minimum(deeper, limits.deepest)
+        deeper = replace(limits, deepest=limits.deepest + lost, fastest=readable_rate(limits))
+        return np.minimum(_without_corners(make(deeper)), limits.deepest)
 
     return made
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from radialtire import CATALOGUE
 from tirelab.planning.choice import TOLD, Menu, chosen_of
 from tirelab.planning.responses import PRIOR_OF_LAW
 from tirelab.planning.separation import Question
@@ -84,3 +85,19 @@ def test_loops_are_not_told_apart_at_one_speed() -> None:
     assert one.answers([0]).tolist() == [0.5]
     assert one.answers([1])[0] > TOLD
     assert chosen_of(one, 60.0, silent).chosen == (1,)
+
+
+def test_no_motion_is_driven_that_shows_only_what_stands_beside() -> None:
+    """A drift is asked for beside a louder inertia. What shows the inertia as loudly again makes its form's error
+    larger and the drift no clearer, so it is possible by one motion and not by all of them together.
+    """
+    error = CATALOGUE["inertia"].form_error
+    quiet = shows(0.0, 60.0)
+    # (2.5 error)^2 power / 30 = 25 is added to the variance, which leaves the drift a noncentrality of 60 / 26.
+    loud = shows(25.0 * 30.0 / (2.5 * error) ** 2, 0.0)
+    question = Question("force_drift", frozenset({LAW, "inertia"}), 1.0, nested=True, beside="inertia")
+    both = Menu((quiet, loud), (10.0, 1.0), PLACES, (question,), np.zeros((4, 4)), (False, False))
+    choice = chosen_of(both, 60.0, silent)
+    assert choice.chosen == (0,)
+    assert choice.possible.all()
+    assert both.answers([0, 1])[0] < 0.5

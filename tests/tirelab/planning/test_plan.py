@@ -26,6 +26,13 @@ def test_it_keeps_the_time_and_tells_what_the_rig_can_tell(plan: RecordingPlan) 
     assert told > 0.5 * asked
 
 
+def test_each_effect_is_asked_for_beside_each_other_one(plan: RecordingPlan) -> None:
+    told, possible, asked = plan.told_beside
+    assert told <= possible <= asked == 3 * 2
+    assert not any(a.question.beside for a in plan.answers)
+    assert len(plan.to_dict()["beside"]) == asked
+
+
 def test_friction_and_damping_need_more_than_one_rate(plan: RecordingPlan) -> None:
     one_rate = {"slow triangles", "fast triangles", "fast sine"}
     assert {d.name for d in plan.drives} - one_rate

@@ -1,5 +1,6 @@
 """The products of all responses, against the responses themselves."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,15 @@ import pytest
 from radialtire import CATALOGUE, TireModel
 from small_rig import RIG, few_effects, silent
 from tirelab.planning.menu import drive_of, experiment_of
-from tirelab.planning.responses import DRAWS, HELD, PRIOR_OF_GAIN, PRIOR_OF_LAW, Responses, responses_of
+from tirelab.planning.responses import (
+    DRAWS,
+    HELD,
+    PRIOR_OF_GAIN,
+    PRIOR_OF_LAW,
+    SLOW_NOISE,
+    Responses,
+    responses_of,
+)
 from tirelab.planning.separation import Question, probabilities
 from tirelab.regressors.signature import LAW
 
@@ -25,7 +34,34 @@ def found(monkeypatch: pytest.MonkeyPatch) -> Responses:
 def test_every_effect_and_the_law_have_their_draws(found: Responses) -> None:
     assert found.names == ("viscous_damping", "force_offset", "bottoming", LAW)
     assert all(found.places[n].stop - found.places[n].start <= DRAWS for n in found.names)
-    assert found.grams[0].shape[0] == found.places[PRIOR_OF_LAW].stop
+    assert found.places[PRIOR_OF_LAW].stop == found.places[SLOW_NOISE].start
+    assert found.grams[0].shape[0] == found.places[SLOW_NOISE].stop
+
+
+def test_slow_noise_is_a_tenth_of_the_power_and_like_no_response(found: Responses) -> None:
+    """10 s at 100 Hz, 1 / f below 1 Hz: 2 x 0.01 s x 1 Hz x ln(10 / 0.02) = 0.124 of the variance of each sample."""
+    for gram, drive in zip(found.grams, found.drives, strict=True):
+        e = experiment_of(drive, TireModel(), RIG.noise)
+        # rows that follow the motion may leave a few samples of the 10 s over
+        assert gram[-1, -1] == pytest.approx(0.124 * e.counts.sum() * e.size, rel=0.01)
+        assert not gram[-1, :-1].any()
+
+
+def test_a_ceiling_is_sized_where_the_force_is_largest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A convex surface is softer than the flat one: a ceiling just below the largest force shows on the flat one,
+    whichever of them the rig states first, and no soft beginning of it on the other one is blown up to its size.
+    """
+    few_effects(monkeypatch, ("saturation",))
+    flat, convex = math.inf, 0.05
+    found = []
+    for surfaces in ((flat, convex), (convex, flat)):
+        rig = replace(RIG, surfaces=surfaces)
+        drives = [drive_of("slow triangles", 0.25, radius, rig) for radius in (flat, convex)]
+        responses = responses_of(drives, TireModel(), rig, silent)
+        place = responses.places["saturation"]
+        found.append([float(np.diag(gram)[place].mean()) for gram in responses.grams])
+    assert found[0] == pytest.approx(found[1], rel=1e-6)
+    assert found[0][0] > 100.0 * found[0][1]
 
 
 def test_a_constant_force_of_size_one_is_the_peak_force(found: Responses) -> None:

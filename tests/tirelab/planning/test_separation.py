@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
 from scipy.stats import norm
-from tirelab.planning.responses import PRIOR_OF_LAW
-from tirelab.planning.separation import Question, probabilities, questions_of
+from tirelab.planning.responses import PRIOR_OF_LAW, SLOW_NOISE
+from tirelab.planning.separation import LOUDER, Question, probabilities, questions_beside, questions_of
 from tirelab.regressors.signature import LAW
 from tirelab.selection.search import EFFECTIVE, PRIOR_ODDS, Discrepancy
 
@@ -123,3 +123,41 @@ def test_a_loud_response_is_told_up_to_what_its_own_form_may_miss() -> None:
     (found,) = probabilities(gram, PLACES, [question])
     most = math.sqrt(EFFECTIVE) / CATALOGUE["inertia"].form_error
     assert found[0] == pytest.approx(norm.cdf(0.5 * most), abs=1e-6)
+
+
+def test_every_effect_is_asked_for_beside_every_other() -> None:
+    asked = questions_beside(("inertia", "force_drift", LAW), 0.02)
+    assert {(q.truth, q.beside, q.rival, q.nested) for q in asked} == {
+        ("inertia", "force_drift", frozenset({LAW, "force_drift"}), True),
+        ("force_drift", "inertia", frozenset({LAW, "inertia"}), True),
+    }
+
+
+def test_beside_another_effect_it_is_as_the_whole_covariance_has_it() -> None:
+    """The other one is LOUDER times as large in the rival, and its form may miss its part too."""
+    x, size = columns(level=300.0), 0.02
+    loud = LOUDER * size
+    question = Question("inertia", frozenset({LAW, "force_drift"}), size, nested=False, beside="force_drift")
+    (found,) = probabilities(x.T @ x, PLACES, [question])
+    w = np.column_stack([loud * x[:, 3:5] / math.sqrt(2.0), x[:, 7:10]])
+    missed = variance(loud**2 * float(np.mean(np.sum(x[:, 3:5] ** 2, axis=0))), "force_drift") - 1.0
+    for k in range(3):
+        c = size * x[:, k]
+        v = variance(float(c @ c), "inertia") + missed
+        distance = float(c @ np.linalg.solve(v * np.eye(400) + w @ w.T, c))
+        assert found[k] == pytest.approx(norm.cdf(0.5 * math.sqrt(distance)), abs=1e-9)
+
+
+def test_slow_noise_keeps_what_is_told_below_its_own_size() -> None:
+    """Over e effective samples slow noise of the sum of squares n has the variance n / e. As both grow with the time of
+    the recordings, S^2 tends to e |c|^2 / n: here 30 x 9 / 120 = 2.25.
+    """
+    places = {**PLACES, SLOW_NOISE: slice(10, 11)}
+    for time in (1e3, 1e5):
+        gram = time * np.diag([9.0, *[1e-12] * 9, 120.0])
+        question = Question("inertia", frozenset({"force_drift"}), 1.0, nested=False)
+        (found,) = probabilities(gram, places, [question])
+        missed = CATALOGUE["inertia"].form_error ** 2 * 9.0
+        assert found[0] == pytest.approx(
+            norm.cdf(0.5 * math.sqrt(9.0 * EFFECTIVE / (120.0 + missed))), abs=1e-3
+        )
