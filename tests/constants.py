@@ -107,7 +107,9 @@ DERIVED = (
     "diagnosis/localization.LOCATED",
 )
 
-PRIOR = tuple(f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "HEIGHT"))
+PRIOR = tuple(
+    f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "HEIGHT", "PRELOAD")
+)
 
 EFFORT = (
     "preprocessing/motion.CUTOFFS",

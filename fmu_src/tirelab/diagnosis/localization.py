@@ -131,7 +131,7 @@ def law_corrected(
     """
     if corrected.law == baseline.law or corrected.effects == baseline.effects:
         return list(before)
-    law = replace(baseline, law=corrected.law)
+    law = replace(baseline, law=corrected.law, preload=corrected.preload)
     return [r.force - simulate(law, r) for r in recordings]
 
 

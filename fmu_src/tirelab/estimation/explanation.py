@@ -24,6 +24,7 @@ from ..regressors.signature import (
     LAW,
     Signature,
     candidates,
+    constant,
     in_other_noise,
     law_signature,
     signatures_of,
@@ -63,6 +64,9 @@ Progress = Callable[[str], None]
 
 LIKE_LAW = "it depends on the deflection only in this motion: unload as well, and load at another speed"
 """Why an effect cannot be shown that no law depends on elsewhere."""
+
+LIKE_PRELOAD = "it is one force in this motion: the preload of a refitted law is the same"
+"""The same of a part, whose law has a preload."""
 
 NEAR = 4.0
 """Log posterior odds of a set over the median set, or over a part of it, up to which the latter is preferred."""
@@ -200,9 +204,10 @@ def explain_misfit(
     rank = partial(ranked, alike=partial(_alike, excitation), held_out=held_out_of(held_out, baseline))
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
-    like_laws = [name for name in single_valued(raw, dataset) if not of_deflection(name)]
-    raw = tuple(s for s in raw if s.name not in like_laws)
-    hidden |= dict.fromkeys(like_laws, LIKE_LAW)
+    hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
+    if baseline.two_sided and LAW in catalogue:
+        hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
+    raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
     ranking, signatures = _ranking(dataset, raw, quiet, rank)
     samples = samples_of(recordings, baseline)

@@ -35,12 +35,14 @@ from ..regressors.signature import (
     HEIGHTS,
     LAW,
     MOST_SURFACES,
+    PRELOAD,
     REFERENCE,
     SHAPE,
     TWIST,
     at_reading,
     centre_and_spread,
     form_error,
+    preload_spread,
     size_of,
 )
 
@@ -110,9 +112,11 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
     )
 
 
-def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
+def parameters_of_law(surfaces: int, preload: float = 0.0) -> tuple[FreeParameter, ...]:
     """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and heights of the
-    shape, and with more than one surface a further factor and exponent for each.
+    shape, with more than one surface a further factor and exponent for each, and for a part its preload.
+
+    preload [N]: standard deviation of its change; 0: of a tire, which has none
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
     spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[HEIGHT] * HEIGHTS]
@@ -121,7 +125,7 @@ def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
     labels += [f"height {i + 1}" for i in range(HEIGHTS)]
     labels += [f"{w}, surface {i}" for i in range(surfaces) for w in labels[:2]] if surfaces > 1 else []
     groups = [1, 2, 3, 4, *[5] * HEIGHTS, *[6, 7] * surfaces]
-    return tuple(
+    shape = tuple(
         FreeParameter(
             LAW,
             i,
@@ -139,6 +143,24 @@ def parameters_of_law(surfaces: int) -> tuple[FreeParameter, ...]:
         )
         for i, (label, spread) in enumerate(zip(labels, spreads, strict=True))
     )
+    if preload <= 0.0:
+        return shape
+    far = 2.0 / PRELOAD
+    own = FreeParameter(
+        LAW,
+        len(shape),
+        "preload",
+        "N",
+        0.0,
+        preload,
+        False,
+        -far,
+        far,
+        -far * preload,
+        far * preload,
+        group=8,
+    )
+    return (*shape, own)
 
 
 def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
@@ -249,7 +271,7 @@ def problem_of(dataset: Dataset, values: Values, *, plain: bool) -> EstimationPr
     free: list[FreeParameter] = []
     for name in values:
         own = (
-            parameters_of_law(law_surfaces(dataset))
+            parameters_of_law(law_surfaces(dataset), preload_spread(dataset))
             if name == LAW
             else parameters_of_effect(name, dataset.scales)
         )
@@ -264,7 +286,7 @@ def law_surfaces(dataset: Dataset) -> int:
 
 def law_start(dataset: Dataset) -> tuple[float, ...]:
     """Return the values at which a refitted law is that of the baseline."""
-    return (0.0,) * len(parameters_of_law(law_surfaces(dataset)))
+    return (0.0,) * len(parameters_of_law(law_surfaces(dataset), preload_spread(dataset)))
 
 
 def with_readings(name: str, values: Sequence[float], dataset: Dataset) -> tuple[float, ...]:
@@ -280,6 +302,9 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
     if LAW in values:
         factor, exponent, *shape = values[LAW][:COMMON]
         own = values[LAW][COMMON:]
+        if tire.two_sided:
+            tire = replace(tire, preload=tire.preload + own[-1])
+            own = own[:-1]
         radii = dataset.radii[: law_surfaces(dataset)]
         pairs = [(own[2 * i], own[2 * i + 1]) if own else (0.0, 0.0) for i in range(len(radii))]
         rows = tuple((r, factor + a, exponent + b) for r, (a, b) in zip(radii, pairs, strict=True))

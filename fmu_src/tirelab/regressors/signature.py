@@ -101,6 +101,9 @@ FACTOR, EXPONENT, BEND, TWIST, HEIGHT = 0.1, 0.07, 0.03, 0.01, 0.05
 """Standard deviations of a, b, c, d and each height at the scale 1. Only their proportions matter, since the scale is
 found from the recordings."""
 
+PRELOAD = 0.05
+"""The same of a part's preload, over the largest force: that of a force's offset."""
+
 HEIGHTS = sum(p.name.startswith("height") for p in CATALOGUE[SHAPE].parameters)
 """Number of heights in the shape of a refitted law."""
 
@@ -124,14 +127,20 @@ def form_error(name: str) -> float:
     return CATALOGUE[SHAPE if name == LAW else name].form_error
 
 
+def preload_spread(dataset: Dataset) -> float:
+    """Return the standard deviation [N] of the change of a part's preload at the scale 1; a tire has no preload."""
+    return PRELOAD * dataset.scales.force if dataset.tire.two_sided else 0.0
+
+
 def law_signature(dataset: Dataset) -> Signature:
-    """Return the law's signature; its size 1 is that of a change of A by FACTOR."""
+    """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload where that is
+    more.
+    """
     gather = dataset.gathered
     x = gather(
         [np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments]
     )
     radius = gather([e.surface_radius for e in dataset.experiments])
-    # A refitted law leaves a part's preload as it is.
     force = dataset.stacked([e.baseline - dataset.tire.preload for e in dataset.experiments])
     reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
     way = np.log(np.maximum(x / reference, LEAST_RATIO))
@@ -145,7 +154,12 @@ def law_signature(dataset: Dataset) -> Signature:
         columns[: len(shapes)] = shapes
         if len(dataset.radii) <= MOST_SURFACES:
             columns += [s * (radius == r) for r in dataset.radii for s in shapes]
-    basis = np.column_stack(columns) / max(size_of(FACTOR * force), 1e-300)
+    size = size_of(FACTOR * force)
+    if dataset.tire.two_sided:
+        many = dataset.experiments
+        columns.append(dataset.stacked([np.full(e.time.size, preload_spread(dataset)) for e in many]))
+        size = max(size, size_of(columns[-1]))
+    basis = np.column_stack(columns) / max(size, 1e-300)
     none = np.zeros((0, force.size))
     return Signature(LAW, np.zeros(force.size), basis, False, none, (), np.zeros(0))
 
@@ -218,6 +232,19 @@ def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozense
         if s.name != LAW
         and float(np.median([_beside_lines(curve * noise, x, part) for curve in s.curves]))
         < form_error(s.name)
+    )
+
+
+def constant(signatures: Sequence[Signature], dataset: Dataset) -> frozenset[str]:
+    """Return the effects that are one force on this motion, as a preload is: of most drawn responses the standard
+    deviation is below the form error.
+    """
+    noise = dataset.gathered([np.full(e.time.size, e.noise) for e in dataset.experiments])
+    forces = {s.name: s.curves * noise for s in signatures if s.name != LAW}
+    return frozenset(
+        name
+        for name, f in forces.items()
+        if float(np.median(np.std(f, axis=1) / np.sqrt(np.mean(f**2, axis=1)))) < form_error(name)
     )
 
 

@@ -80,7 +80,10 @@ def _effect(effect: Mapping[str, Any], report: str) -> list[Table | Text]:
     for row in map(words.law_row, effect["law"]):
         surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
     lines.append(surfaces)
-    if shape := sum(not words.is_of_a_surface(parameter) for parameter in effect["parameters"]):
+    others = {p: e for p, e in effect["parameters"].items() if not words.is_of_a_surface(p)}
+    if (preload := others.pop("preload", None)) is not None:
+        lines.append(Text(f"preload changed by {words.estimate(preload['value'], preload['std'], 'N')}"))
+    if shape := len(others):
         lines.append(Text(f"and {shape} constants of its shape: the curve is in {report}"))
     return lines
 

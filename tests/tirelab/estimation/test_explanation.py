@@ -8,12 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import damped, flat_force, read, ride, triangle
-from radialtire import TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from rivals import rivals
 from tirelab.estimation import explanation
 from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
+from tirelab.names import REFITTED_LAW
 from tirelab.preprocessing.noise import Noise
+from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import dataset_of
+from tirelab.simulation.simulate import simulate
 
 RIDES = (damped(1, samples=3000), damped(2, samples=3000))
 
@@ -196,3 +199,26 @@ def test_what_no_effect_explains_in_one_recording_weighs_alike_in_all(
     read = [e.noise for e in dataset_of(RIDES, TireModel()).experiments]
     noises = [e.noise for e in found.model.fit.problem.dataset.experiments]
     assert np.array(noises) / read == pytest.approx(expected, rel=0.03)
+
+
+def test_a_part_whose_preload_was_fitted_without_what_relaxes_has_another_preload() -> None:
+    """25 N and 5 N/mm, of which 0.6 N/mm relax within 3 s; the straight line through it all begins 5 N lower.
+
+    No reading has a wrong zero, and a part's preload cannot be told from one.
+    """
+    time = np.arange(0.0, 80.0, 0.02)
+    x = np.interp(time, [0.0, 5.0, 30.0, 35.0, 40.0, 65.0, 80.0], [0.0, 0.02, 0.02, 0.008, 0.02, 0.02, 0.0])
+    silent = Recording("part", time, x, np.full(time.size, np.inf), np.zeros(time.size))
+    effect = CATALOGUE["viscoelastic_relaxation"]
+    values = {p.name: p.start for p in effect.parameters} | {"share_1": 0.12, "relaxation_time_1": 3.0}
+    true = TireModel(PowerLaw(50.0, 1.0), two_sided=True, preload=25.0, tested_range=None)
+    relaxing = replace(true, effects=((effect, tuple(values[p.name] for p in effect.parameters)),))
+    force = simulate(relaxing, silent) + 0.1 * np.random.default_rng(2).normal(size=time.size)
+    baseline = replace(true, preload=20.0)
+    names = (REFITTED_LAW, "viscoelastic_relaxation", "force_offset", "deflection_offset")
+    found = explain_misfit([replace(silent, force=force)], baseline, names, lambda stage: None)
+    assert set(found.model.names) == {REFITTED_LAW, "viscoelastic_relaxation"}
+    assert found.model.tire.preload == pytest.approx(25.0, abs=0.2)
+    reasons = dict(found.hidden)
+    assert "preload" in reasons["force_offset"]
+    assert "preload" in reasons["deflection_offset"]

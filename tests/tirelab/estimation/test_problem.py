@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from drives import damped
 from fits import values_of
-from radialtire import CATALOGUE, TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.estimation.problem import (
     FreeParameter,
     form_errors,
@@ -161,3 +161,17 @@ def test_the_discrepancy_of_the_law_is_sized_by_what_the_law_changes_and_shaped_
 def test_nothing_has_no_discrepancy() -> None:
     dataset = driven()
     assert form_errors({}, dataset, smooth_functions(dataset)) == {}
+
+
+def test_the_law_of_a_part_has_its_preload_and_that_of_a_tire_has_none() -> None:
+    part = TireModel(PowerLaw(50.0, 1.0), two_sided=True, preload=20.0, tested_range=None)
+    dataset = dataset_of([damped(4, samples=2000)], part)
+    start = law_start(dataset)
+    assert len(start) == len(law_start(DATASET)) + 1
+    moved = tire_of(dataset, {REFITTED_LAW: (*start[:-1], 5.1)})
+    assert moved.preload == pytest.approx(25.1)
+    (e,) = dataset.experiments
+    np.testing.assert_allclose(dataset.response(moved), 5.1 / e.noise, rtol=1e-9)
+    last = problem_of(dataset, {REFITTED_LAW: start}, plain=False).parameters[-1]
+    assert (last.label, last.unit, last.group) == ("preload", "N", 8)
+    assert last.value(last.position(-3.0)) == pytest.approx(-3.0)
