@@ -36,6 +36,8 @@ def stiffening(x: float, k: float, h: float, A: float, B: float, plain: float) -
     low, high = 0.0, x - plain
     d = high if high < x else 0.5 * x  # plain may be less than the rounding of x
     for _ in range(HALVINGS_MOST):
+        if x - d <= 0.0:  # less than the rounding of x is left to the tire
+            break
         force = A * (100.0 * (x - d)) ** B
         miss = d * (1.0 + h * d) - k * force
         if miss > 0.0:

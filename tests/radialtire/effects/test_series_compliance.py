@@ -118,3 +118,9 @@ def test_a_tire_that_gets_less_than_a_rounding_of_the_deflection_is_no_division_
     part = 0.01 * (x / (k * A)) ** (1.0 / B)
     assert part < 1e-17 * x
     assert stiffening_part(x, A, B, k, h) == pytest.approx(part, abs=1e-14 * x)
+
+
+@pytest.mark.parametrize("x", [4.97765304193e-311, 2.1401787e-317, 5e-324])
+def test_a_deflection_that_has_died_away_leaves_nothing_to_the_tire(x: float) -> None:
+    # What a lag leaves of a deflection after minutes at rest: below it all smaller numbers are 0.
+    assert stiffening_part(x, 4.83, 0.2, 6.1e-4, 513.0) == pytest.approx(0.0, abs=x)

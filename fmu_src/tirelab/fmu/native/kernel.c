@@ -416,6 +416,9 @@ static inline double series_compliance_stiffening(double x, double k, double h, 
     double high = x - plain;
     double d = high < x ? high : 0.5 * x;
     for (int t1 = 0; t1 < 60; t1++) {
+        if (x - d <= 0.0) {
+            break;
+        }
         force = A * pow(100.0 * (x - d), B);
         miss = d * (1.0 + h * d) - k * force;
         if (miss > 0.0) {
