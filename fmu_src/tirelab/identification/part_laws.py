@@ -41,8 +41,8 @@ SAMPLES_MOST = 20_000
 
 KNOTS = 6
 
-LARGEST_OFFSET = 0.01
-"""The deflection offset [m] that a tire file can hold."""
+LARGEST_GAP = 0.01
+"""A gap [m] beyond which it is rather the zero of the gauge that is off."""
 
 GAPS = ("linear_gap", "power_gap")
 """Laws that a tire file holds as a power law whose deflection is shifted. The gap is a loss of contact, as a tire's in
@@ -139,10 +139,10 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
         raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
     _refuse_pull(fit, recordings)
     x0 = 1e-3 * fit.value("x0")
-    if abs(x0) > LARGEST_OFFSET:
+    if abs(x0) > LARGEST_GAP:
         raise TirelabError(
-            f"the force begins at {1e3 * x0:.3g} mm, and a tire file holds at most {1e3 * LARGEST_OFFSET:g} mm; give "
-            "what the gauge reads there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
+            f"the force begins at {1e3 * x0:.3g} mm, which is rather a gauge's zero than a gap; give what it reads "
+            "there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
         )
     exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
     scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
