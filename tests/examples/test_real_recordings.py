@@ -118,7 +118,8 @@ def test_the_tissue_relaxes_and_the_correction_holds_where_it_was_not_fitted(
         assert found.after < 0.3 * found.before
         assert found.verdict.recordings[0].deflection.max() < 20e-6  # as it was read, in metres
         assert not {"saturation", "rate_independent_hysteresis"} & set(found.verdict.names)
-        assert any("saturation: its limit is at least 1 N" in line for line in found.not_shown())
+        # One approach and a hold: no drift shows in it, however its deflection creeps.
+        assert any("drift" in line and "visited again" in line for line in found.not_shown())
 
 
 @pytest.mark.slow
