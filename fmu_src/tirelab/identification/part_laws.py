@@ -30,6 +30,7 @@ from ..errors import TirelabError
 from ..preprocessing.noise import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
+from ..recordings.zero import FARTHEST
 from .misfit import SAMPLES_LEAST, THIRD
 from .power_fit import EXPONENT_BOUNDS
 from .surfaces import CM_PER_M
@@ -40,9 +41,6 @@ SAMPLES_MOST = 20_000
 """So many samples, evenly spaced, are fitted."""
 
 KNOTS = 6
-
-LARGEST_GAP = 0.01
-"""A gap [m] beyond which it is rather the zero of the gauge that is off."""
 
 GAPS = ("linear_gap", "power_gap")
 """Laws that a tire file holds as a power law whose deflection is shifted. The gap is a loss of contact, as a tire's in
@@ -139,7 +137,7 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
         raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
     _refuse_pull(fit, recordings)
     x0 = 1e-3 * fit.value("x0")
-    if abs(x0) > LARGEST_GAP:
+    if abs(x0) > FARTHEST:
         raise TirelabError(
             f"the force begins at {1e3 * x0:.3g} mm, which is rather a gauge's zero than a gap; give what it reads "
             "there, as the file counts: tirelab inspect --part FILE --zero deflection=..."

@@ -22,7 +22,7 @@ EARLY, EARLY_PART = 2e-3, 0.08
 """The force begins at another deflection than zero where it is farther away than this [m], this part of the stroke."""
 
 FARTHEST = 0.01
-"""A tire's zero is not farther off than this [m]: beyond, the gauge was not set to zero."""
+"""Neither a tire's zero nor a part's gap is farther off than this [m]: beyond, the gauge was not set to zero."""
 
 
 @dataclass(frozen=True)

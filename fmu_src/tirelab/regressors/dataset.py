@@ -267,14 +267,12 @@ class Samples:
         A delay shorter than a block differs from that between samples, and the average over a knee is not the knee of
         the average.
         """
-        found = []
-        for e, motion, baseline in zip(dataset.experiments, self.motions, self.baselines, strict=True):
-            changed = simulate(tire, motion, motion) - baseline
-            averaged = changed[: e.time.size * e.size].reshape(-1, e.size).mean(axis=1)
-            found.append(
-                averaged - (simulate(tire, e, e) - e.baseline) if e.size > 1 else np.zeros(e.time.size)
-            )
-        return tuple(found)
+        pairs = zip(self.motions, self.baselines, strict=True)
+        averaged = dataset.averaged([simulate(tire, m, m) - baseline for m, baseline in pairs])
+        return tuple(
+            own - (simulate(tire, e, e) - e.baseline) if e.size > 1 else np.zeros(e.time.size)
+            for e, own in zip(dataset.experiments, averaged, strict=True)
+        )
 
 
 def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:

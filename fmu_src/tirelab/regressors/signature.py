@@ -17,7 +17,7 @@ scale is not declared: it maximises the marginal likelihood (type II), like that
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -216,41 +216,41 @@ def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozense
     """Return the effects that are functions of deflection and surface on this motion, as a law is: friction without a
     reversal, for instance.
 
-    Of most drawn responses the root mean square about a straight line in each part of the deflection, surface by
-    surface, is below the form error.
+    Of most drawn responses the standard deviation about a straight line in each part of the deflection, surface by
+    surface, is below the form error. More surfaces than MOST_SURFACES count as one, as they do for the law.
     """
     many = dataset.experiments
     x, radius = (dataset.gathered([getattr(e, c) for e in many]) for c in ("deflection", "surface_radius"))
-    noise = dataset.gathered([np.full(e.time.size, e.noise) for e in many])
-    _, surface = np.unique(radius, return_inverse=True)
+    radii, surface = np.unique(radius, return_inverse=True)
+    surface = surface if radii.size <= MOST_SURFACES else np.zeros_like(surface)
     parts = max(min(PARTS, x.size // (BLOCKS_OF_PART * (int(surface.max()) + 1))), 1)
     place = np.minimum(parts * (x - x.min()) / max(float(np.ptp(x)), 1e-300), parts - 1).astype(int)
     part = surface * parts + place
-    return frozenset(
-        s.name
-        for s in signatures
-        if s.name != LAW
-        and float(np.median([_beside_lines(curve * noise, x, part) for curve in s.curves]))
-        < form_error(s.name)
-    )
+    return _mostly_below_form_error(signatures, dataset, lambda force: _beside_lines(force, x, part))
 
 
 def constant(signatures: Sequence[Signature], dataset: Dataset) -> frozenset[str]:
     """Return the effects that are one force on this motion, as a preload is: of most drawn responses the standard
     deviation is below the form error.
     """
+    return _mostly_below_form_error(signatures, dataset, lambda force: float(np.std(force)))
+
+
+def _mostly_below_form_error(
+    signatures: Sequence[Signature], dataset: Dataset, apart: Callable[[FloatArray], float]
+) -> frozenset[str]:
+    """Return the effects of which most drawn responses [N] are `apart` by less than their form error."""
     noise = dataset.gathered([np.full(e.time.size, e.noise) for e in dataset.experiments])
-    forces = {s.name: s.curves * noise for s in signatures if s.name != LAW}
-    return frozenset(
-        name
-        for name, f in forces.items()
-        if float(np.median(np.std(f, axis=1) / np.sqrt(np.mean(f**2, axis=1)))) < form_error(name)
-    )
+
+    def usually(signature: Signature) -> float:
+        return float(np.median([apart(f) / max(size_of(f), 1e-300) for f in signature.curves * noise]))
+
+    return frozenset(s.name for s in signatures if s.name != LAW and usually(s) < form_error(s.name))
 
 
 def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> float:
-    """Return the standard deviation of values (m,) about the straight line over x in each part, over their root mean
-    square.
+    """Return the standard deviation of values (m,) about the straight line over x in each part; infinite where no part
+    has more values than a line.
     """
     count = np.maximum(np.bincount(part), 1)
 
@@ -259,9 +259,9 @@ def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> 
 
     over, own = centred(x), centred(values)
     slope = np.bincount(part, over * own) / np.maximum(np.bincount(part, over**2), 1e-300)
-    freedom = max(int(np.sum(np.maximum(count - 2, 0))), 1)
-    beside = float(np.sum((own - slope[part] * over)[count[part] > 2] ** 2)) / freedom
-    return float(np.sqrt(beside)) / max(size_of(values), 1e-300)
+    freedom = int(np.sum(np.maximum(count - 2, 0)))
+    beside = float(np.sum((own - slope[part] * over)[count[part] > 2] ** 2))
+    return float(np.sqrt(beside / freedom)) if freedom else np.inf
 
 
 def signature_of(name: str, dataset: Dataset) -> Signature | None:

@@ -294,3 +294,14 @@ def test_in_few_long_blocks_a_loop_is_no_function_of_the_deflection() -> None:
     data = driven((0.0, 0.0), (20.0, 0.02), (40.0, 0.0), step=0.5)
     assert data.misfit.size < 2 * PARTS
     assert single_valued(signatures_of(LOOPS, data), data) == set()
+
+
+def test_on_ground_of_ever_another_radius_a_loop_is_no_function_of_the_deflection() -> None:
+    """No two blocks are on one surface there: taken one by one they would all lie on a line."""
+    time = np.arange(0.0, 40.0, 0.01)
+    x = 0.01 - 0.01 * np.cos(2.0 * np.pi * 0.25 * time)
+    radius = 0.3 + 0.1 * np.sin(0.7 * time)
+    silent = Recording("terrain", time, x, radius, np.zeros(time.size))
+    force = simulate(TireModel(), silent) + NOISE * np.random.default_rng(6).normal(size=time.size)
+    data = dataset_of([replace(silent, force=1.05 * force)], TireModel())
+    assert single_valued(signatures_of(LOOPS, data), data) == set()
