@@ -27,9 +27,19 @@ def main() -> None:
             signal.signal(signal.SIGINT, interrupt)
         from .cli import main as program
 
-        program()
+        try:
+            program()
+        except SystemExit:  # done: as Python ends there is nothing to interrupt, only a traceback to print
+            _change_to(signal.SIG_IGN)
+            raise
     except KeyboardInterrupt:
+        _change_to(signal.SIG_DFL)  # once more ends it at once
         sys.exit("\nAborted!")
+
+
+def _change_to(handler: signal.Handlers) -> None:
+    if signal.getsignal(signal.SIGINT) is interrupt:
+        signal.signal(signal.SIGINT, handler)
 
 
 if __name__ == "__main__":

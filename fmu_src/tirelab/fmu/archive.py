@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import shutil
 import uuid
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
+import fmpy.validation
+
+from ..computing.staging import staged
 from ..errors import TirelabError
 
 MODEL = "BicycleTire"
@@ -37,20 +40,25 @@ def xml_text(root: ElementTree.Element) -> bytes:
     return text + b"\n"
 
 
-def write_archive(members: dict[str, bytes], path: Path) -> Path:
-    """Write the archive under a temporary name and move it into place, so that nobody sees half an FMU."""
-    partial = path.with_suffix(".partial")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+def check_fmu(path: Path) -> None:
+    """Raise TirelabError where an FMU breaks the standard."""
+    problems = fmpy.validation.validate_fmu(str(path))
+    if problems:
+        raise TirelabError(f"{path.name} is not a valid FMU: {problems[0]}; report this with the tire file")
+
+
+def write_archive(members: dict[str, bytes], path: Path, check: Callable[[Path], None]) -> Path:
+    """Write an archive that passes `check`, so that nobody sees half of one or a bad one, and return its path.
+
+    Raises TirelabError where the folder cannot be written.
+    """
+    with staged(path.parent) as folder:
+        written = folder / path.name
+        with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
             for name in sorted(members):
                 info = zipfile.ZipInfo(name, EPOCH)
                 info.compress_type = zipfile.ZIP_DEFLATED
                 info.external_attr = 0o644 << 16
                 archive.writestr(info, members[name])
-        shutil.move(partial, path)
-    except OSError as error:
-        raise TirelabError(
-            f"{path} cannot be written ({error.strerror}); name another folder with --out"
-        ) from None
+        check(written)
     return path

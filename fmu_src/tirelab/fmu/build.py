@@ -19,8 +19,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-import fmpy
-import fmpy.validation
 import radialtire
 from pythonfmu import FmuBuilder
 from radialtire import FLAT_RADIUS, TireModel
@@ -28,7 +26,7 @@ from radialtire.tirefile import to_text
 
 from ..errors import TirelabError
 from . import documentation
-from .archive import MODEL, content_guid, write_archive, xml_text
+from .archive import MODEL, check_fmu, content_guid, write_archive, xml_text
 from .loader import Compiler, compile_loader
 
 SHELL = "bicycle_tire_fmu"
@@ -120,10 +118,7 @@ def _built(
         description.set("guid", guid)
         members["resources/guid.txt"] = f"{guid}\n".encode()
         members["modelDescription.xml"] = xml_text(description)
-        path = write_archive(members, folder / f"{content.model}.fmu")
-    problems = fmpy.validation.validate_fmu(str(path))
-    if problems:
-        raise TirelabError(f"{path} is not a valid FMU: {problems[0]}; report this with the tire file")
+        path = write_archive(members, folder / f"{content.model}.fmu", check_fmu)
     return BuiltFmu(path, guid, compiler)
 
 

@@ -41,12 +41,16 @@ def write_system(
         "resources/Simulation.fmu": simulation.path.read_bytes(),
         "resources/Correction.fmu": correction.read_bytes(),
     }
-    path = write_archive(members, folder / SYSTEM)
+    return write_archive(members, folder / SYSTEM, _check_system)
+
+
+def _check_system(path: Path) -> None:
     try:
         read_ssd(str(path))
     except Exception as error:  # fmpy raises plain Exception where the schema refuses it
-        raise TirelabError(f"{path} breaks the SSP standard ({error}); report this with the FMU") from None
-    return path
+        raise TirelabError(
+            f"{path.name} breaks the SSP standard ({error}); report this with the FMU"
+        ) from None
 
 
 def _described(simulation: ForeignFmu, moves: bool, surfaces: bool) -> Element:

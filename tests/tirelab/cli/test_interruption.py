@@ -29,23 +29,47 @@ COMMANDS = {
 CONTINUED = ("prove",)
 """What these had finished stays, for the same command to go on."""
 
+QUICK = ("identify", "compare", "inspect", "build", "ride", "rig")
+"""Those that soon write."""
+
+WRITTEN = {
+    "identify": {"tire.json", "tire.identification.json"},
+    "compare": {"slow.compare.png"},
+    "inspect": {"recording.toml"},
+    "build": {"BicycleTire.fmu"},
+    "ride": {"ride.csv", "ride.png"},
+}
+"""Their files; the rig's are more than one."""
+
 DRIVER = """
-import os, signal, sys, threading
+import atexit, os, signal, sys, threading
 from tirelab.__main__ import main
 signal.signal(signal.SIGINT, signal.default_int_handler)
-timer = threading.Timer(float(sys.argv.pop(1)), os.kill, (os.getpid(), signal.SIGINT))
-timer.daemon = True
+moment, out = sys.argv.pop(1), sys.argv.pop(1)
 
-class Begin:
-    def find_spec(self, name, *_):
-        if name == "tirelab.cli":
-            timer.start()
-            sys.meta_path.remove(self)
+def press():
+    global press
+    press = lambda: None
+    os.kill(os.getpid(), signal.SIGINT)
 
-sys.meta_path.insert(0, Begin())
+MOMENTS = {
+    "loading": lambda event, words: event == "import" and words[0] == "tirelab.cli",
+    "staging": lambda event, words: event == "tempfile.mkdtemp" and words[0].startswith(out),
+    "writing": lambda event, words: event == "open" and words[0].startswith(out) and words[1][0] in "wx",
+    "moving": lambda event, words: event == "os.rename" and words[1].startswith(out),
+}
+
+if moment in MOMENTS:
+    sys.addaudithook(lambda event, words: MOMENTS[moment](event, [str(w) for w in words]) and press())
+elif moment == "ending":
+    atexit.register(press)
+else:
+    timer = threading.Timer(float(moment), press)
+    timer.daemon = True
+    timer.start()
 main()
 """
-"""Presses Ctrl-C so many seconds after the program has begun to load its commands."""
+"""Presses Ctrl-C once, at a moment of the program's own course or so many seconds after its start."""
 
 IN_MADE_CODE = """
 import signal
@@ -74,26 +98,75 @@ def run(program: str, folder: Path, *words: str) -> subprocess.CompletedProcess[
     )
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-@pytest.mark.parametrize("seconds", [0.0, 0.2, 0.6])
-def test_ctrl_c_at_any_time_has_status_1_and_leaves_nothing(
-    name: str, seconds: float, repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A fast command may be done before: then its files are whole, which other tests look at."""
-    monkeypatch.chdir(repository)
-    out = tmp_path / "out"
-    done = run(DRIVER, tmp_path, str(seconds), *(word.format(out=out) for word in COMMANDS[name]))
+def interrupted(name: str, moment: str, folder: Path) -> tuple[subprocess.CompletedProcess[str], list[str]]:
+    """Run a command to that moment; return how it ended, and the files that stand in `folder`/out."""
+    out = folder / "out"
+    done = run(DRIVER, folder, moment, str(out), *(word.format(out=out) for word in COMMANDS[name]))
     assert "Traceback" not in done.stderr
-    if name == "open" and done.stdout:  # it serves until then
-        assert (done.returncode, done.stderr) == (0, "ended\n")
-    elif seconds == 0.0 or done.returncode:
+    if done.returncode:
         assert done.returncode == 1
         assert done.stderr.endswith("\nAborted!\n")
-    if name in CONTINUED:
-        for file in out.rglob("*.json"):
-            json.loads(file.read_text(encoding="utf-8"))
-    elif name == "open" or done.returncode:
-        assert [path for path in out.rglob("*") if path.is_file()] == []
+    return done, [path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_ctrl_c_while_the_commands_are_loaded_has_status_1_and_leaves_nothing(
+    name: str, repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done, files = interrupted(name, "loading", tmp_path)
+    assert (done.returncode, files) == (1, [])
+
+
+@pytest.mark.parametrize("name", sorted(set(QUICK) - {"rig"}))  # whose files are not opened by Python
+@pytest.mark.parametrize("moment", ["staging", "writing"])
+def test_ctrl_c_while_the_files_are_written_leaves_none(
+    name: str, moment: str, repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done, files = interrupted(name, moment, tmp_path)
+    assert (done.returncode, files) == (1, [])
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_ctrl_c_as_the_files_are_moved_into_their_folder_waits_for_all_of_them(
+    name: str, repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done, files = interrupted(name, "moving", tmp_path)
+    assert done.returncode == 1
+    if name in WRITTEN:
+        assert set(files) == WRITTEN[name]
+    else:
+        assert len(files) > 1
+
+
+def test_ctrl_c_after_the_work_changes_nothing(
+    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done, files = interrupted("inspect", "ending", tmp_path)
+    assert (done.returncode, done.stderr) == (0, "reading slow.csv\n")
+    assert set(files) == WRITTEN["inspect"]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("seconds", ["0.2", "0.8"])
+def test_ctrl_c_at_any_time_leaves_no_half_of_the_files(
+    name: str, seconds: str, repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """How far a command is at that time depends on the machine: it may even have written all of its files."""
+    monkeypatch.chdir(repository)
+    done, files = interrupted(name, seconds, tmp_path)
+    if name == "open" and done.stdout:  # it serves until then
+        assert (done.returncode, done.stderr) == (0, "ended\n")
+        assert files == []
+    elif name in CONTINUED:
+        for file in files:
+            json.loads((tmp_path / "out" / file).read_text(encoding="utf-8"))
+    elif files and name in WRITTEN:
+        assert set(files) == WRITTEN[name]
+    assert not [file for file in files if ".tirelab-" in file]
 
 
 def test_no_command_is_left_out() -> None:

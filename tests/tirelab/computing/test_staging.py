@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import signal
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -28,6 +33,52 @@ def test_what_is_interrupted_leaves_nothing(tmp_path: Path, end: type[BaseExcept
     with pytest.raises(end):
         interrupted()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_said(tmp_path: Path) -> None:
+    def filled() -> None:
+        with staged(tmp_path / "out") as folder:
+            (folder / "a.txt").write_text("half")
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(
+        TirelabError, match=r"out cannot be written \(No space left on device\); name another"
+    ):
+        filled()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there a signal that a program sends itself ends it")
+def test_ctrl_c_between_two_files_waits_for_the_second(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replace = os.replace
+
+    def replaced(source: Path, target: Path) -> None:
+        replace(source, target)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(os, "replace", replaced)
+
+    def written() -> None:
+        with staged(tmp_path / "out") as folder:
+            (folder / "a.txt").write_text("a")
+            (folder / "b.txt").write_text("b")
+
+    with pytest.raises(KeyboardInterrupt):
+        written()
+    assert sorted(f.name for f in (tmp_path / "out").iterdir()) == ["a.txt", "b.txt"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_thread_writes_without_the_handlers_of_signals(tmp_path: Path) -> None:
+    def write() -> None:
+        with staged(tmp_path) as folder:
+            (folder / "a.txt").write_text("a")
+
+    with ThreadPoolExecutor(1) as threads:
+        threads.submit(write).result()
+    assert (tmp_path / "a.txt").is_file()
 
 
 def test_what_stood_there_stays_until_it_is_replaced(tmp_path: Path) -> None:

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
-import fmpy.validation
 from bicycle_tire_fmu import BicycleTire
 from fmu_description import BASE_UNITS
 from radialtire import Flow, TireModel, flat_law, parameters_of, write_tire
@@ -22,7 +21,7 @@ from radialtire.tirefile import to_text
 
 from ...errors import TirelabError
 from .. import documentation
-from ..archive import MODEL, content_guid, write_archive, xml_text
+from ..archive import MODEL, check_fmu, content_guid, write_archive, xml_text
 from . import kernel
 from .fmi3 import as_fmi3
 from .make import PLATFORMS, c_files, source_files
@@ -83,10 +82,7 @@ def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFm
     description.set(key, guid)
     members["resources/tire.dat"] = data(tire, guid)
     members["modelDescription.xml"] = xml_text(description)
-    path = write_archive(members, folder / f"{MODEL}.fmu")
-    problems = fmpy.validation.validate_fmu(str(path))
-    if problems:
-        raise TirelabError(f"{path} is not a valid FMU: {problems[0]}; report this with the tire file")
+    path = write_archive(members, folder / f"{MODEL}.fmu", check_fmu)
     return NativeFmu(path, guid)
 
 
