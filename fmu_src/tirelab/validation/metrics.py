@@ -185,7 +185,8 @@ def confusion(scores: Sequence[Score]) -> dict[str, dict[str, float]]:
         if not missed:
             for other in wrong:
                 table[NO_NAME][other] += 1.0
-    return {row: dict(columns) for row, columns in table.items()}
+    # in one order, so that the same scores make the same proof.json
+    return {row: dict(sorted(columns.items())) for row, columns in sorted(table.items())}
 
 
 @dataclass(frozen=True)

@@ -90,7 +90,18 @@ def test_confusion_shares_a_missed_effect_among_the_wrong_names(score: Make) -> 
         score("none", "none", "gas"),
         score("single", "lag", "friction", also_right=["friction"]),
     ]
-    assert summary.confusion(scores) == {
+    found = summary.confusion(scores)
+    assert [*found, *found["lag"]] == [
+        NO_NAME,
+        "friction",
+        "lag",
+        "none",
+        NO_NAME,
+        "friction",
+        "inertia",
+        "lag",
+    ]
+    assert found == {
         "lag": {"lag": 2.0, "inertia": 0.5, "friction": 0.5, NO_NAME: 1.0},
         NO_NAME: {"gas": 1.0},
         "none": {"gas": 1.0},
