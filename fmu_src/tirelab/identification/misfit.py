@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..preprocessing.noise import robust_sigma
+from ..preprocessing.spread import robust_sigma
 from .surfaces import Surface
 
 MISFIT = 1.5

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
 
 from ..errors import TirelabError
-from ..preprocessing.noise import robust_sigma
+from ..preprocessing.spread import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
 from ..recordings.zero import FARTHEST

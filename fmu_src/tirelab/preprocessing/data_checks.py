@@ -15,7 +15,8 @@ from radialtire.tracking import PAUSE
 from scipy.stats import binom, t
 
 from ..errors import TirelabError
-from .noise import FEWEST_EVENTS, STANDS_OUT, deflection_noise, white_level
+from .gauge import deflection_noise
+from .noise import FEWEST_EVENTS, STANDS_OUT, white_level
 from .samples import RawDataset, Recorded
 
 FloatArray = NDArray[np.float64]

@@ -29,7 +29,9 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.ndimage import gaussian_filter1d
 
-from .noise import NEGLIGIBLE, TRIMMED, deflection_noise
+from .gauge import deflection_noise
+from .noise import NEGLIGIBLE
+from .spread import TRIMMED
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -1,9 +1,4 @@
-"""The noise of readings and of a misfit, the steps of a gauge, and the noise floor that follows from both.
-
-A gauge that reads in steps of q errs by up to q / 2 either way, with the standard deviation q / sqrt(12) (B. Widrow,
-I. Kollar, "Quantization Noise", Cambridge 2008, chapter 5). Random noise of variance s^2 gives fifth differences of
-variance 252 s^2, to which a smooth motion adds next to nothing. They do not show the steps where the motion is slow,
-because most readings repeat the last one, or where it is nearly even, because most steps are alike.
+"""The noise of a misfit, and the noise floor of a recording.
 
 The noise floor is the root mean square of all sources together over the recorded samples:
 
@@ -34,7 +29,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
-from scipy.stats import norm
+
+from .spread import trimmed_sigma
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -53,148 +49,6 @@ stands still."""
 
 FEWEST_EVENTS = 10
 """Fewest events (samples of a hold, changes that the next sample undoes) that are not taken for chance."""
-
-MEDIAN_TO_SIGMA = 1.4826
-"""Standard deviation of a normal law over its median absolute deviation, 1 / 0.67449."""
-
-
-def robust_sigma(values: NDArray[np.float64]) -> float:
-    """Return the standard deviation of `values` about zero, from the median of their sizes; in their unit.
-
-    P. J. Rousseeuw, C. Croux, "Alternatives to the Median Absolute Deviation", J. Am. Stat. Assoc. 88, 1993.
-    """
-    return MEDIAN_TO_SIGMA * float(np.median(np.abs(values)))
-
-
-TRIMMED = 3.0
-"""Standard deviations beyond which values are left out; the result is corrected for the 0.3 % of a normal law there."""
-
-FIRST_QUANTILE = 0.8
-"""Quantile of the absolute values from which the trimming starts: the median of coarse steps is often 0."""
-
-
-def trimmed_sigma(values: NDArray[np.float64]) -> float:
-    """Return the standard deviation of `values` about zero, from those within three of it; in their unit.
-
-    The variance of this estimate is about half of that from the median. It also holds for rounded values, whose median
-    is 0 or a whole step.
-    """
-    sizes = np.abs(values)
-    sigma = float(np.quantile(sizes, FIRST_QUANTILE) / norm.ppf(0.5 + 0.5 * FIRST_QUANTILE))
-    within = norm.cdf(TRIMMED) - norm.cdf(-TRIMMED)
-    kept = 1.0 - 2.0 * TRIMMED * norm.pdf(TRIMMED) / within
-    for _ in range(100):
-        near = sizes[sizes <= TRIMMED * sigma]
-        again = float(np.sqrt(np.mean(near**2) / kept))
-        if abs(again - sigma) <= 1e-6 * sigma:
-            break
-        sigma = again
-    return sigma
-
-
-LEAST_NOISE, FINEST_STEP = 1e-9, 5e-7
-"""Smallest noise [m] that is returned, and smallest step [m] of a gauge: no gauge reads a tire's deflection to a
-nanometre, and finer steps are the digits of a file, whose rounding is less than every other noise."""
-
-SMALL = 1e-3
-"""Span [m] of the readings below which both limits shrink in proportion to it: small specimens have finer gauges."""
-
-LEAST_LEVELS = 100
-"""Steps from the smallest to the largest reading; fewer are a staircase that the rig was driven through."""
-
-GRID_TOLERANCE = 0.25
-"""Largest distance of a reading from the grid of steps, as a part of a step: a file rounds what a gauge has read."""
-
-
-def deflection_noise(deflection: FloatArray) -> float:
-    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least 1e-9 m,
-    or a millionth of their span where that is less.
-
-    Readings rounded to steps q without other noise have q / sqrt(12), those with other noise at least that.
-    """
-    least = LEAST_NOISE * _shrunk(deflection)
-    random = robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0)
-    step = gauge_step(deflection)
-    rounding = step / np.sqrt(12.0)
-    # A smooth motion that is only rounded has second differences of -q, 0 and q.
-    if step > 0.0 and np.mean(np.abs(np.diff(deflection, 2)) > 1.5 * step) < NEGLIGIBLE:
-        return float(max(rounding, least))
-    return float(max(random, rounding, least))
-
-
-def gauge_step(deflection: FloatArray) -> float:
-    """Return the step [m] in which a gauge reads, from its readings (n,) [m]; 0 where there is none.
-
-    There is a step q where the distinct readings lie on a grid and rounding shows: the motion per sample changes by q
-    or 2 q and the next sample undoes it. A motion driven at constant speed, given in exact numbers, lies on a grid too,
-    but its motion per sample changes only at corners and stays changed.
-    """
-    gaps, shrunk = np.diff(np.unique(deflection)), _shrunk(deflection)
-    step = _common_step(gaps[gaps > LEAST_NOISE * shrunk], FINEST_STEP * shrunk)
-    if step == 0.0 or np.ptp(deflection) < LEAST_LEVELS * step:
-        return 0.0
-    changes = np.diff(np.rint(np.diff(deflection) / step))
-    small = (changes != 0.0) & (np.abs(changes) <= 2.0)
-    undone = small[:-1] & small[1:] & (changes[:-1] * changes[1:] < 0.0)
-    return step if np.count_nonzero(undone) >= FEWEST_EVENTS else 0.0
-
-
-def _shrunk(deflection: FloatArray) -> float:
-    """Return the readings' span over SMALL, at most 1; 1 where nothing moves."""
-    span = float(np.ptp(deflection))
-    return min(span / SMALL, 1.0) if span > 0.0 else 1.0
-
-
-def _common_step(gaps: FloatArray, finest: float) -> float:
-    """Return the largest step of which all `gaps` are multiples, by Euclid's algorithm; 0 if below `finest`."""
-    step = float(gaps.min(initial=np.inf))
-    while finest <= step < np.inf:
-        multiples = np.rint(gaps / step)
-        remainder = np.abs(gaps - multiples * step)
-        if remainder.max() <= GRID_TOLERANCE * step:
-            return float(gaps.sum() / multiples.sum())
-        step = float(remainder[remainder > GRID_TOLERANCE * step].min())
-    return 0.0
-
-
-STEPPING, LEVELS = 0.3, 5
-"""What a gauge that reads in steps shows at least: STEPPING is the part of neighbouring readings that are equal, and
-the part of the changes with no change before or after; LEVELS is the number of different jumps that may replace the
-latter."""
-
-CANDIDATES = (0.02, 0.1, 0.25, 0.5)
-"""Quantiles of the changes of the reading that are tried as its step: the smallest ones are often parts of it."""
-
-
-def staircase_step(deflection: FloatArray) -> float:
-    """Return the step [m] of a gauge whose readings repeat, or 0."""
-    changes = np.abs(np.diff(deflection))
-    moved = changes[changes > 1e-12]
-    if moved.size == 0 or moved.size > (1.0 - STEPPING) * changes.size:
-        return 0.0
-    # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
-    changing = changes > 1e-12
-    rests = float(np.mean(~(changing[:-1] & changing[1:])[changing[:-1] | changing[1:]]))
-    # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
-    for step in sorted(np.quantile(moved, CANDIDATES), reverse=True):
-        multiples = np.round(moved / step)
-        if float(np.quantile(np.abs(moved / step - multiples), 0.9)) < GRID_TOLERANCE:
-            return float(step) if rests >= STEPPING or np.unique(multiples).size >= LEVELS else 0.0
-    return 0.0
-
-
-def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArray:
-    """Return the deflection [m] with straight lines between the middles of the stays on each level.
-
-    A line is followed for half a step at most: a tire at rest between two levels does not move slowly from one to the
-    other.
-    """
-    edges = np.flatnonzero(np.abs(np.diff(deflection)) > 0.25 * step) + 1
-    begin, end = np.append(0, edges), np.append(edges, deflection.size)
-    middle = 0.5 * (time[begin] + time[end - 1])
-    line = np.interp(time, middle, deflection[begin])
-    return np.asarray(np.clip(line, deflection - 0.5 * step, deflection + 0.5 * step))
-
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

@@ -19,16 +19,15 @@ from radialtire.effect import PLACES
 from radialtire.model import READING_NOISE
 
 from ..preprocessing.data_checks import are_rare, compared, spikes
+from ..preprocessing.gauge import destepped, staircase_step
 from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
 from ..preprocessing.noise import (
     SHARE_OF_STEP,
     Noise,
     NoiseFloor,
     Scalar,
-    destepped,
     noise_floor,
     noise_of,
-    staircase_step,
 )
 from ..preprocessing.samples import Recorded
 from ..simulation.kept_stages import KeptStages

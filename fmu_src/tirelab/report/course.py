@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..preprocessing.noise import robust_sigma
+from ..preprocessing.spread import robust_sigma
 
 FloatArray = NDArray[np.float64]
 
