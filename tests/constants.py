@@ -77,7 +77,7 @@ DERIVED = (
     "preprocessing/noise.STAYS",
     "preprocessing/spread.MEDIAN_TO_SIGMA",
     "preprocessing/spread.TRIMMED",
-    "regressors/dataset.COUNTED",
+    "regressors/experiment.COUNTED",
     "regressors/excitation.COURSE_DRAWS",
     "regressors/excitation.UNDER_WAY",
     "regressors/signature.FEWEST",
@@ -119,10 +119,10 @@ EFFORT = (
     "preprocessing/noise.FEWEST_LAGS",
     "preprocessing/samples.ROWS",
     "preprocessing/spread.FIRST_QUANTILE",
-    "regressors/dataset.FEWEST_BLOCKS",
+    "regressors/experiment.FEWEST_BLOCKS",
     "regressors/dataset.MOST_BLOCKS",
     "regressors/dataset.BLOCKS",
-    "regressors/dataset.SECANTS",
+    "regressors/experiment.SECANTS",
     "regressors/excitation.CELLS",
     "regressors/excitation.COURSES",
     "regressors/signature.COLUMNS",
@@ -170,7 +170,7 @@ EFFORT = (
 )
 
 BOUNDS = (
-    "regressors/dataset.FEWEST_BLOCKS",
+    "regressors/experiment.FEWEST_BLOCKS",
     "regressors/dataset.MOST_BLOCKS",
     "regressors/dataset.BLOCKS",
     "regressors/excitation.COURSES",

@@ -12,7 +12,7 @@ from scipy.ndimage import median_filter
 
 from ..preprocessing.noise import Noise, NoiseFloor
 from ..recordings.description import surface_text
-from ..regressors.dataset import Experiment
+from ..regressors.experiment import Experiment
 from ..simulation.simulate import simulate
 from .rig import Rig
 from .waveforms import CORNER, MENU, sample_times

@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
-from ..regressors.dataset import Dataset, Experiment, Scales, arranged
+from ..regressors.dataset import Dataset, Scales, arranged
 from ..regressors.excitation import excitation_of
+from ..regressors.experiment import Experiment
 from ..regressors.signature import (
     FACTOR,
     LAW,

@@ -1,0 +1,230 @@
+"""One recording in blocks of neighbouring samples, as many in a block as the motion allows.
+
+The misfit of the baseline tire is averaged, since it is smoother than the force; the motion is taken in the middle of
+each block. A block with a reversal within a sample counts only where the misfit is the same before and after the
+reversal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from radialtire import TireModel
+from radialtire.model import READING_NOISE
+
+from ..preprocessing.data_checks import are_rare, compared, spikes
+from ..preprocessing.gauge import destepped, staircase_step
+from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
+from ..preprocessing.noise import SHARE_OF_STEP, Noise, NoiseFloor, Scalar, noise_floor, noise_of
+from ..preprocessing.samples import Recorded
+from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+FEWEST_BLOCKS = 600
+"""Fewest blocks of a recording that has as many samples."""
+
+TURN = 0.5
+"""Largest phase [rad] of the motion within a block; its angular frequency is taken as acceleration over rate."""
+
+SECANTS = 40
+"""Number of parts of the deflection's span over which the stiffness is computed."""
+
+COUNTED = 0.5
+"""Least part of the blocks with a resolved motion, a majority; with fewer, all blocks count."""
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Blocks of `size` neighbouring samples, `count` of them; the samples that fill no whole block are left out."""
+
+    size: int
+    count: int
+
+    def of(self, values: NDArray[Scalar]) -> NDArray[Scalar]:
+        """Return the values (n,) of the samples as those of the blocks (count, size)."""
+        return values[: self.count * self.size].reshape(-1, self.size)
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Return the mean of the values over each block."""
+        return np.asarray(self.of(values).mean(axis=1))
+
+    def middle(self, values: FloatArray) -> FloatArray:
+        """Return the values in the middle of each block.
+
+        The middle of an even block lies between two samples; taking one of them would be a lag of half a sample.
+        """
+        blocks = self.of(values)
+        return np.asarray(0.5 * (blocks[:, (self.size - 1) // 2] + blocks[:, self.size // 2]))
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One recording in blocks; arrays (n,).
+
+    time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
+    baseline [N]: force of the baseline tire there; misfit [N]: recorded force minus that of the baseline, averaged over
+    the block; counts: whether a block is compared; noise [N]: standard deviation of the noise of the averaged misfit
+    least_noise [N]: noise that the steps of the force reading cause at least; resting [N]: the part of it that
+    neighbouring blocks have in common, where the force rests on a step for longer than a block
+    floor: noise floor of the samples; gauge [m]: noise of the deflection reading; size: samples of a block
+    interval [s]: between blocks; reading: noise of the samples [N]
+    measured: the recorded channels by their names, averaged over the blocks
+    left_out [N] (n,): distortion by averaging over blocks that was subtracted from the misfit, see `Samples.left_out`
+    """
+
+    name: str
+    time: FloatArray
+    deflection: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+    surface_radius: FloatArray
+    baseline: FloatArray
+    misfit: FloatArray
+    counts: BoolArray
+    noise: float
+    least_noise: float
+    resting: float
+    floor: NoiseFloor
+    gauge: float
+    size: int
+    interval: float
+    reading: Noise
+    measured: Mapping[str, FloatArray] = field(default_factory=dict)
+    left_out: FloatArray | float = 0.0
+
+    @property
+    def blocks(self) -> Blocks:
+        """The blocks of samples over which this experiment is averaged."""
+        return Blocks(self.size, self.time.size)
+
+    def with_noise(self, noise: Noise) -> Experiment:
+        """Return the experiment with another noise [N] of its averaged misfit."""
+        reading = self.reading
+        if noise.memory > 1:
+            # Averaging removed a part of the noise of the samples; the readings still have it.
+            removed = max(reading.level**2 - self.noise**2, 0.0)
+            reading = Noise(float(np.sqrt(noise.level**2 + removed)), noise.memory * self.size)
+        return replace(self, noise=max(noise.level, self.least_noise), reading=reading)
+
+
+def experiment_in_blocks(
+    recording: Recorded, tire: TireModel, sizes: tuple[int, int], reading: Noise | None
+) -> Experiment:
+    """Return a recording in blocks; sizes: least and most samples of a block; reading: noise of a sample, if known."""
+    interval = float(np.median(np.diff(recording.time)))
+    read, step = read_deflection(recording)
+    motion = motion_of(recording.time, read)
+    gauge = 0.0 if step > 0.0 else motion.noise
+    moved = smoothed_motion(recording, motion)
+    baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
+    misfit = recording.force - baseline
+    reading = reading or noise_of(misfit, interval, motion.deflection, motion.rate, motion.acceleration)
+    lone = spikes(misfit)
+    turns = followed_turns(misfit, motion.resolved, reading.level)
+    turns &= ~(lone & are_rare(lone[turns]))
+    resolved = motion.resolved & ~lone
+    blocks = _blocks(motion, resolved, sizes, interval, reading)
+    averaged = _averaged(moved, turns, blocks)
+    averaged_misfit = blocks.mean(misfit)
+    # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
+    of_blocks = noise_of(
+        averaged_misfit,
+        interval * blocks.size,
+        averaged.deflection,
+        averaged.rate,
+        averaged.acceleration,
+    )
+    noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
+    force_step = staircase_step(recording.force)
+    least_noise, resting = _rounding(recording.force, force_step, blocks.size)
+    return Experiment(
+        name=recording.name,
+        time=averaged.time,
+        deflection=averaged.deflection,
+        rate=averaged.rate,
+        acceleration=averaged.acceleration,
+        surface_radius=averaged.surface_radius,
+        baseline=simulate(tire, averaged, averaged),
+        misfit=averaged_misfit,
+        counts=_counted(recording, resolved | turns, blocks),
+        noise=max(noise, least_noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
+        least_noise=least_noise,
+        resting=resting,
+        floor=noise_floor(reading.level, _stiffness(motion.deflection, baseline), gauge, step, force_step),
+        gauge=gauge,
+        size=blocks.size,
+        interval=interval * blocks.size,
+        reading=reading,
+        measured=averaged.measured,
+    )
+
+
+def _averaged(moved: SmoothedMotion, turns: BoolArray, blocks: Blocks) -> SmoothedMotion:
+    """Return the motion in the middle of each block, and the means of its channels; turns: see `through_turns`."""
+    rate, acceleration = through_turns(moved.time, moved.rate, moved.acceleration, turns)
+    return SmoothedMotion(
+        blocks.middle(moved.time),
+        blocks.middle(moved.deflection),
+        blocks.of(moved.surface_radius)[:, blocks.size // 2],
+        blocks.middle(rate),
+        blocks.middle(acceleration),
+        {name: blocks.mean(values) for name, values in moved.measured.items()},
+    )
+
+
+def _counted(recording: Recorded, known: BoolArray, blocks: Blocks) -> BoolArray:
+    """Return which blocks count: those of samples whose motion is `known`, and that the gauge followed."""
+    counts: BoolArray = np.asarray(blocks.of(known).all(axis=1))
+    if counts.mean() < COUNTED:
+        counts = np.ones_like(counts)
+    (followed,) = compared([recording])
+    return np.asarray(counts & blocks.of(followed).all(axis=1))
+
+
+def read_deflection(recording: Recorded) -> tuple[FloatArray, float]:
+    """Return the deflection [m] without the steps of its gauge, and the step [m], 0 where there is none."""
+    step = staircase_step(recording.deflection)
+    read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
+    return read, step
+
+
+def _blocks(
+    motion: Motion, resolved: BoolArray, sizes: tuple[int, int], interval: float, noise: Noise
+) -> Blocks:
+    """Return blocks as long as the motion allows; sizes: least and most samples; interval [s]; noise: of a sample."""
+    quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
+    slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
+    longest = TURN * slow / max(quick * interval, 1e-300)
+    least, most = sizes
+    # Blocks within the memory of their noise would not be independent of each other.
+    most = max(min(most, resolved.size // FEWEST_BLOCKS), noise.memory)
+    size = int(max(1, least, min(most, longest)))
+    return Blocks(size, resolved.size // size)
+
+
+def _rounding(force: FloatArray, step: float, size: int) -> tuple[float, float]:
+    """Return the rounding error [N] of the average over a block of `size` samples of a force read in steps [N], and the
+    part of it that neighbouring blocks have in common.
+
+    A slow force rests on a step for many samples: averaging does not reduce their rounding error.
+    """
+    moving = float(np.mean(np.abs(np.diff(force)) > 0.5 * step))
+    error = step * SHARE_OF_STEP
+    shared = float(np.sqrt(max(1.0 - size * moving, 0.0)))
+    return error / float(np.sqrt(max(size * moving, 1.0))), error * shared
+
+
+def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
+    """Return the tangent [N/m] of the baseline force over the deflection, from its means on an even grid."""
+    low, span = float(deflection.min()), float(np.ptp(deflection))
+    which = np.minimum(((deflection - low) / max(span, 1e-300) * SECANTS).astype(int), SECANTS - 1)
+    count = np.bincount(which, minlength=SECANTS)
+    held = count > 0
+    x, f = (np.bincount(which, v, SECANTS)[held] / count[held] for v in (deflection, force))
+    grid = low + span * (np.arange(SECANTS) + 0.5) / SECANTS
+    return np.asarray(np.interp(deflection, grid, np.gradient(np.interp(grid, x, f), grid)))
