@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from tirelab.recordings.recording import Recording, write_recording
+from tirelab.recordings.recording import Recording
+from tirelab.recordings.writing import write_recording
 
 FloatArray = NDArray[np.float64]
 

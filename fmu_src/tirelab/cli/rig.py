@@ -66,7 +66,7 @@ def command(
     """
     from ..article.press import ForceNoise, record_all
     from ..computing.staging import staged
-    from ..recordings.recording import write_recording
+    from ..recordings.writing import write_recording
 
     model = TireModel() if tire is None else read_tire(tire)
     recordings = record_all(model, cycles=cycles, noise=ForceNoise(noise, correlation, (seed,)))

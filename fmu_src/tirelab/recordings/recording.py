@@ -9,10 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
-import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
-from .channels import UNIT_OF
 from .choices import Choices
 from .description import facts, html_table, one_line
 from .formats import Columns, RecordingError, Table, open_table
@@ -27,17 +25,13 @@ from .origin import Origin
 from .pieces import Piece, split_piece
 from .rows import OPTIONAL
 from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
-from .units import conversion
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-__all__ = ["Recording", "RecordingError", "Understood", "read_recording", "understand", "write_recording"]
+__all__ = ["Recording", "RecordingError", "Understood", "read_recording", "understand"]
 
 FloatArray = NDArray[np.float64]
-
-_HOUSE_UNITS = {**UNIT_OF, "deflection": "cm", "radius": "cm", "pressure": "kPa"}
-_SIGNIFICANT_DIGITS = 12
 
 
 class Gauged(TypedDict, total=False):
@@ -374,25 +368,6 @@ def _arrays(values: Mapping[str, FloatArray]) -> dict[str, Any]:
     return {"surface_radius" if name == "radius" else name: column for name, column in values.items()}
 
 
-def write_recording(recording: Recording, path: Path | str) -> None:
-    """Write a recording as CSV in the house form, `time [s],deflection [cm],radius [cm],force [N]`.
-
-    Pressure [kPa] (gauge), temperature [K] and speed [m/s] follow where there are any. Numbers have 12
-    significant digits: reading the file again gives each value within 1e-11 of itself.
-    Errors: RecordingError when the file cannot be written.
-    """
-    frame = {}
-    for name, values in recording.channels():
-        convert = conversion(_HOUSE_UNITS[name], UNIT_OF[name])
-        frame[f"{name} [{convert.unit}]"] = _rounded(values * convert.divide / convert.multiply)
-    try:
-        pl.DataFrame(frame).write_csv(Path(path))
-    except OSError as error:
-        raise RecordingError(
-            f"{path}: cannot be written ({error}); check the folder and its permissions"
-        ) from None
-
-
 def _refuse_too_large(path: Path, table: Table, columns: int) -> None:
     needed, available = table.bytes_needed(columns), memory_available()
     if needed > available:
@@ -401,13 +376,3 @@ def _refuse_too_large(path: Path, table: Table, columns: int) -> None:
             f"{path.name}: has {size} and needs about {readable_size(needed)} of memory, of which "
             f"{readable_size(available)} are free; cut it into shorter recordings, or keep every tenth row"
         )
-
-
-def _rounded(values: FloatArray) -> FloatArray:
-    """The values to 12 significant digits, so that 2.54 is not written as 2.5400000000000005."""
-    # Beyond these magnitudes the scale itself would overflow, and no measurement is that small.
-    sized = np.isfinite(values) & (np.abs(values) > 1e-250)
-    digits = np.zeros(values.shape)
-    np.log10(np.abs(values), out=digits, where=sized)
-    scale = 10.0 ** (_SIGNIFICANT_DIGITS - 1 - np.floor(digits))
-    return np.where(sized, np.round(values * scale) / scale, values)

@@ -11,8 +11,9 @@ from concealed.__main__ import trial_seed
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
-from ..recordings.recording import Recording, write_recording
+from ..recordings.recording import Recording
 from ..recordings.units import conversion, split_header
+from ..recordings.writing import write_recording
 from .commitment import trial_key
 from .folders import Folders
 

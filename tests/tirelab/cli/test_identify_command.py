@@ -12,7 +12,7 @@ from presses import triangle
 from radialtire import Hull1996, read_tire
 from tirelab.article import press as rig
 from tirelab.cli.identify import command
-from tirelab.recordings.recording import write_recording
+from tirelab.recordings.writing import write_recording
 
 
 def test_the_command_closes_the_loop_through_files(tmp_path: Path) -> None:

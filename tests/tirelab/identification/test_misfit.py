@@ -12,7 +12,8 @@ from rivals import looking_for
 from tirelab.cli import main
 from tirelab.identification.identify import identify
 from tirelab.identification.misfit import misfit_sentence
-from tirelab.recordings.recording import Recording, write_recording
+from tirelab.recordings.recording import Recording
+from tirelab.recordings.writing import write_recording
 
 T = np.arange(3000) / 50.0
 X = 0.022 * (1.0 - np.abs(2.0 * (T / 20.0 % 1.0) - 1.0))

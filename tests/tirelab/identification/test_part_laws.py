@@ -13,7 +13,8 @@ from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise, tire_of
 from tirelab.identification.table import law_table, with_uncertainty
-from tirelab.recordings.recording import Recording, write_recording
+from tirelab.recordings.recording import Recording
+from tirelab.recordings.writing import write_recording
 from tirelab.simulation.simulate import simulate
 
 X = np.linspace(0.0, 0.02, 600)

@@ -8,7 +8,8 @@ import pytest
 import tirelab.recordings.recording
 from house_form import HOUSE_FORM, edited, loading, refusal, write_rows
 from tirelab.errors import TirelabError
-from tirelab.recordings.recording import Recording, RecordingError, read_recording, write_recording
+from tirelab.recordings.recording import Recording, RecordingError, read_recording
+from tirelab.recordings.writing import write_recording
 
 
 class TestReading:
