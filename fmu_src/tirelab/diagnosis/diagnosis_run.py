@@ -217,8 +217,8 @@ def _delivered(
         corrected = deliver(folder, believed, verdict.tire, report)
         on_fitted, more = corrected.replayed(fitted, report), corrected.notes()
         on_kept, warnings = corrected.replayed(kept, report), []
-        write_corrected(folder, believed, on_fitted)
-        write_corrected(folder, believed, on_kept)
+        write_corrected(folder, on_fitted)
+        write_corrected(folder, on_kept)
         of_correction = {"corrected_fmu": CORRECTION, "correction": corrected.to_dict()}
     warnings += _without_time((*fitted, *kept))
     # The terminal has them among the notes.

@@ -255,7 +255,7 @@ NO_NAME = r'[<>:"/\\|?*\x00-\x1f]+'
 """What no file's name may hold on some system."""
 
 
-def write_corrected(folder: Path, believed: Believed, replayed: Replayed) -> None:
+def write_corrected(folder: Path, replayed: Replayed) -> None:
     """Write each recording with its recorded, simulated and corrected force into `folder`, as NAME.corrected.csv.
 
     What a name may not hold, as that of a part of a file does ("press@10s:20s"), is "_" there.

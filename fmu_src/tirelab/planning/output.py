@@ -81,9 +81,7 @@ def draw_plan(plan: RecordingPlan, path: Path) -> None:
 
 def _matrix(plan: RecordingPlan) -> tuple[FloatArray, list[str], list[str]]:
     truths = list(dict.fromkeys(a.question.truth for a in plan.answers))
-    pairs = [
-        (a.question.truth, _rival(a.question.truth, a.question.rival), a.probability) for a in plan.answers
-    ]
+    pairs = [(a.question.truth, _rival(a.question.rival), a.probability) for a in plan.answers]
     order = [*truths, *(rival for _, rival, _ in pairs)]
     rivals = list(dict.fromkeys(name for name in order if any(name == r for _, r, _ in pairs)))
     table = np.full((len(truths), len(rivals)), math.nan)
@@ -92,7 +90,7 @@ def _matrix(plan: RecordingPlan) -> tuple[FloatArray, list[str], list[str]]:
     return table, truths, rivals
 
 
-def _rival(truth: str, rival: frozenset[str]) -> str:
+def _rival(rival: frozenset[str]) -> str:
     """Return the name that stands for a rival; a refitted law stands beside every effect but is none of them."""
     effects = sorted(rival - {LAW}) if len(rival) > 1 else sorted(rival)
     return " + ".join(short_title(n) if len(effects) > 1 else n for n in effects) or "nothing"

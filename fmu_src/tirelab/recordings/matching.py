@@ -140,7 +140,7 @@ def _matched(
             matches["time"] = Match(time_axis)
             continue
         found[channel.name] = _found(headers, channel, assigned)
-    trials = _trials(found, columns)
+    trials = _trials(found)
     if trials > 1:
         found = _of_trial(origin, found, trials, trial)
     elif trial is not None and trial > _by_words(headers, columns):
@@ -218,7 +218,7 @@ def _in_fitting_units(headers: Sequence[Header], channel: Channel, found: list[i
     return [i for i in found if i in fitting or not units[i]] if fitting else found
 
 
-def _trials(found: Mapping[str, Sequence[int]], columns: Mapping[str, str]) -> int:
+def _trials(found: Mapping[str, Sequence[int]]) -> int:
     """Return how many tests stand side by side: as many deflections as forces, in turn, and one time or as many."""
     deflections, forces = found.get("deflection", ()), found.get("force", ())
     count = len(forces)

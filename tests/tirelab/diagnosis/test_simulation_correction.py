@@ -56,7 +56,7 @@ def test_a_name_from_outside_is_no_path(name: str, file: str, tmp_path: Path) ->
     r = Recording(name, values, values, np.full(4, np.inf), values, believed_force=values)
     inside = tmp_path / "in"
     inside.mkdir()
-    write_corrected(inside, Believed(TireModel(), 0.0, (r,), ()), Replayed((r,), (values,), (values,)))
+    write_corrected(inside, Replayed((r,), (values,), (values,)))
     assert [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.csv")] == [
         f"in/{file}.corrected.csv"
     ]

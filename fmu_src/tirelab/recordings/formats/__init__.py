@@ -103,13 +103,13 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
     suffix = path.suffix.lower()
     kind, read_as = next(((kind, end) for mark, kind, end in _SIGNATURES if start.startswith(mark)), ("", ""))
     if kind and suffix in TEXT_SUFFIXES:
-        raise RecordingError(f"{path.name} is no text table but {kind}; {_advice(path, read_as)}")
+        raise RecordingError(f"{path.name} is no text table but {kind}; {_advice(read_as)}")
     known = suffix in LOADERS
     if not known and read_as in LOADERS:
         suffix = read_as
     if suffix not in LOADERS:
         if kind or _CONTROL.search(start):
-            raise _unknown(path, f"is {kind}; {_advice(path, read_as)}" if kind else "")
+            raise _unknown(path, f"is {kind}; {_advice(read_as)}" if kind else "")
         suffix = ".txt"
     if skip_rows is not None and suffix not in TEXT_SUFFIXES:
         raise RecordingError(f"{path.name}: rows can be skipped in text files alone; leave out --skip-rows")
@@ -127,7 +127,7 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
         ) from None
 
 
-def _advice(path: Path, read_as: str) -> str:
+def _advice(read_as: str) -> str:
     if read_as in LOADERS:
         return f"rename it to end in {read_as}"
     return "export it as text" if read_as else "unpack it"

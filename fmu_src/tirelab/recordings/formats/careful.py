@@ -57,7 +57,7 @@ class RowReader:
         self.clocks = {want.index: Clock() for want in wanted if layout.headers[want.index].dated}
         self.cells = _Cells(path, layout)
         self.guarded = layout.counted and all(want.index for want in wanted)
-        self.text_rows = TextRows(path.name, layout.headers, layout.separator, layout.spaced)
+        self.text_rows = TextRows(path.name, layout.headers, layout.spaced)
 
     def read(self, source: Iterable[str], first_line: int) -> Rows:
         """The rows in some lines of the file; a blank cell is NaN, an empty line a row of NaN unless it is beside a row
@@ -125,7 +125,7 @@ class RowReader:
         label = row[0] if row and self.guarded else ""
         if 0 in self.layout.cell_units:
             label = without_unit(label, self.layout.cell_units[0])
-        if label.strip().lower() not in BLANK_WORDS and not is_value(label, self.layout.separator):
+        if label.strip().lower() not in BLANK_WORDS and not is_value(label):
             raise not_a_number(self.path.name, f"row {line}", self.layout.headers[0].text, label)
         cells: list[float | str] = []
         for index, header, flat in targets:
@@ -199,7 +199,7 @@ class RowReader:
                 cells = [cell for index, cell in enumerate(row) if index in indices]
                 if number < SAMPLE:
                     first += cells
-                style = style_of(cells, self.layout.separator)
+                style = style_of(cells)
                 if style.thousands:
                     return style if style.explains(first) else None
         return None

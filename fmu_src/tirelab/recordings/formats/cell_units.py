@@ -31,20 +31,20 @@ def units_in_cells(lines: Sequence[str], separator: str | None) -> tuple[str, Ma
             continue
         run: list[list[str]] = []
         for row in [*rows, []]:
-            if len(row) > 1 and _is_row(row, mark) and (not run or len(run[-1]) == len(row)):
+            if len(row) > 1 and _is_row(row) and (not run or len(run[-1]) == len(row)):
                 run.append(row)
                 continue
-            units = _common(run, mark)
+            units = _common(run)
             if units and len(run) >= CONFIRMED and (best is None or len(run) > best[0]):
                 best = len(run), mark, units
             run = []
     return None if best is None else best[1:]
 
 
-def column_unit(cells: Sequence[str], separator: str) -> str:
+def column_unit(cells: Sequence[str]) -> str:
     """Return the unit that nearly every number of a column has behind it, "" where there is none."""
     filled = [cell for cell in cells if cell.strip().lower() not in BLANK_WORDS]
-    matches = [_WITH_UNIT.fullmatch(cell) for cell in filled if not is_value(cell, separator)]
+    matches = [_WITH_UNIT.fullmatch(cell) for cell in filled if not is_value(cell)]
     units = Counter(match["unit"] for match in matches if match)
     unit, count = units.most_common(1)[0] if units else ("", 0)
     return unit if count > NEARLY * len(filled) and is_unit(unit) else ""
@@ -77,7 +77,7 @@ def lines_without_units(lines: Sequence[str], separator: str, units: Mapping[int
     changed = []
     for line in lines:
         row = _cells(line, separator)
-        if len(row) <= max(units) or not _is_row(row, separator) or is_comment(line):
+        if len(row) <= max(units) or not _is_row(row) or is_comment(line):
             changed.append(line)
             continue
         text = io.StringIO()
@@ -93,14 +93,12 @@ def _cells(line: str, separator: str) -> list[str]:
         return []
 
 
-def _is_row(row: Sequence[str], separator: str) -> bool:
+def _is_row(row: Sequence[str]) -> bool:
     filled = [cell for cell in row if cell.strip().lower() not in BLANK_WORDS]
-    return bool(filled) and all(_WITH_UNIT.fullmatch(cell) or is_value(cell, separator) for cell in filled)
+    return bool(filled) and all(_WITH_UNIT.fullmatch(cell) or is_value(cell) for cell in filled)
 
 
-def _common(rows: Sequence[Sequence[str]], separator: str) -> dict[int, str]:
+def _common(rows: Sequence[Sequence[str]]) -> dict[int, str]:
     """Return the unit of each column that nearly every number has; one without it is refused with its row then."""
-    columns = [
-        column_unit([row[index] for row in rows], separator) for index in range(len(rows[0]) if rows else 0)
-    ]
+    columns = [column_unit([row[index] for row in rows]) for index in range(len(rows[0]) if rows else 0)]
     return {index: unit for index, unit in enumerate(columns) if unit}

@@ -152,7 +152,7 @@ class ExcelTable:
                 )
                 try:
                     numbers = [self._number(_at(row, want.index % width), line, want) for want in wanted]
-                    if guarded and texts[0] and not is_value(texts[0], "\t"):
+                    if guarded and texts[0] and not is_value(texts[0]):
                         raise not_a_number(self.path.name, f"row {line}", sheet.headers[0].text, texts[0])
                 except RecordingError as fault:
                     text_rows.take(line, texts, fault)
@@ -335,10 +335,10 @@ def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     body = head[start + 1 + below :]
     style = None
     if 2 * sum(any(map(_is_text_number, row)) for row in body) > len(body):
-        style = style_of((cell for row in body for cell in row if isinstance(cell, str)), "\t")
+        style = style_of(cell for row in body for cell in row if isinstance(cell, str))
         marks = "commas" if style.decimal_comma else "points"
         notes = (*notes, f"numbers that are stored as text read with decimal {marks}")
-    counted = column_counted([[_text(cell) for cell in row] for row in body], "\t")
+    counted = column_counted([[_text(cell) for cell in row] for row in body])
     above = tuple("; ".join(filter(None, map(_text, row))) for row in head[:start] if _holds_any(row))
     return Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted, above)
 

@@ -89,7 +89,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         lines = lines_without_units(lines, declared, cell_units)
         notes = (*notes, taken_from_cells(cell_units.values()))
     if first >= len(lines):
-        raise RecordingError(_no_table(path, len(lines), skip_rows))
+        raise RecordingError(_no_table(path, skip_rows))
     place = find_table(lines, first, declared) if skip_rows is None else None
     start = first if place is None else place.line
     separator = declared or (place.separator if place else _separator(path, lines[start:]))
@@ -134,7 +134,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         separator,
         headers,
         start + before,
-        style_of((cell for row in (header, *body) for cell in row), separator),
+        style_of(cell for row in (header, *body) for cell in row),
         len(raw) / max(len(lines) - start, 1),
         header_lines == 1
         and not (cell_units or beside)
@@ -143,19 +143,19 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         start + 1,
         _provenance(lines[:start], separator, declared),
         spaced > 0,
-        column_counted(body, separator),
+        column_counted(body),
     )
 
 
-def column_counted(body: Sequence[Sequence[str]], separator: str) -> bool:
+def column_counted(body: Sequence[Sequence[str]]) -> bool:
     """Return whether the cells of the first column are numbers, times or blank, but for some rows about the table.
 
     Where it holds no number, texts beside rows full of numbers name the steps of a test: these rows are of the table.
     """
     rows = [row for row in body if sum(map(bool, map(str.strip, row))) > 1]
     filled = [row for row in rows if row[0].strip().lower() not in BLANK_WORDS]
-    texts = [row for row in filled if not is_value(row[0], separator)]
-    if texts and len(texts) == len(filled) and all(is_value(c, separator) for row in texts for c in row[1:]):
+    texts = [row for row in filled if not is_value(row[0])]
+    if texts and len(texts) == len(filled) and all(is_value(c) for row in texts for c in row[1:]):
         return False
     return bool(rows) and len(texts) <= max(BELOW_NAMES, 0.1 * len(rows))
 
@@ -172,7 +172,7 @@ def _refuse_serial_monitor(path: Path, lines: Sequence[str]) -> None:
     )
 
 
-def _no_table(path: Path, lines: int, skip_rows: int | None) -> str:
+def _no_table(path: Path, skip_rows: int | None) -> str:
     if skip_rows:
         return f"{path.name}: has no table below its first {skip_rows} rows; give a smaller --skip-rows"
     return f"{path.name}: holds no header and no numbers; record again, or export the file anew"
@@ -182,7 +182,7 @@ def _names(
     lines: Sequence[str], start: int, header: Sequence[str], separator: str
 ) -> tuple[Sequence[str], bool, tuple[str, ...]]:
     """Return the names of the columns, whether they stand in the row `start` itself, and a note where they do not."""
-    if not _is_numeric(header, separator):
+    if not _all_numeric(header):
         return header, True, ()
     names = _commented_names(lines[:start], separator)
     if len(names) == len(header):
@@ -271,8 +271,8 @@ def _rows_of_text(
             filled = [cell for cell in row if cell.strip().lower() not in BLANK_WORDS]
             if filled and is_comment(row[0]):
                 break
-            if any(is_value(cell, separator) for cell in filled):
-                return texts, len(filled) > 1 and all(is_value(cell, separator) for cell in filled)
+            if any(is_value(cell) for cell in filled):
+                return texts, len(filled) > 1 and all(is_value(cell) for cell in filled)
             if filled:
                 texts.append((line + reader.line_num, row))
     except csv.Error:
@@ -353,9 +353,9 @@ def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
     return next(csv.reader([text], delimiter=separator), [])
 
 
-def _is_numeric(cells: Sequence[str], separator: str) -> bool:
+def _all_numeric(cells: Sequence[str]) -> bool:
     values = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS]
-    return bool(values) and all(is_value(cell, separator) for cell in values)
+    return bool(values) and all(is_value(cell) for cell in values)
 
 
 def _header(cell: str, number: int) -> Header:

@@ -66,7 +66,7 @@ def maybe_grouped(separator: str) -> re.Pattern[str]:
     return re.compile(rf'{bare}|"\s*[+-]?{quoted}' if separator == "," else quoted, re.ASCII)
 
 
-def style_of(cells: Iterable[str], separator: str) -> NumberStyle:
+def style_of(cells: Iterable[str]) -> NumberStyle:
     """Return how numbers are written, from cells of which at least one leaves no doubt.
 
     `1.234,5` has a decimal comma and points between thousands, `1,234.5` the reverse; a lone `1,234` may be either,

@@ -27,7 +27,7 @@ def spaced_columns(lines: Sequence[str]) -> int:
     best = run = width = last = 0
     for line in lines[:SEARCHED]:
         cells = [] if is_comment(line) or ";" in line or TAB in line else line.split()
-        if len(cells) < 2 or not all(is_value(cell, TAB) for cell in cells):
+        if len(cells) < 2 or not all(is_value(cell) for cell in cells):
             run = 0 if line.strip() else run
             continue
         run = run + 1 if run and len(cells) == last else 1

@@ -95,12 +95,12 @@ def _nearly_as_wide(texts: Sequence[_Row], numbers: _Row) -> list[_Row]:
     return [texts[-1]] if fits and _named(names) > 1 else []
 
 
-def is_value(cell: str, separator: str) -> bool:
+def is_value(cell: str) -> bool:
     """Whether a cell holds a number, a time or the word for flat ground."""
     text = cell.strip().lower()
     if is_clock(text):
         return True
-    text = style_of([text], separator).ungrouped(text)
+    text = style_of([text]).ungrouped(text)
     try:
         float(text.replace(",", "."))
     except ValueError:
@@ -143,7 +143,7 @@ def _rows(lines: Sequence[str], separator: str) -> Iterator[_Row]:
     while line < len(lines):
         cells, taken = _row(lines, line, separator)
         if cells and any(cell.strip() for cell in cells) and not is_comment(cells[0]):
-            yield _Row(line, tuple(cells), _is_numeric(cells, separator))
+            yield _Row(line, tuple(cells), _mostly_numeric(cells))
         line += taken
 
 
@@ -160,10 +160,10 @@ def _row(lines: Sequence[str], line: int, separator: str) -> tuple[list[str], in
     return cells, reader.line_num
 
 
-def _is_numeric(cells: Sequence[str], separator: str) -> bool:
+def _mostly_numeric(cells: Sequence[str]) -> bool:
     """Whether half of the cells that hold something hold numbers, two at least; units behind numbers do not count."""
     filled = [cell for cell in cells if cell.strip().lower() not in BLANK_WORDS]
-    numbers = [is_value(cell, separator) for cell in filled]
+    numbers = [is_value(cell) for cell in filled]
     values = sum(numbers)
     if values < 2 or 2 * values >= len(filled):
         return values > 1

@@ -50,7 +50,7 @@ def headers_of_text(
         notes.append("units taken from sample 1, below the names")
     heads = [_head(column, above) for column in columns]
     for index, cells in enumerate(heads):
-        unit = column_unit([with_plain_minus(cell.strip()) for cell in cells], ";")
+        unit = column_unit([with_plain_minus(cell.strip()) for cell in cells])
         if unit:
             found[index] = replace(found[index], unit=unit, cell_unit=unit)
         elif cells and is_clock(cells[0]):
@@ -83,7 +83,7 @@ def numbers_of_text(texts: pl.Series, channel: str, cell_unit: str = "") -> Floa
             return Clock().seconds(texts)
         except ClockError as fault:
             raise TextFault(fault.index, "time") from None
-    style = style_of(head, ";")
+    style = style_of(head)
     if style.thousands:
         grouped = plain.str.contains(style.pattern).fill_null(False)
         plain = plain.zip_with(~grouped, plain.str.replace_all(style.thousands, "", literal=True))

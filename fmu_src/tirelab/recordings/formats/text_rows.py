@@ -39,12 +39,9 @@ def _mostly_digits(cell: str) -> bool:
 class TextRows:
     """Judges the rows of one file that cannot be read as numbers, in the order of the file."""
 
-    def __init__(
-        self, file: str, headers: Sequence[Header], separator: str = "\t", spaced: bool = False
-    ) -> None:
+    def __init__(self, file: str, headers: Sequence[Header], spaced: bool = False) -> None:
         self.file = file
         self.headers = headers
-        self.separator = separator
         self.spaced = spaced
         self.remarks: list[str] = []
         self.repeated: list[str] = []
@@ -72,11 +69,11 @@ class TextRows:
         if self._after_header and states_units(row):
             self._check_units(line, row)
             return
-        if not filled or is_value(filled[0], self.separator):
+        if not filled or is_value(filled[0]):
             raise fault
         if len(self._aside) >= MOST_ASIDE:
             raise self._aside[0].fault
-        values = [is_value(cell, self.separator) for cell in filled]
+        values = [is_value(cell) for cell in filled]
         if len(filled) == len(self.headers) > 1 and all(values[1:]) and _mostly_digits(filled[0]):
             raise fault
         numbers = any(values)

@@ -131,7 +131,7 @@ class TestNumbers:
         ],
     )
     def test_marks(self, cells: list[str], style: NumberStyle) -> None:
-        assert style_of(cells, ";") == style
+        assert style_of(cells) == style
 
     @pytest.mark.parametrize(
         ("decimal", "thousands", "separator"),
