@@ -5,78 +5,33 @@ same columns, as testing machines write one for each specimen, are tests side by
 """
 
 import datetime
-import io
-import re
 import shlex
-import threading
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
-from itertools import islice
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..units import FLAT_WORDS, measures, split_header
+from ..units import FLAT_WORDS, measures
 from ..vocabulary import any_channel
-from .cell_units import lines_without_units, row_without_units, taken_from_cells, units_in_cells, without_unit
-from .layout import below_names, column_counted
-from .libraries import load_library, reading_with
-from .number_style import NumberStyle, style_of, with_plain_minus
+from .cell_units import row_without_units, without_unit
+from .libraries import reading_with
+from .number_style import NumberStyle, with_plain_minus
+from .sheet import DATES, NUMBER, Sheet, cell_text, holds_any, tables_of
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, listed, not_a_number, quoted
-from .table_search import SEARCHED, find_table, is_value
+from .table_search import is_value
 from .text_rows import TextRows
+from .workbook import Version, opened
 
 MOST_ROWS = 1_048_576
 """The rows of a sheet (Excel's own limit)."""
-
-MOST_SHEETS = 200
-"""So many sheets of a workbook are looked at."""
-
-KEPT = 4
-"""Of so many workbooks the tables are remembered."""
-
-MOST_KEPT = 64 * 2**20
-"""A workbook of up to this size [B] is kept open for the next test in it."""
-
-OTHERS = (".xls", ".xlsb", ".ods")
-"""The workbooks that openpyxl cannot read, and calamine can."""
 
 _NEEDED = (
     ("deflection", "m", {"deflection", "displacement", "stroke", "travel", "compression"}),
     ("force", "N", {"force", "load"}),
 )
 """Of the two channels that are needed: the SI unit, and English words of their names."""
-
-_NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-
-_DATES = (datetime.datetime, datetime.timedelta, datetime.time)
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns.
-
-    style: of numbers that are stored as text, where most rows hold one; rows: how many were seen below the names;
-    counted: whether its first column holds no text; provenance: the rows above the names
-    """
-
-    title: str
-    header_row: int
-    first_row: int
-    headers: tuple[Header, ...]
-    notes: tuple[str, ...]
-    style: NumberStyle | None = None
-    rows: int = 0
-    counted: bool = False
-    provenance: tuple[str, ...] = ()
-
-    @property
-    def cell_units(self) -> Mapping[int, str]:
-        """The units of the columns in which every number has its unit behind it."""
-        return {index: header.cell_unit for index, header in enumerate(self.headers) if header.cell_unit}
 
 
 class ExcelTable:
@@ -91,7 +46,7 @@ class ExcelTable:
         self.path = path
         self.one = sheet
         with reading_with(path, "a workbook"):
-            found = _tables(_Version.of(path), sheet)
+            found = tables_of(Version.of(path), sheet)
         if not found:
             what = f", sheet {quoted(sheet)}" if sheet else ""
             raise RecordingError(
@@ -130,24 +85,18 @@ class ExcelTable:
             )
         sheet = self.sheets[min(chosen, default=0)]
         text_rows = TextRows(self.path.name, sheet.headers)
+        # Text in a first column of numbers that is not wanted is the label of a row of statistics.
         guarded = sheet.counted and all(want.index % width for want in wanted)
         columns = [array("d") for _ in wanted]
         lines = array("q")
         empty: list[int] = []
         with reading_with(self.path, "a workbook"):
-            for line, row in enumerate(_opened(_Version.of(self.path)).rows(sheet.title), 1):
-                if line > MOST_ROWS:
-                    raise RecordingError(
-                        f"{self.path.name}: has more than {MOST_ROWS} rows; export it as CSV"
-                    )
-                if line < sheet.first_row:
-                    continue
-                row = row[:width]
-                if not _holds_any(row):
+            for line, row in self._rows_below_names(sheet):
+                if not holds_any(row):
                     empty.append(line)
                     continue
                 texts = row_without_units(
-                    [_text(cell) for cell in (*row, *[None] * width)[:width]],
+                    [cell_text(cell) for cell in (*row, *[None] * width)[:width]],
                     sheet.cell_units,
                 )
                 try:
@@ -169,10 +118,22 @@ class ExcelTable:
         for want, seconds in zip(wanted, values, strict=True):
             if self.headers[want.index].dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
-        notes = [*sheet.notes]
-        if self.one or self.others or len(self.sheets) > 1:
-            notes.append(f"read from sheet {quoted(sheet.title)}{self._others_text()}")
-        return Columns(tuple(values), lambda i: f"row {lines[i]}", (*notes, *text_rows.notes()))
+        notes = (*sheet.notes, *self._which_sheet(sheet), *text_rows.notes())
+        return Columns(tuple(values), lambda i: f"row {lines[i]}", notes)
+
+    def _rows_below_names(self, sheet: Sheet) -> Iterator[tuple[int, Sequence[Any]]]:
+        """Return the number of each row below the names, and its cells in the columns of the table."""
+        for line, row in enumerate(opened(Version.of(self.path)).rows(sheet.title), 1):
+            if line > MOST_ROWS:
+                raise RecordingError(f"{self.path.name}: has more than {MOST_ROWS} rows; export it as CSV")
+            if line >= sheet.first_row:
+                yield line, row[: len(sheet.headers)]
+
+    def _which_sheet(self, sheet: Sheet) -> tuple[str, ...]:
+        """Return the note of the sheet that was read, where there is a choice."""
+        if not (self.one or self.others or len(self.sheets) > 1):
+            return ()
+        return (f"read from sheet {quoted(sheet.title)}{self._others_text()}",)
 
     def _others_text(self) -> str:
         """Return which sheets have other columns, and how one of them is read."""
@@ -187,8 +148,8 @@ class ExcelTable:
         if cell is None:
             return float("nan")
         if header.cell_unit:
-            cell = without_unit(_text(cell), header.cell_unit)
-        if isinstance(cell, _DATES) and want.channel == "time" and header.dated:
+            cell = without_unit(cell_text(cell), header.cell_unit)
+        if isinstance(cell, DATES) and want.channel == "time" and header.dated:
             return _seconds(cell)
         if isinstance(cell, (int, float)) and not isinstance(cell, bool) and not header.dated:
             return float(cell)
@@ -197,157 +158,22 @@ class ExcelTable:
             return float("nan")
         if want.channel == "radius" and word in FLAT_WORDS:
             return float("inf")
-        number = self._as_text(cell, self.sheet_of(want.index).style)
+        number = self._stored_as_text(cell, self.sheet_of(want.index).style)
         if number is not None:
             return number
         raise not_a_number(self.path.name, f"row {line}", header.text, cell)
 
     @staticmethod
-    def _as_text(cell: object, style: NumberStyle | None) -> float | None:
+    def _stored_as_text(cell: object, style: NumberStyle | None) -> float | None:
         """Return a number that is stored as text, written as others of its sheet are; None for any other cell."""
         if style is None or not isinstance(cell, str):
             return None
         text = style.ungrouped(with_plain_minus(cell.strip()))
         if style.decimal_comma:
             text = "" if "." in text else text.replace(",", ".")
-        if _NUMBER.fullmatch(text) is None:
+        if NUMBER.fullmatch(text) is None:
             return None
         return float(text)
-
-
-class _OfOpenpyxl:
-    """A workbook that openpyxl opened."""
-
-    def __init__(self, book: Any) -> None:
-        self.book = book
-        self.titles = [sheet.title for sheet in book.worksheets]
-
-    def rows(self, title: str) -> Iterator[Sequence[Any]]:
-        """The rows of a sheet from the first on."""
-        yield from self.book[title].iter_rows(values_only=True)
-
-
-class _OfCalamine:
-    """A workbook that calamine opened."""
-
-    def __init__(self, book: Any) -> None:
-        self.book = book
-        self.titles = list(book.sheet_names)
-
-    def rows(self, title: str) -> Iterator[Sequence[Any]]:
-        """The rows of a sheet from the first on."""
-        yield from self.book.get_sheet_by_name(title).to_python(skip_empty_area=False)
-
-
-@dataclass(frozen=True)
-class _Version:
-    """A file as it is now, for one thread: what was read of it holds until it is written again."""
-
-    path: Path
-    written: int
-    size: int
-    thread: int
-
-    @classmethod
-    def of(cls, path: Path) -> "_Version":
-        """Return the file's version of this moment."""
-        stat = path.stat()
-        return cls(path.absolute(), stat.st_mtime_ns, stat.st_size, threading.get_ident())
-
-
-def _opened(version: _Version) -> _OfOpenpyxl | _OfCalamine:
-    """Return a workbook, opened once for all the tests in it unless it is too large to be kept."""
-    return _kept(version) if version.size <= MOST_KEPT else _loaded(version.path)
-
-
-@lru_cache(maxsize=1)
-def _kept(version: _Version) -> _OfOpenpyxl | _OfCalamine:
-    return _loaded(version.path)
-
-
-def _loaded(path: Path) -> _OfOpenpyxl | _OfCalamine:
-    """Return a workbook that does not hold its file open."""
-    stream = io.BytesIO(path.read_bytes())
-    if path.suffix.lower() in OTHERS:
-        calamine = load_library(path, "python_calamine", "python-calamine")
-        return _OfCalamine(calamine.CalamineWorkbook.from_filelike(stream))
-    openpyxl = load_library(path, "openpyxl", "openpyxl")
-    return _OfOpenpyxl(openpyxl.load_workbook(stream, read_only=True, data_only=True))
-
-
-@lru_cache(maxsize=KEPT)
-def _tables(version: _Version, sheet: str) -> tuple[Sheet, ...]:
-    """Return the tables of the sheets of a workbook that hold anything, or of the one that is named."""
-    book = _opened(version)
-    titles = [_titled(version.path, book.titles, sheet)] if sheet else book.titles[:MOST_SHEETS]
-    heads = {title: [list(row) for row in islice(book.rows(title), SEARCHED)] for title in titles}
-    return tuple(_sheet(title, head) for title, head in heads.items() if any(map(_holds_any, head)))
-
-
-def _titled(path: Path, titles: Sequence[str], name: str) -> str:
-    """Return the title of the sheet that is named, whatever its case. Errors: RecordingError where there is none."""
-    for same in (
-        [title for title in titles if title.strip() == name],
-        [title for title in titles if title.strip().casefold() == name.casefold()],
-    ):
-        if same:
-            return same[0]
-    sheets = listed(list(map(quoted, titles)))
-    raise RecordingError(
-        f"{path.name}: has no sheet {quoted(name)}; its sheets are {sheets}, and a part of one is written 10s:20s "
-        "(time), 100:2000 (rows) or trial2"
-    )
-
-
-def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
-    """Return the table of a sheet that holds anything, from its first rows."""
-    width = max(len(_trimmed(row)) for row in head)
-    lines = ["\t".join(map(_text, [*row, *[None] * width][:width])) + "\n" for row in head]
-    first = next(i for i, row in enumerate(head) if _holds_any(row))
-    _, cell_units = units_in_cells(lines, "\t") or ("", {})
-    if cell_units:
-        lines = lines_without_units(lines, "\t", cell_units)
-        head = [_without_units(row, cell_units) for row in head]
-    place = find_table(lines, first, "\t")
-    start = first if place is None else place.line
-    names = [*head[start], *[None] * width][:width]
-    width = _named_width(names)
-    if width < len(names):
-        names, head = names[:width], [row[:width] for row in head]
-        lines = ["\t".join(line.rstrip("\n").split("\t")[:width]) + "\n" for line in lines]
-    if not any(isinstance(cell, str) and cell.strip() for cell in names):
-        return Sheet(title, 0, start + 1, (), ())
-    headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
-    headers, below, notes = below_names(lines, start + 1, headers, "\t")
-    values = next((row for row in head[start + 1 + below :] if _holds_any(row)), ())
-    dated = {n for n, cell in enumerate(values) if isinstance(cell, _DATES)}
-    headers = tuple(
-        Header(h.name, "s", h.text, dated=True) if n in dated else h for n, h in enumerate(headers)
-    )
-    if cell_units:
-        headers = tuple(
-            replace(h, unit=cell_units[n], cell_unit=cell_units[n]) if n in cell_units else h
-            for n, h in enumerate(headers)
-        )
-        notes = (*notes, taken_from_cells(cell_units.values()))
-    if start > first:
-        notes = (*notes, f"table found at row {start + 1}: the rows above it are kept as its provenance")
-    body = head[start + 1 + below :]
-    style = None
-    if 2 * sum(any(map(_is_text_number, row)) for row in body) > len(body):
-        style = style_of(cell for row in body for cell in row if isinstance(cell, str))
-        marks = "commas" if style.decimal_comma else "points"
-        notes = (*notes, f"numbers that are stored as text read with decimal {marks}")
-    counted = column_counted([[_text(cell) for cell in row] for row in body])
-    above = tuple("; ".join(filter(None, map(_text, row))) for row in head[:start] if _holds_any(row))
-    return Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted, above)
-
-
-def _named_width(names: Sequence[Any]) -> int:
-    """Return how many columns a row of names has: it ends before numbers, which are of a table beside it."""
-    texts = [n for n, cell in enumerate(names, 1) if isinstance(cell, str) and cell.strip()]
-    beside = texts and any(isinstance(cell, (int, float)) for cell in names[texts[-1] :])
-    return texts[-1] if beside else len(names)
 
 
 def _channels(headers: Sequence[Header]) -> int:
@@ -363,44 +189,8 @@ def _channels(headers: Sequence[Header]) -> int:
     return found
 
 
-def _without_units(row: Sequence[Any], units: Mapping[int, str]) -> list[Any]:
-    """Return a row with its texts without the units behind their numbers."""
-    bare = row_without_units([_text(cell) for cell in row], units)
-    return [text if isinstance(cell, str) else cell for cell, text in zip(row, bare, strict=True)]
-
-
-def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
-    filled = [n for n, cell in enumerate(row, 1) if _holds_any((cell,))]
-    return row[: filled[-1]] if filled else ()
-
-
-def _is_text_number(cell: object) -> bool:
-    return isinstance(cell, str) and _NUMBER.fullmatch(with_plain_minus(cell.strip())) is not None
-
-
 def _at(row: Sequence[Any], place: int) -> Any:
     return row[place] if place < len(row) else None
-
-
-def _text(cell: object) -> str:
-    """Return a cell as it would stand in a text with tabs between columns."""
-    if cell is None:
-        return ""
-    if isinstance(cell, datetime.datetime):
-        return cell.isoformat()
-    if isinstance(cell, datetime.timedelta):
-        return repr(cell.total_seconds())
-    return with_plain_minus(" ".join(str(cell).split()).replace('"', "'"))
-
-
-def _holds_any(row: Sequence[Any]) -> bool:
-    return any(cell is not None and str(cell).strip() for cell in row)
-
-
-def _header(cell: object, number: int) -> Header:
-    text = "" if cell is None else " ".join(str(cell).split())
-    name, unit = split_header(text)
-    return Header(name or f"#{number}", unit, text or f"#{number}")
 
 
 def _seconds(cell: object) -> float:

@@ -1,0 +1,77 @@
+"""A workbook opened, and kept open for the next test in it."""
+
+import io
+import threading
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from .libraries import load_library
+
+MOST_KEPT = 64 * 2**20
+"""A workbook of up to this size [B] is kept open for the next test in it."""
+
+OTHERS = (".xls", ".xlsb", ".ods")
+"""The workbooks that openpyxl cannot read, and calamine can."""
+
+
+class OpenpyxlBook:
+    """A workbook that openpyxl opened."""
+
+    def __init__(self, book: Any) -> None:
+        self.book = book
+        self.titles = [sheet.title for sheet in book.worksheets]
+
+    def rows(self, title: str) -> Iterator[Sequence[Any]]:
+        """The rows of a sheet from the first on."""
+        yield from self.book[title].iter_rows(values_only=True)
+
+
+class CalamineBook:
+    """A workbook that calamine opened."""
+
+    def __init__(self, book: Any) -> None:
+        self.book = book
+        self.titles = list(book.sheet_names)
+
+    def rows(self, title: str) -> Iterator[Sequence[Any]]:
+        """The rows of a sheet from the first on."""
+        yield from self.book.get_sheet_by_name(title).to_python(skip_empty_area=False)
+
+
+@dataclass(frozen=True)
+class Version:
+    """A file as it is now, for one thread: what was read of it holds until it is written again."""
+
+    path: Path
+    written: int
+    size: int
+    thread: int
+
+    @classmethod
+    def of(cls, path: Path) -> "Version":
+        """Return the file's version of this moment."""
+        stat = path.stat()
+        return cls(path.absolute(), stat.st_mtime_ns, stat.st_size, threading.get_ident())
+
+
+def opened(version: Version) -> OpenpyxlBook | CalamineBook:
+    """Return a workbook, opened once for all the tests in it unless it is too large to be kept."""
+    return _kept(version) if version.size <= MOST_KEPT else _loaded(version.path)
+
+
+@lru_cache(maxsize=1)
+def _kept(version: Version) -> OpenpyxlBook | CalamineBook:
+    return _loaded(version.path)
+
+
+def _loaded(path: Path) -> OpenpyxlBook | CalamineBook:
+    """Return a workbook that does not hold its file open."""
+    stream = io.BytesIO(path.read_bytes())
+    if path.suffix.lower() in OTHERS:
+        calamine = load_library(path, "python_calamine", "python-calamine")
+        return CalamineBook(calamine.CalamineWorkbook.from_filelike(stream))
+    openpyxl = load_library(path, "openpyxl", "openpyxl")
+    return OpenpyxlBook(openpyxl.load_workbook(stream, read_only=True, data_only=True))
