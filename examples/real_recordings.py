@@ -36,7 +36,8 @@ from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.verdict import Verdict
-from tirelab.identification.part_laws import LEAST_SPRING, fit_laws, tire_of
+from tirelab.identification.part_laws import fit_laws
+from tirelab.identification.part_tire import LEAST_SPRING, tire_of
 from tirelab.recordings.recording import Recording, read_recording
 from tirelab.simulation.simulate import simulate
 

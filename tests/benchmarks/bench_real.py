@@ -25,7 +25,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
 from indentations import indentation, power_law_fit, read_hysitron, recorded
 from real_recordings import of, piston_recording, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.identification.part_laws import fit_laws, tire_of
+from tirelab.identification.part_laws import fit_laws
+from tirelab.identification.part_tire import tire_of
 from tirelab.recordings.recording import Recording, read_recording
 from tirelab.simulation.simulate import simulate
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +29,23 @@ PART_LAWS = ("constant", "linear", "power", "power_preload", "linear_gap", "powe
 
 WIDTH_LEAST = 100
 """Columns that the tables need; a narrower terminal wraps them, a file has room."""
+
+
+@dataclass(frozen=True)
+class _Words:
+    """The recordings and how they are read, as words of the commands that are proposed."""
+
+    recordings: tuple[str, ...]
+    reading: tuple[str, ...]
+
+    def diagnose(self, tire: Path) -> str:
+        """Return the command that tells what a tire leaves out of the recordings."""
+        return shlex.join(["tirelab", "diagnose", *self.recordings, *self.reading, "--tire", str(tire)])
+
+    def identify(self, recordings: Sequence[str], part: str, out: Path) -> str:
+        """Return the command that identifies one law of a part; recordings: these or pieces of them."""
+        options = [*self.reading, "--part", part, "--out", str(out)]
+        return shlex.join(["tirelab", "identify", *recordings, *options])
 
 
 @click.command(
@@ -90,16 +109,15 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     for recording in read:
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
+    words = _Words(tuple(map(str, recordings)), tuple(reading.words()))
     if found is None:
-        given = [*map(str, recordings)], reading.words()
-        _part(output, console, dict(zip(files, read, strict=True)), (part, options["name"]), given)
+        _part(output, console, dict(zip(files, read, strict=True)), (part, options["name"]), words)
         return
     beside = out.parent / f"{out.stem}.identification.json"
     with staged(out.parent) as folder:
         write_tire(found.tire, folder / out.name)
         (folder / beside.name).write_text(found.to_json(), encoding="utf-8")
-    words = ["tirelab", "diagnose", *map(str, recordings), "--tire", str(out), *reading.words()]
-    misfit = misfit_sentence(found.rmse, found.reading_noise, shlex.join(words))
+    misfit = misfit_sentence(found.rmse, found.reading_noise, words.diagnose(out))
     if output.as_json:
         output.result((), found.to_json())
         if misfit:
@@ -112,24 +130,19 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
 
 
 def _part(
-    output: Output,
-    console: Console,
-    found: dict[Path, Recording],
-    chosen: tuple[str, str],
-    given: tuple[list[str], list[str]],
+    output: Output, console: Console, found: dict[Path, Recording], chosen: tuple[str, str], words: _Words
 ) -> None:
     """Print what the laws leave of recordings of a part; write the tire file of the law that is chosen.
 
-    chosen: the law, or "compare", and the tire's name; given: the recordings, and how they are read, as words of a
-    command
+    chosen: the law, or "compare", and the tire's name
     """
     part, name = chosen
     recordings = list(found.values())
     from ..computing.staging import staged
     from ..identification.misfit import misfit_sentence
-    from ..identification.part_laws import best_writable, fit_laws, reading_noise, tire_of, way_to_a_hold
+    from ..identification.part_laws import fit_laws, reading_noise
+    from ..identification.part_tire import best_writable, tire_of
     from ..identification.table import law_table
-    from ..recordings.formats.table import listed
 
     fits = fit_laws(recordings)
     tire = None if part == "compare" else output.out
@@ -140,18 +153,9 @@ def _part(
             write_tire(model, folder / tire.name)
     else:
         law = min(fits, key=lambda fit: fit.rmse)
-    command = shlex.join(["tirelab", "diagnose", *given[0], *given[1], "--tire", str(output.out)])
-    misfit = misfit_sentence(law.rmse, reading_noise(recordings), command)
-    ways = {path: None if "@" in path.name else way_to_a_hold(recording) for path, recording in found.items()}
-    if tire is not None and any(ways.values()):
-        pieces = [f"{path}@{way[0]:.4g}s:{way[1]:.4g}s" if way else str(path) for path, way in ways.items()]
-        identified = shlex.join(
-            ["tirelab", "identify", *pieces, "--part", part, "--out", str(tire), *given[1]]
-        )
-        misfit = (
-            f"nearly all of {listed([path.name for path, way in ways.items() if way])} is a hold, in which the force "
-            f"may relax, and this is its law, of no spring: identify the way there, `{identified}`, then `{command}`"
-        )
+    misfit = misfit_sentence(law.rmse, reading_noise(recordings), words.diagnose(output.out))
+    if tire is not None:
+        misfit = _advice_on_holds(found, part, tire, words) or misfit
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]
         output.result((), {"laws": laws, "tire": None if tire is None else str(tire)})
@@ -164,12 +168,26 @@ def _part(
             console.print(f"- {misfit}", markup=False, soft_wrap=True)
         console.print(f"tire: {tire}", soft_wrap=True)
     elif best := best_writable(fits, recordings):
-        command = shlex.join(
-            ["tirelab", "identify", *given[0], *given[1], "--part", best, "--out", str(output.out)]
-        )
+        command = words.identify(words.recordings, best, output.out)
         console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
         if misfit:
             console.print(f"- {misfit} then", markup=False, soft_wrap=True)
+
+
+def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:
+    """Return the advice to identify the law from the ramps before holds; "" where no recording is nearly all a hold."""
+    from ..identification.part_tire import ramp_before_hold
+    from ..recordings.formats.table import listed
+
+    ramps = {path: None if "@" in path.name else ramp_before_hold(r) for path, r in found.items()}
+    held = [path.name for path, ramp in ramps.items() if ramp]
+    if not held:
+        return ""
+    pieces = [f"{path}@{ramp[0]:.4g}s:{ramp[1]:.4g}s" if ramp else str(path) for path, ramp in ramps.items()]
+    return (
+        f"nearly all of {listed(held)} is a hold, in which the force may relax, and this is its law, of no spring: "
+        f"identify the way there, `{words.identify(pieces, part, tire)}`, then `{words.diagnose(tire)}`"
+    )
 
 
 def _bars(quiet: bool) -> Progress:

@@ -38,7 +38,7 @@ from ..fmu.foreign_replay import Progress, native_code, replay_foreign
 from ..fmu.replay import driven
 from ..fmu.system import SYSTEM, write_system
 from ..identification.identify import identify
-from ..identification.part_laws import LEAST_SPRING, holds_air
+from ..identification.part_tire import LEAST_SPRING, holds_air
 from ..identification.surfaces import CM_PER_M
 from ..preprocessing.noise import NEGLIGIBLE
 from ..recordings.recording import Recording

@@ -19,49 +19,26 @@ mf_tyre is the vertical force of MF-Tyre without speed and camber: H. Pacejka, "
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
 
 from ..errors import TirelabError
 from ..preprocessing.spread import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
-from ..recordings.zero import FARTHEST
 from .misfit import SAMPLES_LEAST, THIRD
-from .power_fit import EXPONENT_BOUNDS
 from .surfaces import CM_PER_M
 
 Array = NDArray[np.float64]
 
 SAMPLES_MOST = 20_000
-"""So many samples, evenly spaced, are fitted."""
+"""Most samples that are fitted, evenly spaced."""
 
 KNOTS = 6
-
-GAPS = ("linear_gap", "power_gap")
-"""Laws that a tire file holds as a power law whose deflection is shifted. The gap is a loss of contact, as a tire's in
-the air: a stop or a loose spring cannot pull through it, so the tire file is not one of a part held at both ends.
-"""
-
-IN_GAP = 0.1
-"""Share of the largest force that recordings may have inside the gap, where its law has none: friction and the zero."""
-
-TWO_SIDED = ("constant", "linear", "power", "power_preload")
-"""Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
-
-AT_REST, MOSTLY_HELD = 0.02, 0.9
-"""A recording that is within this part of its stroke of one deflection for more than this part of its samples is a
-hold."""
-
-LEAST_SPRING = 1e-3
-"""Least coefficient A [N/cm^B] that a tire file holds: a part without a spring, such as a damper, has this one."""
-
-SURE = 3.0
-"""Standard uncertainties by which a spring's constant must be below 0 to be no spring."""
+"""Knots of the piecewise law; as many samples lie between each two."""
 
 
 @dataclass(frozen=True)
@@ -119,49 +96,9 @@ def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
     return tuple(sorted(fits, key=lambda fit: fit.bic))
 
 
-def holds_air(recordings: Sequence[Recording]) -> bool:
-    """Return whether a part holds air: only where its pressure was recorded."""
-    return any(r.pressure is not None for r in recordings)
-
-
-def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireModel:
-    """Return a tire with a fitted law: a power law, and a deflection offset for its gap, or a two-sided part with its
-    preload.
-
-    Raises TirelabError where a tire file cannot hold the law, and where there is a force inside a law's gap.
-    """
-    if fit.name in TWO_SIDED:
-        return _described(_two_sided(fit, recordings), recordings, name)
-    if fit.name not in GAPS:
-        known = ", ".join((*TWO_SIDED, *GAPS))
-        raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
-    _refuse_pull(fit, recordings)
-    x0 = 1e-3 * fit.value("x0")
-    if abs(x0) > FARTHEST:
-        raise TirelabError(
-            f"the force begins at {1e3 * x0:.3g} mm, which is rather a gauge's zero than a gap; give what it reads "
-            "there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
-        )
-    exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
-    scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
-    law = PowerLaw(scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
-    effects = ((CATALOGUE["deflection_offset"], (-x0,)),)
-    return _described(TireModel(law=law, effects=effects), recordings, name)
-
-
-def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> str:
-    """Return the first of the laws that a tire file holds, "" where it holds none.
-
-    One whose spring is none is left to the constant.
-    """
-    for fit in fits:
-        try:
-            law = tire_of(fit, recordings, "").law
-        except TirelabError:
-            continue
-        if fit.name == "constant" or law != PowerLaw(LEAST_SPRING, 1.0):
-            return fit.name
-    return ""
+def constant_fit(recordings: Sequence[Recording]) -> LawFit:
+    """Return the constant force fitted to recordings of one part. Errors: as `fit_laws`."""
+    return _constant(_samples(recordings))
 
 
 def reading_noise(recordings: Sequence[Recording]) -> float:
@@ -172,97 +109,6 @@ def reading_noise(recordings: Sequence[Recording]) -> float:
     long = [r for r in recordings if len(r) >= SAMPLES_LEAST]
     squares = [len(r) * (robust_sigma(np.diff(r.force, 3)) / THIRD) ** 2 for r in long]
     return float(np.sqrt(sum(squares) / sum(len(r) for r in long))) if long else float("nan")
-
-
-def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
-    if fit.name == "constant":
-        return _without_spring(fit.value("F0"))
-    symbol, scale = ("k", 10.0) if fit.name == "linear" else ("A", 1.0)  # N/mm to N/cm
-    value, deviation = next((v, d) for s, v, d, _ in fit.constants if s == symbol)
-    if value + SURE * deviation < 0.0:
-        raise TirelabError(
-            f"the law {fit.name} has {symbol} = {value:.3g}, a force that falls as the deflection grows, which a tire "
-            f"file cannot hold; {_of_a_hold(recordings) or 'check the signs of force and deflection, or '}for a part "
-            "without a spring, such as a damper, give --part constant"
-        )
-    if scale * value <= LEAST_SPRING:
-        return _without_spring(_constant(_samples(recordings)).value("F0"))
-    exponent = 1.0 if fit.name == "linear" else fit.value("B")
-    least, most = EXPONENT_BOUNDS
-    if not least <= exponent <= most:
-        raise TirelabError(
-            f"the law {fit.name} has B = {exponent:.3g}, and a tire file holds {least:g} to {most:g}; "
-            f"{_of_a_hold(recordings)}for a part without a spring, such as a damper, give --part constant"
-        )
-    preload = 0.0 if fit.name == "power" else fit.value("F0")
-    return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
-
-
-def way_to_a_hold(recording: Recording) -> tuple[float, float] | None:
-    """Return the times [s] between which a recording goes to a deflection at which it then stays; None where it does
-    not stay.
-
-    In a hold the force relaxes and the deflection is one: a law that is fitted to it says nothing of a spring.
-    """
-    deflection = recording.deflection
-    near = np.abs(deflection - np.median(deflection)) < AT_REST * np.ptp(deflection)
-    begun = float(recording.time[int(np.argmax(near))])
-    held = recording.timed and float(np.mean(near)) > MOSTLY_HELD and begun > recording.time[0]
-    return (float(recording.time[0]), begun) if held else None
-
-
-def _of_a_hold(recordings: Sequence[Recording]) -> str:
-    """Return what to identify where the first recording that is nearly all a hold cannot be; "" where there is none."""
-    for recording in recordings:
-        way = way_to_a_hold(recording)
-        if way is not None:
-            name = recording.name if recording.source is None else recording.source.name
-            return (
-                f"nearly all of {name} is a hold, so identify the law from the way there, "
-                f"{name}@{way[0]:.4g}s:{way[1]:.4g}s, and diagnose the whole with it; "
-            )
-    return ""
-
-
-def _without_spring(preload: float) -> TireModel:
-    return TireModel(law=PowerLaw(LEAST_SPRING, 1.0), two_sided=True, preload=preload)
-
-
-def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:
-    """Refuse a law with a gap for recordings that have a force where it has none: a part that is held at both ends."""
-    x0 = 1e-3 * fit.value("x0")
-    loose = [r for r in recordings if np.any(r.deflection < x0)]
-    if not loose:
-        return
-    squares = [r.force[r.deflection < x0] ** 2 for r in loose]
-    left = float(np.sqrt(np.mean(np.concatenate(squares))))
-    if left > IN_GAP * max(float(np.abs(r.force).max()) for r in recordings):
-        raise TirelabError(
-            f"the law {fit.name} has no force below {1e3 * x0:.3g} mm, and the recordings have {left:.3g} N there "
-            f"(root mean square); choose one of {', '.join(TWO_SIDED)} for a part that pulls too"
-        )
-
-
-def _described(tire: TireModel, recordings: Sequence[Recording], name: str) -> TireModel:
-    """Return the tire with its name, its source and the range of the recordings.
-
-    A part holds no air unless its pressure was recorded.
-    """
-    recorded = ", ".join(dict.fromkeys(r.name for r in recordings))
-    flat = 1.0 / FLAT_RADIUS
-    curvature = 1.0 / float(recordings[0].surface_radius[0])
-    return replace(
-        tire,
-        tested_range=TestedRange(
-            curvature_min=curvature - flat,
-            curvature_max=curvature + flat,
-            deflection_max=max(float(r.deflection.max()) for r in recordings),
-            force_max=max(float(r.force.max()) for r in recordings),
-        ),
-        inflated=holds_air(recordings),
-        name=name or f"part identified from {recorded}",
-        source=f"identified by tirelab from the recordings {recorded}",
-    )
 
 
 def _samples(recordings: Sequence[Recording]) -> _Samples:

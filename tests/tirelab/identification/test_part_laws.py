@@ -11,7 +11,8 @@ from radialtire import PowerLaw, Recalibrated, TireModel, read_tire
 from rivals import looking_for, rivals
 from tirelab.cli import main
 from tirelab.errors import TirelabError
-from tirelab.identification.part_laws import fit_laws, reading_noise, tire_of
+from tirelab.identification.part_laws import fit_laws, reading_noise
+from tirelab.identification.part_tire import tire_of
 from tirelab.identification.table import law_table, with_uncertainty
 from tirelab.recordings.recording import Recording
 from tirelab.recordings.writing import write_recording
