@@ -27,18 +27,27 @@ from __future__ import annotations
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from indentations import indentation, power_law_fit, read_hysitron, recorded
 from numpy.typing import NDArray
 from radialtire import PowerLaw, TireModel
+from strokes import (
+    gain_per_bar,
+    half_loop,
+    piston_recordings,
+    preloaded,
+    signed,
+    slope_per_bar,
+    smooth_rate,
+)
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.verdict import Verdict
 from tirelab.identification.part_laws import fit_laws
-from tirelab.identification.part_tire import LEAST_SPRING, tire_of
-from tirelab.recordings.recording import Recording, read_recording
+from tirelab.identification.part_tire import tire_of
+from tirelab.recordings.recording import Recording
 from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
@@ -110,10 +119,11 @@ class Finding:
 
 
 def part(recording: Recording, samples: slice) -> Recording:
-    """Some samples of a recording on the flat."""
-    return recorded(
-        recording.name, recording.time[samples], recording.deflection[samples], recording.force[samples]
-    )
+    """Some samples of a recording with all its channels."""
+    r = recording
+    pressure = None if r.pressure is None else r.pressure[samples]
+    channels = (r.time, r.deflection, r.surface_radius, r.force)
+    return Recording(r.name, *(c[samples] for c in channels), pressure=pressure, timed=r.timed)
 
 
 def baseline_law(coefficient: float, exponent: float) -> TireModel:
@@ -215,27 +225,12 @@ def indenter(folder: Path) -> Finding:
     )
 
 
-def signed(path: Path, columns: dict[str, str], units: dict[str, str]) -> Recording:
-    """A recording whose deflection and force count as they are: of a part that pulls no sign can be told."""
-    kept = {name: column if name == "time" else f"+{column}" for name, column in columns.items()}
-    kept |= {name: column for name, column in columns.items() if name == "pressure"}
-    return read_recording(path, columns=kept, units=units, radius="flat")
-
-
-def of(recording: Recording, samples: slice) -> Recording:
-    """Some samples of a recording with all its channels."""
-    r = recording
-    pressure = None if r.pressure is None else r.pressure[samples]
-    channels = (r.time, r.deflection, r.surface_radius, r.force)
-    return Recording(r.name, *(c[samples] for c in channels), pressure=pressure, timed=r.timed)
-
-
 def damper(folder: Path, name: str) -> Finding:
     """The first half of the strokes fitted, the second half not; the baseline is a spring with a preload."""
     columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
     own = signed(folder / f"{name}.mat", columns, {"time": "s", "deflection": "mm", "force": "N"})
     half = len(own) // 2
-    fitted = of(own, slice(0, half))
+    fitted = part(own, slice(0, half))
     line = next(fit for fit in fit_laws([fitted]) if fit.name == "linear")
     tire = tire_of(line, [fitted], name)
     verdict = diagnose([fitted], tire)
@@ -258,26 +253,6 @@ def damper(folder: Path, name: str) -> Finding:
     )
 
 
-BARS = (1, 3, 5, 7)
-
-
-def piston_recordings(folder: Path) -> dict[int, Recording]:
-    """The recordings of the piston by their pressure [bar]."""
-    return {bar: piston_recording(folder / f"O-ring_{bar}bar.csv") for bar in BARS}
-
-
-def piston_recording(path: Path) -> Recording:
-    """The recording of a piston, whatever its seal."""
-    columns = {"time": "#1", "deflection": "#5", "pressure": "#6", "force": "#7"}
-    units = {"time": "ms", "deflection": "mm", "pressure": "bar", "force": "N"}
-    return signed(path, columns, units)
-
-
-def preloaded(force: float) -> TireModel:
-    """A part without a spring that presses with a constant force [N]."""
-    return TireModel(PowerLaw(LEAST_SPRING, 1.0), tested_range=None, two_sided=True, preload=force)
-
-
 def piston(folder: Path, bar: int) -> Finding:
     """The first half of the strokes is fitted; the baseline is the mean force, without friction."""
     files = piston_recordings(folder)
@@ -285,7 +260,7 @@ def piston(folder: Path, bar: int) -> Finding:
     half = len(own) // 2
     mean = float(own.force[:half].mean())
     tire = preloaded(mean)
-    verdict = diagnose([of(own, slice(0, half))], tire)
+    verdict = diagnose([part(own, slice(0, half))], tire)
     before, after = errors(verdict, tire, own, slice(half, None))
     alone, together = slope_per_bar([own]), slope_per_bar(list(files.values()))
     loops = {p: half_loop(f, 0.15) for p, f in files.items()}
@@ -321,7 +296,7 @@ def pistons(folder: Path) -> Finding:
     """All four pressures together, of each the first half; the baseline is their mean force, whatever the pressure."""
     files = list(piston_recordings(folder).values())
     fitted, kept = zip(
-        *((of(f, slice(0, len(f) // 2)), of(f, slice(len(f) // 2, None))) for f in files), strict=True
+        *((part(f, slice(0, len(f) // 2)), part(f, slice(len(f) // 2, None))) for f in files), strict=True
     )
     mean = float(np.mean([f.force.mean() for f in fitted]))
     tire = preloaded(mean)
@@ -341,38 +316,6 @@ def pistons(folder: Path) -> Finding:
         ),
         (Refusal(("pressure_leak", "gas_compression"), "the measured pressure does not show it"),),
     )
-
-
-def gain_per_bar(part: TireModel, recording: Recording) -> float:
-    """By how much the simulated mean force [N] grows from 2 to 6 bar on the motion of a recording, for each bar."""
-    means = [
-        float(simulate(part, replace(recording, pressure=np.full(len(recording), 1e5 * bar))).mean())
-        for bar in (2.0, 6.0)
-    ]
-    return (means[1] - means[0]) / 4.0
-
-
-def slope_per_bar(files: list[Recording]) -> float:
-    """Slope of force over pressure [N/bar] by least squares; with several files over their means."""
-    pairs = [(f.pressure, f.force) for f in files if f.pressure is not None]
-    if len(pairs) > 1:
-        pairs = [(np.array([p.mean() for p, _ in pairs]), np.array([f.mean() for _, f in pairs]))]
-    pressure, force = pairs[0]
-    return float(np.polyfit(pressure / 1e5, force, 1)[0])
-
-
-def half_loop(file: Recording, margin: float) -> float:
-    """Half the difference of the mean forces of the two ways [N], off the ends by a `margin` (part of the stroke)."""
-    rate = smooth_rate(file)
-    x = (file.deflection - file.deflection.min()) / np.ptp(file.deflection)
-    inside = (x > margin) & (x < 1.0 - margin)
-    ways = [file.force[inside & (sign * rate > 3e-3)].mean() for sign in (1.0, -1.0)]
-    return float(abs(ways[0] - ways[1]) / 2.0)
-
-
-def smooth_rate(file: Recording) -> FloatArray:
-    """Rate of the deflection [m/s], smoothed over 15 samples of a coarsely digitised gauge."""
-    return np.convolve(np.gradient(file.deflection, file.time), np.ones(15) / 15.0, "same")
 
 
 def findings(folder: Path) -> Iterator[Finding]:

@@ -23,7 +23,8 @@ from radialtire import PowerLaw, TireModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
 from indentations import indentation, power_law_fit, read_hysitron, recorded
-from real_recordings import of, piston_recording, preloaded, signed
+from real_recordings import part
+from strokes import piston_recording, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.identification.part_laws import fit_laws
 from tirelab.identification.part_tire import tire_of
@@ -56,7 +57,7 @@ def damper(folder: Path, name: str, reference: str) -> Real:
     columns = {"time": "Tout", "deflection": "dist", "force": "forc"}
     own = signed(folder / f"{name}.mat", columns, {"time": "s", "deflection": "mm", "force": "N"})
     half = len(own) // 2
-    fitted = of(own, slice(0, half))
+    fitted = part(own, slice(0, half))
     line = next(fit for fit in fit_laws([fitted]) if fit.name == "linear")
     return Real(name, own, slice(0, half), slice(half, None), tire_of(line, [fitted], name), 1.0, reference)
 
@@ -201,9 +202,9 @@ def main() -> None:
         if given.only not in real.name:
             continue
         w, s = real.whole, real.fitted
-        part = of(w, s)
+        fitted = part(w, s)
         began = time.process_time()
-        found = diagnose([part], real.tire)
+        found = diagnose([fitted], real.tire)
         seconds = time.process_time() - began
         rows = [
             (rms((w.force - simulate(tire, w))[k]) / real.unit)

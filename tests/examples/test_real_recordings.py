@@ -172,6 +172,6 @@ def test_no_pressure_alone_can_show_it(real_recordings: ModuleType, data: Path, 
     own = real_recordings.piston_recordings(data / FOLDERS[3])[bar]
     tire = real_recordings.preloaded(float(own.force.mean()))
     for samples in (slice(0, None), slice(0, len(own) // 2), slice(len(own) // 2, None)):
-        found = excitation_of(dataset_of([real_recordings.of(own, samples)], tire))
+        found = excitation_of(dataset_of([real_recordings.part(own, samples)], tire))
         assert "was the same" in found.hidden("inflation_pressure")
         assert "gas_compression" in found.channels.impossible
