@@ -22,7 +22,7 @@ from ..parameter import Parameter
 from ..prior import Prior
 
 NEAR = 1e-9
-"""Relative length of a step after which the next one, its square, is below rounding."""
+"""Relative length of a step of Newton's method after which the next one, its square, is below rounding."""
 
 HALVINGS_MOST = 60
 """Iterations at most: halving alone would shrink a bracket to rounding in so many."""
@@ -46,11 +46,13 @@ def stiffening(x: float, k: float, h: float, A: float, B: float, plain: float) -
             low = d
         slope = 1.0 + 2.0 * h * d + k * B * force / (x - d)
         following = d - miss / slope
+        near = abs(following - d) <= NEAR * (x - d)
         if following <= low or following >= high:
             following = 0.5 * (low + high)
-        if abs(following - d) <= 1e-15 * x:
-            break
+            near = abs(following - d) <= 1e-15 * x
         d = following
+        if near:
+            break
     return x - d
 
 
