@@ -22,7 +22,6 @@ from .acceptance import (
     HeldOut,
     Validate,
     accept,
-    noise_free_residual,
     rmse,
     validation_on,
     without_unlikely,
@@ -87,10 +86,9 @@ def diagnose(
     report("validating the correction on held-out data")
     accepted = _accepted(candidates, validation_on(fitted, kept, data.samples, data.before))
     explanation, validation = accepted.explanation, accepted.validation
-    residuals = _residuals(explanation, data)
-    fit = _errors(data, residuals, explanation, validation)
-    remainder = _remainder(data, residuals, explanation, fit.noise)
-    unexplained = _unexplained(data, residuals, remainder, levels)
+    fit = _errors(data, explanation, validation)
+    remainder = _remainder(data, explanation, fit.noise)
+    unexplained = _unexplained(data, explanation.left, remainder, levels)
     models = residual_models(unexplained, data.samples, explanation.residuals, validation)
 
     grounds = grounds_of_verdict(explanation, validation, remainder, unexplained=bool(unexplained))
@@ -183,24 +181,7 @@ def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldO
     return replace(effect, probability=probability("effect", grounds), grounds=grounds)
 
 
-def _residuals(explanation: Explanation, data: _Data) -> list[FloatArray]:
-    """Return the residuals [N] of the written tire in each recording.
-
-    The tire is given the deflection as read or the noise-free one, whichever leaves less: a residual that follows the
-    noise of the reading is not physics.
-    """
-    tire, found = explanation.model.tire, []
-    for recording, e, as_read in zip(
-        data.recordings, data.samples.experiments, explanation.residuals, strict=True
-    ):
-        noise_free = noise_free_residual(tire, recording, e.motion)
-        found.append(min(as_read, noise_free, key=lambda residual: float(residual @ residual)))
-    return found
-
-
-def _errors(
-    data: _Data, residuals: Sequence[FloatArray], explanation: Explanation, validation: HeldOut
-) -> FitErrors:
+def _errors(data: _Data, explanation: Explanation, validation: HeldOut) -> FitErrors:
     """Return the noise floor and the errors [N] before and after the correction, over the compared samples."""
     sizes = np.array([b.size for b in data.before], dtype=float)
     levels = np.array([f.level for f in explanation.floors])
@@ -212,7 +193,7 @@ def _errors(
         validation.after,
         validation.by,
         validation.noise_free,
-        rmse(_compared(residuals, explanation)),
+        explanation.error_left,
     )
 
 
@@ -220,11 +201,9 @@ def _compared(residuals: Sequence[FloatArray], explanation: Explanation) -> list
     return [r[seen] for r, seen in zip(residuals, explanation.compared, strict=True)]
 
 
-def _remainder(
-    data: _Data, residuals: Sequence[FloatArray], explanation: Explanation, noise: float
-) -> Remainder:
+def _remainder(data: _Data, explanation: Explanation, noise: float) -> Remainder:
     """Return the remainder of the written tire, without a dependence on times that were not measured."""
-    before, after = _compared(data.before, explanation), _compared(residuals, explanation)
+    before, after = (_compared(residuals, explanation) for residuals in (data.before, explanation.left))
     remainder = of_the_written_tire(explanation.remainder, before, after, noise)
     if data.timed:
         return remainder

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,9 @@ from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor, noise_of
 from ..preprocessing.samples import Recorded
 from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
-from ..regressors.excitation import AS_GOOD, Excitation, excitation_of, of_deflection
+from ..regressors.excitation import Excitation, excitation_of, of_deflection
 from ..regressors.signature import (
+    AS_GOOD,
     LAW,
     Signature,
     candidates,
@@ -54,7 +55,17 @@ from .findings import (
     remainder_of,
 )
 from .fit import Fit, fitted
-from .ranking import BEGUN, Ranking, corrected, held_out_of, ranked, with_parts
+from .ranking import (
+    BEGUN,
+    FittedSets,
+    HeldOutRecordings,
+    Ranking,
+    begun,
+    corrected,
+    held_out_of,
+    ranked,
+    with_parts,
+)
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -83,6 +94,7 @@ class Explanation:
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     within_law: names of effects that the refitted law of the set follows entirely
     model: the set, fitted; residuals [N]: of the set in each recording; floors: noise floor of each recording
+    noise_free [N]: residuals of the set where it is given the noise-free deflection
     compared: which samples of each recording are compared (see `data_checks.compared`)
     """
 
@@ -95,6 +107,7 @@ class Explanation:
     remainder: Remainder
     model: FittedModel
     residuals: tuple[FloatArray, ...]
+    noise_free: tuple[FloatArray, ...]
     floors: tuple[NoiseFloor, ...]
     compared: tuple[BoolArray, ...]
     excitation: Excitation
@@ -109,9 +122,25 @@ class Explanation:
 
     @property
     def error(self) -> float:
-        """Root mean square residual [N] of the set over all compared samples."""
-        left = [r[c] for r, c in zip(self.residuals, self.compared, strict=True)]
-        return float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
+        """RMS residual [N] of the set over all compared samples."""
+        return self._rms(self.residuals)
+
+    @cached_property
+    def left(self) -> tuple[FloatArray, ...]:
+        """Residuals [N] of the set given the deflection as read or the noise-free one, whichever leaves less of a
+        recording: a residual that follows the noise of the reading is not physics.
+        """
+        pairs = zip(self.residuals, self.noise_free, strict=True)
+        return tuple(min(pair, key=lambda residual: float(residual @ residual)) for pair in pairs)
+
+    @cached_property
+    def error_left(self) -> float:
+        """RMS [N] of `left` over all compared samples."""
+        return self._rms(self.left)
+
+    def _rms(self, residuals: Sequence[FloatArray]) -> float:
+        own = [r[c] for r, c in zip(residuals, self.compared, strict=True)]
+        return float(np.sqrt(np.mean(np.concatenate(own) ** 2)))
 
     def was_fitted(self, names: Sequence[str]) -> bool:
         """Whether a set was fitted."""
@@ -201,7 +230,7 @@ def explain_misfit(
     allowed = [name for name in candidates() if name in catalogue and name not in impossible]
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
-    rank = partial(ranked, alike=partial(_alike, excitation), held_out=held_out_of(held_out, baseline))
+    held = held_out_of(held_out, baseline)
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
     hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
@@ -209,15 +238,30 @@ def explain_misfit(
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
-    ranking, signatures = _ranking(dataset, raw, quiet, rank)
     samples = samples_of(recordings, baseline)
-    left_out = samples.left_out(quiet, ranking.best.tire)
-    if size_of(quiet.stacked(left_out)) > LIKE_NOISE:
-        # What blocks leave out of the best set passed for noise, or for something that another effect is.
-        quiet = _with_saturated_noise(dataset.corrected(left_out), raw)
-        ranking, signatures = _ranking(dataset, raw, quiet, rank)
+    alike = partial(_alike, excitation)
+
+    def less_distorted(tire: TireModel) -> Dataset | None:
+        """Return the dataset without what its blocks leave out of a tire, if that is more than was subtracted: it
+        passed for noise, or for something that another effect is.
+        """
+        left_out = samples.left_out(quiet, tire)
+        more = [new - e.left_out for new, e in zip(left_out, quiet.experiments, strict=True)]
+        if size_of(quiet.stacked(more)) <= LIKE_NOISE:
+            return None
+        return _with_saturated_noise(dataset.corrected(left_out), raw)
+
+    sets = _begun(dataset, raw, quiet, held)
+    if (changed := less_distorted(sets.best_fit.tire)) is not None:
+        quiet = changed
+        sets = _begun(dataset, raw, quiet, held)
+    ranking = ranked(sets, alike)
+    if (changed := less_distorted(ranking.best.tire)) is not None:
+        quiet = changed
+        sets = _begun(dataset, raw, quiet, held)
+        ranking = ranked(sets, alike)
     ranking = corrected(ranking, samples)
-    like_law = _like_law(signatures, quiet.misfit, ranking.best.variance)
+    like_law = _like_law(tuple(sets.signatures.values()), quiet.misfit, ranking.best.variance)
     return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 
 
@@ -236,15 +280,15 @@ def _signatures(
     return dataset, raw, quiet
 
 
-def _ranking(
-    dataset: Dataset, raw: Sequence[Signature], quiet: Dataset, rank: Callable[..., Ranking]
-) -> tuple[Ranking, tuple[Signature, ...]]:
-    """Return the ranked sets and the signatures in units of the noise."""
+def _begun(
+    dataset: Dataset, raw: Sequence[Signature], quiet: Dataset, held_out: HeldOutRecordings | None
+) -> FittedSets:
+    """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
     signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
     rough = discrepancy_of(quiet.misfit, usual_form_error())
-    equations = normal_equations(signatures, quiet.misfit)
+    equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
     starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
-    return rank(quiet, signatures, rough, starts), signatures
+    return begun(quiet, signatures, rough, starts, held_out)
 
 
 def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
@@ -296,6 +340,7 @@ def _explanation(
         remainder_of(chosen),
         FittedModel(chosen),
         _residuals(chosen.tire, samples.recordings),
+        samples.residuals(chosen.tire),
         tuple(e.floor for e in chosen.problem.dataset.experiments),
         compared(samples.recordings),
         excitation,
@@ -317,7 +362,7 @@ def _like_law(signatures: Sequence[Signature], misfit: FloatArray, variance: flo
     vectors, values, _ = np.linalg.svd(law.columns, full_matrices=False)
     vectors = vectors[:, values > 1e-9 * values[0]]
     found = []
-    for other in (s for s in signatures if s.name != LAW):
+    for other in (s for s in signatures if s.name != LAW and not s.silent):
         curve = other.mean * size_of(misfit) / max(size_of(other.mean), 1e-300)
         beyond = curve - vectors @ (vectors.T @ curve)
         if 0.5 * float(beyond @ beyond) / variance < PRIOR_ODDS:

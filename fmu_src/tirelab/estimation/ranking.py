@@ -19,7 +19,7 @@ from scipy.linalg import solve_triangular
 
 from ..preprocessing.samples import Recorded
 from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
-from ..regressors.signature import LAW, Signature, strengthened
+from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn_beside, strengthened
 from ..selection.search import (
     LOST,
     MOST_CANDIDATES,
@@ -219,8 +219,8 @@ class Ranking:
 
 
 @dataclass
-class _State:
-    """The fits so far; made and changed by `ranked` only."""
+class FittedSets:
+    """The sets that were fitted so far; made by `begun`, continued by `ranked`."""
 
     dataset: Dataset
     signatures: Mapping[str, Signature]
@@ -228,10 +228,16 @@ class _State:
     discrepancy: Discrepancy
     held_out: HeldOutRecordings | None
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
+    others: dict[frozenset[str], Mapping[str, Signature]] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
     usual: float = 0.0
     assessed_at: int = 0
+
+    @property
+    def best_fit(self) -> Fit:
+        """The likeliest so far."""
+        return self.fits[self.best()]
 
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one; return whether that has changed.
@@ -265,12 +271,31 @@ class _State:
             self.fits[key] = found
         return found
 
+    def beside(self, base: Fit) -> Mapping[str, Signature]:
+        """Return the signatures of all other candidates beside a fitted set: anew of those that act on its signal."""
+        names = frozenset(base.names)
+        if names not in self.others:
+            to = Beside(base.tire, self.dataset.misfit - base.residual, base.residual)
+            self.others[names] = {
+                n: drawn_beside(s, self.dataset, to) if names and acts_on_signal(n) else s
+                for n, s in self.signatures.items()
+                if n not in names
+            }
+        return self.others[names]
+
     def add(self, base: Fit, name: str) -> None:
         """Fit a set with one more candidate, from the optimum of the smaller one."""
         if self.times[frozenset({*base.names, name})] >= REPEATS:
             return
-        found = additions(self.signatures[name], base.residual, base.slopes, base.variance, self.dataset)
-        self.fit([{**base.values, name: a.values} for a in found], base.variance)
+        self.fit([{**base.values, name: a.values} for a in self._additions(base, name)], base.variance)
+
+    def addition(self, base: Fit, name: str) -> Addition:
+        """Return the drawn response of a candidate that follows the residual of a fitted set best."""
+        return self._additions(base, name)[0]
+
+    def _additions(self, base: Fit, name: str) -> list[Addition]:
+        signature = self.beside(base)[name]
+        return additions(signature, base.residual, base.slopes, base.variance, self.dataset)
 
     def remove(self, base: Fit, name: str) -> None:
         """Fit a set without one of its candidates, from the optimum of the larger one."""
@@ -279,48 +304,60 @@ class _State:
         self.fit([{n: v for n, v in base.values.items() if n != name}], base.variance)
 
 
-def ranked(
+def begun(
     dataset: Dataset,
     signatures: Sequence[Signature],
     discrepancy: Discrepancy,
     starts: Sequence[tuple[float, Mapping[str, FloatArray]]],
-    alike: Callable[[str], Sequence[str]],
     held_out: HeldOutRecordings | None = None,
-) -> Ranking:
-    """Return the sets that can still win, fitted and ranked.
+) -> FittedSets:
+    """Return the empty set and the sets to begin with, fitted.
 
-    starts: sets to begin with, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
-    alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
-    them in its place
+    starts: the latter, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
     held_out: recordings that take part in the posterior
     """
     noise = discrepancy_of(dataset.misfit, 0.0)
-    state = _State(dataset, {s.name: s for s in signatures}, noise, discrepancy, held_out)
-    state.fit([{}], discrepancy.highest)
+    sets = FittedSets(dataset, {s.name: s for s in signatures}, noise, discrepancy, held_out)
+    sets.fit([{}], discrepancy.highest)
     nothing_fitted = np.zeros((dataset.misfit.size, 0))
     for variance, parts in starts:
         if parts and len(parts) <= MOST_EFFECTS:
-            state.fit([_start_values(parts, nothing_fitted, 1.0, state)], variance)
-    state.update_discrepancy()
+            first = {
+                name: additions(sets.signatures[name], part, nothing_fitted, 1.0, dataset)[0].values
+                for name, part in parts.items()
+            }
+            sets.fit([first], variance)
+    sets.update_discrepancy()
+    return sets
+
+
+def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
+    """Return the sets that can still win, fitted and ranked, from those to begin with.
+
+    alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
+    them in its place
+    """
     followed: set[frozenset[str]] = set()
-    while state.count < MOST_FITS:
-        best = state.posterior(state.best())
-        open_sets = [n for n in state.fits if n not in followed and state.posterior(n) > best - REACH]
+    while sets.count < MOST_FITS:
+        best = sets.posterior(sets.best())
+        open_sets = [n for n in sets.fits if n not in followed and sets.posterior(n) > best - REACH]
         if not open_sets:
             break
-        names = max(open_sets, key=state.posterior)
+        names = max(open_sets, key=sets.posterior)
         followed.add(names)
-        _fit_neighbours(state, names)
-        if state.update_discrepancy():
+        _fit_neighbours(sets, names)
+        if sets.update_discrepancy():
             followed.clear()
-    _refit_below_subsets(state)
-    best_names = state.best()
+    _refit_below_subsets(sets)
+    best_names = sets.best()
     for name in sorted(best_names - {LAW}):
-        less = state.fits.get(best_names - {name})
+        less = sets.fits.get(best_names - {name})
         for other in alike(name):
-            if less is not None and other in state.signatures and other not in best_names:
-                state.add(less, other)
-    return Ranking(_in_order(state.fits.values()), state.discrepancy, held_out)
+            if less is None or other not in sets.signatures or other in best_names:
+                continue
+            if not sets.beside(less)[other].silent:
+                sets.add(less, other)
+    return Ranking(_in_order(sets.fits.values()), sets.discrepancy, sets.held_out)
 
 
 def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:
@@ -375,51 +412,41 @@ def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
     return fit
 
 
-def _fit_neighbours(state: _State, names: frozenset[str]) -> None:
+def _fit_neighbours(sets: FittedSets, names: frozenset[str]) -> None:
     """Fit the neighbours of a set: with one candidate removed, one added, one exchanged for another."""
-    base = state.fits[names]
+    base = sets.fits[names]
     for name in sorted(names):
-        state.remove(base, name)
+        sets.remove(base, name)
     if len(names) < MOST_EFFECTS:
-        _add_promising(state, names, names, PROMISING)
+        _add_promising(sets, names, names, PROMISING)
     for name in sorted(names):
-        _add_promising(state, names - {name}, names, SWAPPED)
+        _add_promising(sets, names - {name}, names, SWAPPED)
 
 
-def _add_promising(state: _State, names: frozenset[str], beside: frozenset[str], most: int) -> None:
+def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[str], most: int) -> None:
     """Add the candidates that may bring a fitted set near the best one, or that promise as much as the one they
     replace.
 
     beside: the set whose neighbours are fitted; its own effects are not added
     """
-    base, best = state.fits[names], state.posterior(state.best())
-    others = [n for n in state.signatures if n not in beside]
-    replaced = [n for n in state.signatures if n in beside - names]
-    gains = predicted_gains([state.signatures[n] for n in (*others, *replaced)], base, state.discrepancy)
+    base, best = sets.fits[names], sets.posterior(sets.best())
+    signatures = sets.beside(base)
+    others = [n for n, s in signatures.items() if n not in beside and not s.silent]
+    replaced = [n for n in signatures if n in beside - names]
+    gains = predicted_gains([signatures[n] for n in (*others, *replaced)], base, sets.discrepancy)
     # A fit may gain far more than was predicted, so a prediction is compared with that of the effect it would replace.
-    wanted = min([best + PRIOR_ODDS - state.posterior(names), *gains[len(others) :]])
+    wanted = min([best + PRIOR_ODDS - sets.posterior(names), *gains[len(others) :]])
     for gain, name in sorted(zip(gains, others, strict=False), reverse=True)[:most]:
-        if gain > wanted - GAIN_ERROR and state.count < MOST_FITS:
-            state.add(base, name)
+        if gain > wanted - GAIN_ERROR and sets.count < MOST_FITS:
+            sets.add(base, name)
 
 
-def _start_values(
-    parts: Mapping[str, FloatArray], slopes: FloatArray, variance: float, state: _State
-) -> dict[str, tuple[float, ...]]:
-    """Return values to start from, for the part of the misfit that each candidate is to explain."""
-    return {
-        name: additions(state.signatures[name], part, slopes, variance, state.dataset)[0].values
-        for name, part in parts.items()
-    }
-
-
-def _refit_below_subsets(state: _State) -> None:
+def _refit_below_subsets(sets: FittedSets) -> None:
     """Fit every set again that leaves more than one of its subsets, from the optimum of the subset."""
-    for names in sorted(state.fits, key=len):
-        for subset in list(state.fits):
-            fit = state.fits[subset]
-            leaves_less = subset < names and fit.power < 0.999 * state.fits[names].power
-            if leaves_less and state.posterior(names) >= state.posterior(state.best()) - REACH:
-                missing = dict.fromkeys(sorted(names - subset), fit.residual)
-                added = _start_values(missing, fit.slopes, fit.variance, state)
-                state.fit([{**fit.values, **added}], fit.variance)
+    for names in sorted(sets.fits, key=len):
+        for subset in list(sets.fits):
+            fit = sets.fits[subset]
+            leaves_less = subset < names and fit.power < 0.999 * sets.fits[names].power
+            if leaves_less and sets.posterior(names) >= sets.posterior(sets.best()) - REACH:
+                added = {n: sets.addition(fit, n).values for n in sorted(names - subset)}
+                sets.fit([{**fit.values, **added}], fit.variance)

@@ -192,6 +192,11 @@ class Samples:
             tuple(self.baselines[i] for i in kept),
         )
 
+    def residuals(self, tire: TireModel) -> tuple[FloatArray, ...]:
+        """Return the residuals [N] of a tire where it is given the noise-free deflection."""
+        pairs = zip(self.recordings, self.motions, strict=True)
+        return tuple(r.force - simulate(tire, m, m) for r, m in pairs)
+
     def left_out(self, dataset: Dataset, tire: TireModel) -> tuple[FloatArray, ...]:
         """Return the distortion [N] of `tire`'s response by averaging: its mean over the samples of a block minus the
         response computed from block to block, one array (n,) for each experiment.

@@ -24,7 +24,7 @@ from ..preprocessing.motion import branches
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
-from .signature import DRAWS, drawn, size_of
+from .signature import ALIKE, DRAWS, drawn, size_of
 
 FloatArray = NDArray[np.float64]
 
@@ -32,12 +32,6 @@ Cells = NDArray[np.int_]
 
 COURSES, COURSE_DRAWS = 2, DRAWS // 2
 """Number of courses of an effect, and of the draws from which they are computed: those of the plain form only."""
-
-AS_GOOD = 0.75
-"""Part of what an effect explains that another one must explain to take its place."""
-
-ALIKE = float(np.sqrt(AS_GOOD))
-"""Cosine between the leading courses of two effects above which either may take the place of the other."""
 
 
 @dataclass(frozen=True)

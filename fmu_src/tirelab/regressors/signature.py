@@ -3,7 +3,8 @@
 Parameters are drawn from their priors, the baseline tire with the effect is simulated along the motion, and the force
 of the baseline is subtracted. The responses, scaled to one size, are taken as draws from a normal law. The signature
 holds their mean and the leading vectors of a singular value decomposition, each scaled by its standard deviation. The
-priors are multiples of the recording's force and travel.
+priors are multiples of the recording's force and travel. What acts on the signal of others, as a lag does, is drawn
+again beside each fitted set: a lag beside a damper is not a lag of the tire alone.
 
 The elastic law has a signature of its own: how a refitted law, or one of another shape, would differ.
 
@@ -22,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, Effect, Parameter
+from radialtire import CATALOGUE, Effect, Parameter, TireModel
 from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
@@ -122,6 +123,11 @@ def candidates() -> tuple[str, ...]:
     return tuple(name for name in CATALOGUE if name != SHAPE)
 
 
+def acts_on_signal(name: str) -> bool:
+    """Whether an effect changes what other effects are given or give, so that its response depends on them."""
+    return name != LAW and CATALOGUE[name].place not in ("parallel", "inertia")
+
+
 def form_error(name: str) -> float:
     """Return the declared form error of an effect or of the law."""
     return CATALOGUE[SHAPE if name == LAW else name].form_error
@@ -169,6 +175,15 @@ COLUMNS = 8
 ENERGY = 0.999
 """Number of draws of an effect, most columns of its signature, and the part of the variance that these must hold."""
 
+PROBED = 4
+"""Number of draws that show whether a response is another one beside another tire."""
+
+AS_GOOD = 0.75
+"""Part of what an effect explains that another one must explain to take its place."""
+
+ALIKE = float(np.sqrt(AS_GOOD))
+"""Cosine between two responses above which either may take the place of the other."""
+
 FEWEST = 6
 """Fewest draws with a response; with fewer, the recordings cannot show the effect."""
 
@@ -195,6 +210,11 @@ class Signature:
     curves: FloatArray
     values: tuple[tuple[float, ...], ...]
     sizes: FloatArray
+
+    @property
+    def silent(self) -> bool:
+        """Whether the effect had no response on these recordings."""
+        return self.name != LAW and not self.sizes.size
 
     @property
     def columns(self) -> FloatArray:
@@ -245,7 +265,9 @@ def _mostly_below_form_error(
     def usually(signature: Signature) -> float:
         return float(np.median([apart(f) / max(size_of(f), 1e-300) for f in signature.curves * noise]))
 
-    return frozenset(s.name for s in signatures if s.name != LAW and usually(s) < form_error(s.name))
+    return frozenset(
+        s.name for s in signatures if s.name != LAW and not s.silent and usually(s) < form_error(s.name)
+    )
 
 
 def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> float:
@@ -264,18 +286,36 @@ def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> 
     return float(np.sqrt(beside / freedom)) if freedom else np.inf
 
 
-def signature_of(name: str, dataset: Dataset) -> Signature | None:
-    """Return the signature of an effect, or None where it has no response on these recordings."""
+@dataclass(frozen=True)
+class Beside:
+    """The tire to which an effect is added, its response (m,) and its residual (m,), in units of the noise."""
+
+    tire: TireModel
+    response: FloatArray
+    residual: FloatArray
+
+
+def baseline_of(dataset: Dataset) -> Beside:
+    """Return the baseline tire, of which the residual is the misfit."""
+    return Beside(dataset.tire, np.zeros_like(dataset.misfit), dataset.misfit)
+
+
+def signature_of(name: str, dataset: Dataset, beside: Beside | None = None) -> Signature:
+    """Return the signature of an effect, silent where it has no response on these recordings.
+
+    beside: the tire to which it is added, by default the baseline; it must not have the effect
+    """
+    beside = baseline_of(dataset) if beside is None else beside
     effect = CATALOGUE[name]
     sets, shares = drawn(effect, dataset.scales, DRAWS)
     force = dataset.load
-    misfit = size_of(dataset.misfit)
+    misfit = size_of(beside.residual)
     curves: list[FloatArray] = []
     values: list[tuple[float, ...]] = []
     sizes: list[float] = []
     for chosen, share in zip(sets, shares, strict=True):
         wanted = min(misfit * LEAST_DRAWN ** (1.0 - share), 0.3 * force)
-        curve, scaled = _sized(effect, chosen, dataset, wanted)
+        curve, scaled = _sized(effect, chosen, dataset, beside, wanted)
         size = size_of(curve) if curve.size else 0.0
         if not SILENT * force < size < 30.0 * max(misfit, wanted):
             continue
@@ -284,16 +324,35 @@ def signature_of(name: str, dataset: Dataset) -> Signature | None:
         values.append(tuple(scaled))
         sizes.append(sign * size)
     if len(curves) < FEWEST:
-        return None
+        count = dataset.misfit.size
+        nothing = np.zeros((count, 0))
+        return Signature(name, np.zeros(count), nothing, effect.signed, nothing.T, (), np.zeros(0))
     whole = np.array(curves)
     mean = whole.mean(axis=0)
     return Signature(name, mean, _basis(whole - mean), effect.signed, whole, tuple(values), np.array(sizes))
 
 
 def signatures_of(names: Sequence[str], dataset: Dataset) -> tuple[Signature, ...]:
-    """Return the signatures of the effects that have a response on these recordings."""
-    found = (signature_of(name, dataset) for name in names)
-    return tuple(s for s in found if s is not None)
+    """Return the signatures of the effects."""
+    return tuple(signature_of(name, dataset) for name in names)
+
+
+def drawn_beside(signature: Signature, dataset: Dataset, beside: Beside) -> Signature:
+    """Return the signature of the same effect beside another tire: the same one where most draws have the same response
+    (ALIKE).
+    """
+    effect = CATALOGUE[signature.name]
+    if signature.silent:
+        return signature_of(signature.name, dataset, beside)
+    cosines = []
+    for k in range(0, len(signature.values), DRAWS // PROBED):
+        tire = arranged(beside.tire, [(effect.name, signature.values[k])])
+        curve = dataset.response(tire) - beside.response
+        size = size_of(curve) * np.sign(signature.sizes[k])
+        cosines.append(np.mean(curve * signature.curves[k]) / size if size else 0.0)
+    if not np.median(cosines) < ALIKE:
+        return signature
+    return signature_of(signature.name, dataset, beside)
 
 
 def _strength(effect: Effect, values: Sequence[float]) -> float:
@@ -301,13 +360,13 @@ def _strength(effect: Effect, values: Sequence[float]) -> float:
 
 
 def _sized(
-    effect: Effect, values: list[float], dataset: Dataset, wanted: float
+    effect: Effect, values: list[float], dataset: Dataset, beside: Beside, wanted: float
 ) -> tuple[FloatArray, list[float]]:
     """Return a response near the wanted size, and its parameters; an empty response where it is not finite."""
     adjustable = any(p.role == "strength" for p in effect.parameters)
     curve = np.zeros(0)
     for _ in range(3):
-        curve = dataset.response(arranged(dataset.tire, [(effect.name, tuple(values))]))
+        curve = dataset.response(arranged(beside.tire, [(effect.name, tuple(values))])) - beside.response
         size = size_of(curve)
         if not np.isfinite(size):
             return np.zeros(0), values

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -226,11 +226,12 @@ def damper(damping: float) -> TireModel:
 
 @dataclass(frozen=True)
 class Made:
-    """An explanation by hand: names and what the written tire leaves [N]."""
+    """An explanation by hand: names and what the written tire leaves [N], as read and with noise-free deflection."""
 
     names: tuple[str, ...]
     left: float
     tire: TireModel
+    noise_free: float = field(default=0.0, kw_only=True)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -254,6 +255,10 @@ class Made:
     @property
     def error(self) -> float:
         return self.left
+
+    @property
+    def error_left(self) -> float:
+        return self.noise_free
 
 
 @dataclass(frozen=True)
@@ -308,6 +313,17 @@ def test_a_set_that_leaves_clearly_more_than_a_smaller_one_is_refused(
     chosen, _ = delivered(
         made("inertia force_lag", left, 500.0), made("viscous_damping", 5.0, 500.0), made("", 15.0)
     )
+    assert chosen.names == names
+
+
+@pytest.mark.parametrize(("with_damping", "names"), [(4.1, ("inertia",)), (3.9, ("viscous_damping",))])
+def test_the_noise_of_the_reading_refutes_no_effect_that_magnifies_it(
+    with_damping: float, names: tuple[str, ...]
+) -> None:
+    """Inertia leaves 6 N where it is given the acceleration of a noisy reading, and 4 N without that noise."""
+    inertia = replace(made("inertia", 6.0, 500.0), noise_free=4.0)
+    damping = replace(made("viscous_damping", 5.0, 500.0), noise_free=with_damping)
+    chosen, _ = delivered(inertia, damping, made("", 15.0))
     assert chosen.names == names
 
 

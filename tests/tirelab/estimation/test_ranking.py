@@ -15,6 +15,7 @@ from tirelab.estimation.ranking import (
     TEMPERATURE,
     Ranking,
     additions,
+    begun,
     corrected,
     held_out_of,
     predicted_gains,
@@ -47,7 +48,7 @@ def noise(dataset: Dataset) -> Discrepancy:
 
 @pytest.fixture(scope="module")
 def ranking(dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy) -> Ranking:
-    return ranked(dataset, signatures, noise, [], lambda name: ())
+    return ranked(begun(dataset, signatures, noise, []), lambda name: ())
 
 
 def by_hand(*sets: tuple[str, float]) -> Ranking:
@@ -127,7 +128,7 @@ def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
     dataset = dataset_of([read], TireModel())
     assert dataset.experiments[0].size >= 2
     noise = discrepancy_of(dataset.misfit, 0.0)
-    in_blocks = ranked(dataset, signatures_of(("force_lag",), dataset), noise, [], lambda name: ())
+    in_blocks = ranked(begun(dataset, signatures_of(("force_lag",), dataset), noise, []), lambda name: ())
     of_samples = corrected(in_blocks, samples_of([read], TireModel()))
     assert of_samples.best.names == ("force_lag",)
     total = sum(of_samples.best.values["force_lag"][:2])
