@@ -12,7 +12,7 @@ from scipy.ndimage import median_filter
 
 from ..preprocessing.noise import Noise, NoiseFloor
 from ..recordings.description import surface_text
-from ..regressors.experiment import Experiment
+from ..regressors.experiment import Blocks, Experiment
 from ..simulation.simulate import simulate
 from .rig import Rig
 from .waveforms import CORNER, MENU, sample_times
@@ -129,7 +129,7 @@ def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:
         resting=0.0,
         floor=NoiseFloor(noise, 0.0, 0.0, 0.0),
         gauge=0.0,
-        size=stride,
+        blocks=Blocks(stride, np.arange(moved.time.size)),
         interval=step * stride,
         reading=Noise(noise, 1),
         measured=moved.measured,

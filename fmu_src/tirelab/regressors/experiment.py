@@ -3,6 +3,10 @@
 The misfit of the baseline tire is averaged, since it is smoother than the force; the motion is taken in the middle of
 each block. A block with a reversal within a sample counts only where the misfit is the same before and after the
 reversal.
+
+A long rest tells little more with every second sample: what decays in it does so over the logarithm of time. Where the
+blocks would be too long for the motion before it, the blocks of a rest are kept at times in geometric progression, and
+all blocks become shorter.
 """
 
 from __future__ import annotations
@@ -18,12 +22,13 @@ from radialtire.model import READING_NOISE
 from ..preprocessing.data_checks import are_rare, compared, spikes
 from ..preprocessing.gauge import destepped, staircase_step
 from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
-from ..preprocessing.noise import SHARE_OF_STEP, Noise, NoiseFloor, Scalar, noise_floor, noise_of
+from ..preprocessing.noise import SHARE_OF_STEP, STILL, Noise, NoiseFloor, Scalar, noise_floor, noise_of
 from ..preprocessing.samples import Recorded
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IndexArray = NDArray[np.intp]
 
 FEWEST_BLOCKS = 600
 """Fewest blocks of a recording that has as many samples."""
@@ -34,20 +39,29 @@ TURN = 0.5
 SECANTS = 40
 """Number of parts of the deflection's span over which the stiffness is computed."""
 
+RESOLVED = 50
+"""Least number of blocks in the deflection's span at the largest rate, if it takes thinning the rests: ten between two
+heights of a refitted law."""
+
+PROGRESSION = 0.02
+"""Time between two kept blocks of a rest, over the time since it began: 35 blocks while that doubles."""
+
 COUNTED = 0.5
 """Least part of the blocks with a resolved motion, a majority; with fewer, all blocks count."""
 
 
 @dataclass(frozen=True)
 class Blocks:
-    """Blocks of `size` neighbouring samples, `count` of them; the samples that fill no whole block are left out."""
+    """Blocks of `size` neighbouring samples, those numbered `kept` (n,) of them; the samples that fill no whole block
+    are left out.
+    """
 
     size: int
-    count: int
+    kept: IndexArray
 
     def of(self, values: NDArray[Scalar]) -> NDArray[Scalar]:
-        """Return the values (n,) of the samples as those of the blocks (count, size)."""
-        return values[: self.count * self.size].reshape(-1, self.size)
+        """Return the values of the samples as those of the blocks (n, size)."""
+        return values[: values.size // self.size * self.size].reshape(-1, self.size)[self.kept]
 
     def mean(self, values: FloatArray) -> FloatArray:
         """Return the mean of the values over each block."""
@@ -71,7 +85,7 @@ class Experiment:
     the block; counts: whether a block is compared; noise [N]: standard deviation of the noise of the averaged misfit
     least_noise [N]: noise that the steps of the force reading cause at least; resting [N]: the part of it that
     neighbouring blocks have in common, where the force rests on a step for longer than a block
-    floor: noise floor of the samples; gauge [m]: noise of the deflection reading; size: samples of a block
+    floor: noise floor of the samples; gauge [m]: noise of the deflection reading; blocks: of the samples
     interval [s]: between blocks; reading: noise of the samples [N]
     measured: the recorded channels by their names, averaged over the blocks
     left_out [N] (n,): distortion by averaging over blocks that was subtracted from the misfit, see `Samples.left_out`
@@ -91,16 +105,16 @@ class Experiment:
     resting: float
     floor: NoiseFloor
     gauge: float
-    size: int
+    blocks: Blocks
     interval: float
     reading: Noise
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
     left_out: FloatArray | float = 0.0
 
     @property
-    def blocks(self) -> Blocks:
-        """The blocks of samples over which this experiment is averaged."""
-        return Blocks(self.size, self.time.size)
+    def size(self) -> int:
+        """Number of samples in a block."""
+        return self.blocks.size
 
     def with_noise(self, noise: Noise) -> Experiment:
         """Return the experiment with another noise [N] of its averaged misfit."""
@@ -128,7 +142,7 @@ def experiment_in_blocks(
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & are_rare(lone[turns]))
     resolved = motion.resolved & ~lone
-    blocks = _blocks(motion, resolved, sizes, interval, reading)
+    blocks = _blocks(recording.time, motion, resolved, sizes, reading)
     averaged = _averaged(moved, turns, blocks)
     averaged_misfit = blocks.mean(misfit)
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
@@ -157,7 +171,7 @@ def experiment_in_blocks(
         resting=resting,
         floor=noise_floor(reading.level, _stiffness(motion.deflection, baseline), gauge, step, force_step),
         gauge=gauge,
-        size=blocks.size,
+        blocks=blocks,
         interval=interval * blocks.size,
         reading=reading,
         measured=averaged.measured,
@@ -194,9 +208,10 @@ def read_deflection(recording: Recorded) -> tuple[FloatArray, float]:
 
 
 def _blocks(
-    motion: Motion, resolved: BoolArray, sizes: tuple[int, int], interval: float, noise: Noise
+    time: FloatArray, motion: Motion, resolved: BoolArray, sizes: tuple[int, int], noise: Noise
 ) -> Blocks:
-    """Return blocks as long as the motion allows; sizes: least and most samples; interval [s]; noise: of a sample."""
+    """Return blocks as long as the motion allows; sizes: least and most samples; noise: of a sample."""
+    interval = float(np.median(np.diff(time)))
     quick = float(np.sqrt(np.mean(motion.acceleration[resolved] ** 2)))
     slow = float(np.sqrt(np.mean(motion.rate[resolved] ** 2)))
     longest = TURN * slow / max(quick * interval, 1e-300)
@@ -204,7 +219,28 @@ def _blocks(
     # Blocks within the memory of their noise would not be independent of each other.
     most = max(min(most, resolved.size // FEWEST_BLOCKS), noise.memory)
     size = int(max(1, least, min(most, longest)))
-    return Blocks(size, resolved.size // size)
+    rest = _rest(time, motion.rate)
+    fastest = float(np.abs(motion.rate).max())
+    wanted = float(np.ptp(motion.deflection)) / max(RESOLVED * fastest * interval, 1e-300)
+    if wanted < size and rest.any():
+        for shorter in range(int(max(1, noise.memory, wanted)), size):
+            thinned = Blocks(shorter, _in_progression(rest[: rest.size // shorter * shorter : shorter]))
+            if thinned.kept.size <= resolved.size // size:
+                return thinned
+    return Blocks(size, np.arange(resolved.size // size))
+
+
+def _rest(time: FloatArray, rate: FloatArray) -> FloatArray:
+    """Return for how long the tire has rested at each sample [s], 0 where it moves."""
+    moved = np.where(np.abs(rate) > STILL * float(np.abs(rate).max()), time, -np.inf)
+    moved[0] = time[0]
+    return np.asarray(time - np.maximum.accumulate(moved))
+
+
+def _in_progression(rest: FloatArray) -> IndexArray:
+    """Return the numbers of the blocks that are kept, from how long the tire has rested at each [s]."""
+    step = np.floor(np.log(np.maximum(rest, 1e-300)) / np.log1p(PROGRESSION))
+    return np.flatnonzero((rest <= 0.0) | (np.diff(step, prepend=-np.inf) != 0.0))
 
 
 def _rounding(force: FloatArray, step: float, size: int) -> tuple[float, float]:

@@ -41,6 +41,53 @@ def test_a_block_that_holds_a_turn_is_compared_where_the_misfit_is_the_same_on_b
     assert not counted[1].any()
 
 
+def ramp_and_hold(loaded: float) -> Recording:
+    """Return a ramp of 4 s to 20 mm and a hold of 1000 s, every 0.05 s; a force that relaxes by a third in all.
+
+    A Maxwell element of 100 N decays with a time constant of 0.4 s, faster than 1 / 4000 of the recording, and one of
+    200 N with 100 s; loaded [s]: when the ramp ends
+    """
+    time = np.arange(0.0, 1004.0, 0.05)
+    way = np.minimum(time / loaded, 1.0)
+    force = 600.0 * way
+    for size, tau in ((100.0, 0.4), (200.0, 100.0)):
+        rise = size * tau / loaded * -np.expm1(-np.minimum(time, loaded) / tau)
+        force = force + rise * np.exp(-np.maximum(time - loaded, 0.0) / tau)
+    noise = np.random.default_rng(4).normal(size=time.size)
+    return Recording("hold", time, 0.02 * way, np.full(time.size, np.inf), force + noise)
+
+
+def test_a_long_hold_does_not_make_the_blocks_of_the_ramp_long() -> None:
+    recording = ramp_and_hold(4.0)
+    (e,) = dataset_of([recording], TireModel()).experiments
+    ramp = e.time < 4.0
+    # Without the hold, each of the 80 samples would be a block; fifty are wanted in the span.
+    assert ramp.sum() >= 50
+    rest = e.time[e.time > 4.1] - 4.0
+    assert np.all(np.diff(rest) < 0.06 + 0.05 * rest[:-1])
+    assert e.time.size < 4000
+    # What is kept is the mean of its own samples.
+    first = np.searchsorted(recording.time, e.time - 0.5 * e.interval)
+    beside = np.array([recording.force[i : i + e.size].mean() for i in first[10:-1]])
+    np.testing.assert_allclose((e.misfit + e.baseline)[10:-1], beside, atol=5.0)
+
+
+def test_cycles_with_holds_stay_in_even_blocks() -> None:
+    """Where a triangle's blocks are short enough, every sample counts, those of its holds as well."""
+    whole = triangle(16_000, 8)
+    time = 0.01 * np.arange(20_000)
+    held = Recording(
+        "held",
+        time,
+        np.append(whole.deflection, np.full(4000, whole.deflection[-1])),
+        np.full(20_000, np.inf),
+        np.append(whole.force, np.full(4000, whole.force[-1])),
+    )
+    (e,) = dataset_of([held], TireModel()).experiments
+    np.testing.assert_allclose(np.diff(e.time), e.interval)
+    assert e.time.size == 20_000 // e.size
+
+
 def test_a_noise_that_blocks_remember_is_no_smaller_than_that_of_the_samples() -> None:
     """Averaging takes the quick part of a noise out, not out of the readings: it belongs to their floor."""
     dataset = dataset_of([triangle(16_000, 8)], TireModel())
