@@ -80,7 +80,7 @@ def test_time_counts_from_the_first_moment() -> None:
 
 def test_the_rate_is_that_of_the_tire_and_not_of_the_reading() -> None:
     # a linear tire K with a spring 1/k in series moves at 1 / (1 + k K) of the rate read: half of it here
-    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0))
+    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
     tire = tire_with(("series_compliance", (1.0 / STIFFNESS, 0.0)), damped, law=LINEAR)
     time = np.linspace(0.0, 0.1, 201)
     force = drive(tire, time, 0.01 + 0.1 * time)
@@ -93,7 +93,7 @@ def test_behind_a_lag_the_rate_follows_from_rate_and_acceleration_of_noisy_readi
     tau, delta, damping, noise = 0.005, 0.004, 300.0, 8e-6
     tire = tire_with(
         ("deflection_lag", (tau, delta)),
-        ("viscous_damping", (damping, 1.0, 0.0, 0.0, 1.0)),
+        ("viscous_damping", (damping, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)),
         reading_noise=noise,
         law=LINEAR,
     )
@@ -111,7 +111,7 @@ def test_behind_a_lag_the_rate_follows_from_rate_and_acceleration_of_noisy_readi
 
 def test_behind_a_spring_the_rate_of_noisy_readings_is_the_springs_part_of_it() -> None:
     # as above, without a noise: half of the rate read, which the estimator knows to the noise over its memory
-    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0))
+    damped = ("viscous_damping", (100.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
     spring = ("series_compliance", (1.0 / STIFFNESS, 0.0))
     tire = tire_with(spring, damped, reading_noise=8e-6, law=LINEAR)
     time = np.linspace(0.0, 0.1, 201)

@@ -56,7 +56,7 @@ def test_effects_of_a_file_may_stand_in_any_order(tmp_path: Path) -> None:
     ]
     tire = read_tire(written(tmp_path, {"schema": 1, "law": {"name": "power_law"}, "effects": effects}))
     assert [effect.name for effect, _ in tire.effects] == ["deflection_offset", "viscous_damping", "inertia"]
-    assert [values for _, values in tire.effects] == [(0.0,), (300.0, 1.0, 0.0, 0.0, 1.0), (2.0,)]
+    assert [values for _, values in tire.effects] == [(0.0,), (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0), (2.0,)]
 
 
 LAW = {"name": "hull1996"}
@@ -141,12 +141,12 @@ def test_a_file_that_is_not_text_is_said_so(tmp_path: Path) -> None:
 
 
 def test_parameters_are_named_by_their_owner() -> None:
-    tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0)))
+    tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)))
     found = {name: value for name, (_, value) in parameters_of(tire).items()}
     assert found["law.flat_exponent"] == 1.422
     assert found["viscous_damping.damping"] == 300.0
     assert found["reading_noise"] == 0.0
-    assert len(found) == len(Hull1996.parameters) + 6
+    assert len(found) == len(Hull1996.parameters) + 8
 
 
 def test_the_noise_of_the_reading_is_a_parameter_where_a_rate_is_looked_at() -> None:
@@ -159,11 +159,11 @@ def test_the_noise_of_the_reading_is_a_parameter_where_a_rate_is_looked_at() -> 
 
 
 def test_parameters_can_be_replaced_by_name() -> None:
-    tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0)), ("inertia", (2.0,)))
+    tire = tire_with(("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)), ("inertia", (2.0,)))
     other = with_parameters(tire, {"viscous_damping.damping": 1.0, "law.flat_coefficient": 600.0})
     assert (
         other.effects
-        == tire_with(("viscous_damping", (1.0, 1.0, 0.0, 0.0, 1.0)), ("inertia", (2.0,))).effects
+        == tire_with(("viscous_damping", (1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)), ("inertia", (2.0,))).effects
     )
     assert other.law == Hull1996(flat_coefficient=600.0)
     assert with_parameters(tire, {}) == tire

@@ -51,3 +51,65 @@ def test_the_way_back_is_damped_by_a_share_of_its_own() -> None:
 def test_a_tire_in_the_air_is_not_damped() -> None:
     time = np.linspace(0.0, 0.1, 101)
     assert np.all(drive(only("viscous_damping", damping=1e4), time, time - 0.2) == 0.0)
+
+
+C, E = 5000.0, 2e-5
+"""A dashpot [N s/m] in series with a spring [m/N]: a Maxwell element of 0.1 s."""
+
+
+@pytest.mark.parametrize("frequency", [0.2, 1.0 / (2.0 * math.pi * C * E), 5.0])
+def test_behind_a_compliance_its_loop_is_that_of_a_maxwell_element(frequency: float) -> None:
+    # pi c w a^2 / (1 + (w c e)^2); an implicit step lags by half of it: 1/8000 of a cycle
+    a = 0.008
+    time, x = sine(frequency, a, 0.012, 4.0, 8000)
+    force = drive(only("viscous_damping", law=LINEAR, damping=C, compliance=E), time, x)
+    last = slice(-8001, None)
+    w = 2.0 * math.pi * frequency
+    expected = math.pi * C * w * a * a / (1.0 + (w * C * E) ** 2)
+    assert loop_area(x[last], force[last]) == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_small_compliance_is_none() -> None:
+    time, x = sine(0.5, 0.008, 0.012, 2.0, 4000)
+    form = {"damping": 300.0, "rate_exponent": 0.4, "thinning": 20.0, "rebound": 2.0}
+    rigid = drive(only("viscous_damping", law=LINEAR, **form), time, x)
+    nearly = drive(only("viscous_damping", law=LINEAR, **form, compliance=1e-12), time, x)
+    # At a reversal the rate is some nm/s, and the spring takes as much.
+    passing = np.abs(np.gradient(x, time)) > 1e-5
+    np.testing.assert_allclose(nearly[passing], rigid[passing], rtol=1e-6)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 0.5])
+def test_in_a_hold_its_force_falls_as_the_dashpot_creeps(exponent: float) -> None:
+    """dD/dt = -v_d(D) / e: D0 exp(-t / c e) for n = 1; D0 / (1 + v0 D0 t / e C^2) for n = 1/2, C the force at v0."""
+    speed, end, h = 0.1, 0.2, 1e-4
+    time = np.arange(0.0, 0.6, h)
+    x = 0.001 + speed * np.minimum(time, end)
+    tire = only("viscous_damping", law=LINEAR, damping=C, rate_exponent=exponent, compliance=E)
+    added = drive(tire, time, x) - STIFFNESS * x
+    at = np.searchsorted(time, end + 0.01)
+    first, t = added[at], time[at:] - time[at]
+    expected = (
+        first * np.exp(-t / (C * E)) if exponent == 1.0 else first / (1.0 + 0.1 * first * t / (E * 500.0**2))
+    )
+    assert first > 100.0
+    np.testing.assert_allclose(added[at:], expected, rtol=5e-3, atol=0.5)
+
+
+def test_within_its_play_it_has_no_force() -> None:
+    """A sine of 2 mm within a play of 5 mm; one of 8 mm pays for the play at each reversal and no more."""
+    small = sine(0.5, 0.002, 0.012, 2.0, 4000)
+    tire = only("viscous_damping", law=LINEAR, damping=300.0, play=0.005)
+    free = drive(tire, *small)[2000:] - STIFFNESS * small[1][2000:]
+    # The first sample is at rest in the middle of the play.
+    assert np.max(np.abs(free)) == pytest.approx(0.0, abs=1e-9)
+    time, x = sine(0.5, 0.008, 0.012, 2.0, 4000)
+    added = drive(tire, time, x)[4000:] - STIFFNESS * x[4000:]
+    rate = np.gradient(x, time)[4000:]
+    moving = np.abs(added) > 1e-6
+    # The step in which it meets the end of its play has a part of the force.
+    whole = moving & np.roll(moving, 1)
+    np.testing.assert_allclose(added[whole], 300.0 * rate[whole], rtol=1e-3, atol=0.05)
+    turned = np.flatnonzero(np.diff(np.sign(rate)) != 0)[0]
+    again = turned + np.argmax(moving[turned + 5 :]) + 5
+    assert abs(x[4000:][again] - x[4000:][turned]) == pytest.approx(0.005, rel=0.02)

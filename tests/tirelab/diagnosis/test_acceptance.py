@@ -221,7 +221,7 @@ BARE = damped(3, damping=0.0, samples=2000)
 
 
 def damper(damping: float) -> TireModel:
-    return TireModel(effects=((CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0, 1.0)),))
+    return TireModel(effects=((CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)),))
 
 
 @dataclass(frozen=True)

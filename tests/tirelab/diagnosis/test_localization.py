@@ -229,7 +229,7 @@ def test_a_force_is_told_as_it_was_recorded():
 def test_places_are_those_of_the_physics_where_the_law_is_wrong_too():
     time, deflection, rate = ride(3)
     believed, law = TireModel(), Recalibrated(surfaces=((np.inf, 0.1, 0.0),))
-    damped = ((CATALOGUE["viscous_damping"], (500.0, 1.0, 0.0, 0.0, 1.0)),)
+    damped = ((CATALOGUE["viscous_damping"], (500.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)),)
     corrected = TireModel(law=law, effects=damped)
     recorded = np.exp(0.1) * flat_force(deflection) + 500.0 * rate
     drive = read("ride", time, deflection, recorded, 4, noise=0.0)

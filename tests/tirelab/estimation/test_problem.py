@@ -31,7 +31,7 @@ from tirelab.regressors.signature import form_error
 from tirelab.simulation.simulate import simulate
 
 DATASET: Dataset = dataset_of([damped(4, samples=2000)], TireModel())
-DAMPED = with_readings("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0), DATASET)
+DAMPED = with_readings("viscous_damping", (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0), DATASET)
 
 
 def free(**more: object) -> FreeParameter:

@@ -182,7 +182,7 @@ def test_held_out_recordings_judge_what_is_fitted() -> None:
     fits = {
         name: fitted(dataset, [{name: values}], noise, 1.0, -np.inf)
         for name, values in {
-            "viscous_damping": (300.0, 1.0, 0.0, 0.0, 1.0),
+            "viscous_damping": (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0),
             "rate_independent_hysteresis": (10.0, 0.0, 0.003, 0.0, 0.6, 0.0, 1.0, 1.0),
         }.items()
     }
@@ -203,7 +203,7 @@ def test_held_out_recordings_judge_what_is_fitted() -> None:
 
 
 def test_every_set_without_one_of_the_effects_is_fitted(ranking: Ranking, dataset: Dataset) -> None:
-    start = {"viscous_damping": (500.0, 1.0, 0.0, 0.0, 1.0), "inertia": (1.0,)}
+    start = {"viscous_damping": (500.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0), "inertia": (1.0,)}
     whole = fitted(dataset, [start], ranking.discrepancy, 1.0, -np.inf)
     alone = Ranking((whole,), ranking.discrepancy)
     found = with_parts(alone, whole)

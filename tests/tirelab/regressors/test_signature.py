@@ -273,7 +273,7 @@ def damped_part() -> tuple[Dataset, Beside]:
     x = 0.02 * np.sin(2.0 * np.pi * 0.5 * time)
     silent = Recording("wave", time, x, np.full(time.size, np.inf), np.zeros(time.size))
     preloaded = TireModel(PowerLaw(1e-6, 1.0), two_sided=True, preload=50.0, tested_range=None)
-    damped = arranged(preloaded, [("viscous_damping", (800.0, 1.0, 0.0, 0.0, 1.0))])
+    damped = arranged(preloaded, [("viscous_damping", (800.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0))])
     force = simulate(damped, silent) + NOISE * np.random.default_rng(7).normal(size=time.size)
     data = dataset_of([replace(silent, force=force)], preloaded)
     response = data.response(damped)

@@ -176,7 +176,10 @@ def test_a_motion_that_is_known_has_no_delay() -> None:
     motion = Motion(time, 0.012 + 0.004 * np.sin(angle * time), np.full(time.size, math.inf))
     known = Known(0.004 * angle * np.cos(angle * time), -0.004 * angle**2 * np.sin(angle * time))
     tire = TireModel(
-        effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0, 1.0)), (CATALOGUE["inertia"], (2.0,)))
+        effects=(
+            (CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)),
+            (CATALOGUE["inertia"], (2.0,)),
+        )
     )
     elastic = simulate(TireModel(), motion)
     expected = elastic + 300.0 * known.rate + 2.0 * known.acceleration
@@ -196,7 +199,7 @@ def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
         series,
         (compliance, *(p.nominal_value if not p.optional else p.start for p in series.parameters[1:])),
     )
-    tire = TireModel(law, (spring, (CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0, 1.0))))
+    tire = TireModel(law, (spring, (CATALOGUE["viscous_damping"], (damping, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0))))
     # Of a deflection u a linear tire behind a linear spring has u / (1 + k c), and of its rate the same part.
     part = 1.0 / (1.0 + stiffness * compliance)
     expected = part * (stiffness * motion.deflection + damping * known.rate)
@@ -243,7 +246,7 @@ def test_what_enters_linearly_is_a_sum_of_columns(name: str, linear: tuple[str, 
 
 def test_a_history_may_be_given_a_better_rate() -> None:
     # a fit that may look ahead puts in the rate it knows
-    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0, 1.0)),))
+    tire = TireModel(effects=((CATALOGUE["viscous_damping"], (300.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)),))
     motion = random_motion(10)
     history, force = elastic_stage(tire, motion)
     known = replace(history, rate=np.ones_like(force))
