@@ -87,16 +87,23 @@ def _evidence(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tu
 def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
     """Return the work that whole cycles bring into a part over the largest that they could, -1 to 1.
 
-        sum F dx / sum |F - mean F| |dx|,    from the first to the last passage of the median deflection inwards
+        sum F dx / sum |F - mean F| |dx|,    from the first to the last passage of the middle inwards
 
+    The middle is the median deflection. A passage counts once, where the deflection has gone on beyond it by `PASSED`:
+    the noise of a gauge passes the middle many times in one slow stroke.
     1 of friction or a damper alone, 0 of a spring; nothing passive is below 0 but for a force that is read late: by
     phi of a cycle, a spring has -pi/2 sin phi. NaN where no cycle is whole. `deflection`, `force`: (samples,).
     """
     above = deflection > np.median(deflection)
-    inwards = np.flatnonzero(above[1:] & ~above[:-1])
-    if inwards.size < 2:
+    far, passages = _passages(deflection)
+    inwards = [
+        int(before + np.flatnonzero(above[before + 1 : after + 1] & ~above[before:after])[-1])
+        for before, after in zip(far[passages], far[passages + 1], strict=True)
+        if above[after]
+    ]
+    if len(inwards) < 2:
         return float("nan")
-    whole = slice(int(inwards[0]), int(inwards[-1]) + 1)
+    whole = slice(inwards[0], inwards[-1] + 1)
     way, read = np.diff(deflection[whole]), force[whole]
     middle = 0.5 * (read[1:] + read[:-1])
     with np.errstate(all="ignore"):
@@ -114,12 +121,19 @@ def mass_alike(
     Infinite where the force does not fall, or the part is not driven to and fro. `time` [s], `deflection` [m],
     `force` [N], of shape (samples,).
     """
-    beyond = (deflection - np.median(deflection)) / max(float(np.ptp(deflection)), np.finfo(float).tiny)
-    far = np.flatnonzero(np.abs(beyond) > PASSED)
-    passages = time[far[1:]][np.diff(np.sign(beyond[far])) != 0.0]
+    far, found = _passages(deflection)
+    passages = time[far[found + 1]]
     x = deflection - deflection.mean()
     fall = -float(x @ (force - force.mean()))
     if passages.size < 2 or fall <= 0.0:
         return float("inf")
     rate = np.pi / float(np.median(np.diff(passages)))
     return fall / float(x @ x) / rate**2
+
+
+def _passages(deflection: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the samples that are beyond the middle by `PASSED` of the stroke, and those of them after which the next
+    one is on the other side."""
+    beyond = (deflection - np.median(deflection)) / max(float(np.ptp(deflection)), np.finfo(float).tiny)
+    far = np.flatnonzero(np.abs(beyond) > PASSED)
+    return far, np.flatnonzero(np.diff(np.sign(beyond[far])) != 0.0)

@@ -124,6 +124,17 @@ class TestWork:
         late = 3e4 * (0.02 + 0.01 * np.sin(self.turn - 0.2))
         assert work_share(self.x, late) == pytest.approx(-0.5 * np.pi * np.sin(0.2), rel=0.02)
 
+    def test_the_noise_of_a_gauge_in_one_slow_stroke_makes_no_cycles(self) -> None:
+        """Friction of 20 N, and a gauge whose noise of 0.05 mm passes the middle again and again on the way."""
+        stroke = np.interp(np.arange(4000.0), [0.0, 1900.0, 3999.0], [0.0, 0.08, 0.0])
+        noise = 5e-5 * np.random.default_rng(4).standard_normal(4000)
+        force = 20.0 * np.sign(np.gradient(stroke))
+        once = stroke + noise
+        above = once > np.median(once)
+        assert np.count_nonzero(above[1:] & ~above[:-1]) > 2
+        assert np.isnan(work_share(once, force))
+        assert work_share(np.tile(once, 3), np.tile(force, 3)) > 0.5
+
     def test_one_ramp_tells_nothing(self) -> None:
         x = np.linspace(0.0, 0.02, 500)
         assert np.isnan(work_share(x, 1e6 * x**1.4))
