@@ -12,6 +12,7 @@ from .origin import in_quotes
 from .units import measures
 from .vocabulary import (
     foreign_channel,
+    glued_ends,
     is_measured,
     is_strained,
     name_and_unit,
@@ -238,8 +239,13 @@ def without_source(header: Header) -> Header:
 
 
 def may_be_qualified(header: Header, channel: Channel) -> bool:
-    """Whether the name ends in a word of the channel, and its unit fits: `Lead actuator force [kN]`, `Ch 1 Time`."""
+    """Whether the name ends in a word of the channel, and its unit fits: `Lead actuator force [kN]`, `Ch 1 Time`,
+    `350T位移(mm)`."""
     unit = unit_of_column(header, channel.name)
+    if channel.required and unit is not None and measures(unit, channel.unit) and is_measured(header.name):
+        bare = header.name.partition("(")[0].strip()
+        if any(foreign_channel(end) == channel.name for end in glued_ends(bare)):
+            return True
     of_input = _OF_INPUT.fullmatch(header.name)
     if channel.name == "time" and of_input and unit and measures(unit, channel.unit):
         return _words(of_input["name"]) in channel.words

@@ -17,6 +17,8 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "running time",
             "total time",
             "ts",
+            "millis",
+            "micros",
             "时间",
             "時間",
             "试验时间",
@@ -42,6 +44,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("deslocamento", "deformacao", "verplaatsing", "indrukking"),
         *("compressive displacement", "compressive extension", "extension", "position"),
         *("machine extension", "disp", "displ", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
+        *("linear pot", "linear potentiometer", "potentiometer"),
         *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量"),
     ),
     "radius": (
@@ -125,6 +128,9 @@ NOT_MEASURED = frozenset(
 )
 """Words of a name that say that its column holds no reading: what was asked for, or what was worked out."""
 
+NOT_MEASURED_GLUED = ("目标", "目標", "设定", "設定", "指令", "命令", "控制", "峰值", "最大", "最小", "平均")
+"""The same in languages that write without spaces."""
+
 COUNTERS = frozenset(
     {
         *(
@@ -168,6 +174,7 @@ STRAINED = frozenset(
 SHORTEST = 4
 """Letters of a name that is taken for the beginning of a word."""
 
+_SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
 _COUNTED = re.compile(r"(?P<name>.*?[^\W\d_])(?:[ ._#-]*\d+|_duplicated_\d+)")
 
@@ -204,7 +211,14 @@ def begins_like(name: str, channel: str) -> bool:
 
 def is_measured(name: str) -> bool:
     """Whether no word of a name says that its column holds what was asked for or worked out: `Force command`."""
-    return not NOT_MEASURED & set(re.split(r"[^\w]+", plain(name)))
+    glued = any(word in name for word in NOT_MEASURED_GLUED)
+    return not glued and not NOT_MEASURED & set(re.split(r"[^\w]+", plain(name)))
+
+
+def glued_ends(name: str) -> list[str]:
+    """Return the ends of a name, without the whole, that begin with a sign of a language written without spaces:
+    `位移`, `移` of `350T位移`."""
+    return [name[i:] for i in range(1, len(name)) if _SIGN.match(name[i])]
 
 
 def counts_rows(name: str) -> bool:

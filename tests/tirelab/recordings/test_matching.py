@@ -45,6 +45,23 @@ class TestColumns:
         assert found.temperature is not None
         np.testing.assert_allclose(found.temperature, time + 273.15)
 
+    def test_a_word_that_is_written_without_a_space_behind_its_source(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "存储时间(秒),350T位移(cm),350T载荷(N),350T目标位移(cm)"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, 2.0 * deflection)
+        found = read_recording(path, radius="flat")
+        np.testing.assert_allclose(found.time, time)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+
+    def test_the_clock_and_the_potentiometer_of_a_microcontroller(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "Millis,Load_Cell,Linear_Pot", 1e3 * time, force, deflection)
+        assert "--units time=ms" in refusal(path, radius="flat")
+        found = read_recording(path, radius="flat", units={"time": "ms", "deflection": "cm", "force": "N"})
+        np.testing.assert_allclose(found.time, time)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+
     @pytest.mark.parametrize(
         ("stroke", "cell"),
         [

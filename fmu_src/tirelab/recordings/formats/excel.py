@@ -8,6 +8,7 @@ import datetime
 import shlex
 from array import array
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -59,10 +60,13 @@ class ExcelTable:
                 f"{path.name}, row {chosen.first_row} is no header; put a row above the numbers that names "
                 "the columns and their units, such as force [N]"
             )
-        names = [header.text for header in chosen.headers]
-        self.sheets = [sheet for sheet in found if [header.text for header in sheet.headers] == names]
+        names = _names(chosen)
+        alike = [sheet for sheet in found if _names(sheet) == names]
+        # columns without a name behind the last one that has one: of these sheets, some may have them, others not
+        width = min(len(sheet.headers) for sheet in alike)
+        self.sheets = [replace(sheet, headers=sheet.headers[:width]) for sheet in alike]
         self.headers: Sequence[Header] = [header for sheet in self.sheets for header in sheet.headers]
-        self.others = tuple(sheet.title for sheet in found if sheet not in self.sheets)
+        self.others = tuple(sheet.title for sheet in found if sheet not in alike)
 
     def sheet_of(self, index: int) -> Sheet:
         """The sheet on which a column stands."""
@@ -174,6 +178,13 @@ class ExcelTable:
         if NUMBER.fullmatch(text) is None:
             return None
         return float(text)
+
+
+def _names(sheet: Sheet) -> list[str]:
+    """Return what the columns of a sheet are called, to the last one that has a name."""
+    texts = [header.text for header in sheet.headers]
+    named = [n for n, header in enumerate(sheet.headers, 1) if header.name != f"#{n}"]
+    return texts[: named[-1]] if named else texts
 
 
 def _channels(headers: Sequence[Header]) -> int:

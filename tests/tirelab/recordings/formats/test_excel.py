@@ -137,6 +137,22 @@ class TestExcel:
         facts = dict(inspect_recording(files[1], Choices(radius="flat")).facts)
         assert facts["table"] == "xlsx, sheet 'Specimen 2', names in row 2"
 
+    def test_a_column_without_a_name_on_one_of_them_makes_no_difference(self, tmp_path: Path) -> None:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        book.remove(book.active)
+        for title, samples in (("1000-50mm", 60), ("800-50mm", 50)):
+            sheet = book.create_sheet(title)
+            sheet.append(["time [s]", "stroke [mm]", "load [N]"])
+            for i in range(samples):
+                sheet.append([0.1 * i, 0.2 * i, 10.0 * i, *([0.0] if samples == 60 else [])])
+        book.save(tmp_path / "a.xlsx")
+        files, _ = recording_files([tmp_path / "a.xlsx"])
+        first, second = (read_recording(file, radius="flat") for file in files)
+        assert (len(first), len(second)) == (60, 50)
+        assert second.force.max() == pytest.approx(490.0)
+        assert "read from sheet '800-50mm'" in second.notes
+
     def test_a_sheet_is_named_behind_the_file(self, tmp_path: Path) -> None:
         openpyxl = pytest.importorskip("openpyxl")
         book = openpyxl.Workbook()
