@@ -81,7 +81,7 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     from ..recordings.files import recording_files
 
     out, part = output.out, options["part"]
-    reading = reading.of_part() if part else reading
+    said, reading = reading, reading.of_part() if part else reading
     if out.is_dir():
         raise TirelabError(f"{out} cannot be written (it is a folder); name a file with --out")
     console = Console(highlight=False)
@@ -109,7 +109,8 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     for recording in read:
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
-    words = _Words(tuple(map(str, recordings)), tuple(reading.words()))
+    known = part and all(_is_said_to_be_a_part(file, said) for file in files)
+    words = _Words(tuple(map(str, recordings)), tuple((said if known else reading).words()))
     if found is None:
         _part(output, console, dict(zip(files, read, strict=True)), (part, options["name"]), words)
         return
@@ -141,14 +142,16 @@ def _part(
     from ..computing.staging import staged
     from ..identification.misfit import misfit_sentence
     from ..identification.part_laws import fit_laws, reading_noise
-    from ..identification.part_tire import best_writable, tire_of
+    from ..identification.part_tire import best_writable, springless, tire_of
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
     tire = None if part == "compare" else output.out
+    written = ""
     if tire is not None:
         law = next(fit for fit in fits if fit.name == part)
         model = tire_of(law, recordings, name)
+        written = springless(law, model)
         with staged(tire.parent) as folder:
             write_tire(model, folder / tire.name)
     else:
@@ -159,10 +162,12 @@ def _part(
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]
         output.result((), {"laws": laws, "tire": None if tire is None else str(tire)})
-        if misfit:
-            output.note(misfit)
+        for note in filter(None, (written, misfit)):
+            output.note(note)
         return
     console.print(law_table(fits))
+    if written:
+        console.print(f"- {written}", markup=False, soft_wrap=True)
     if tire is not None:
         if misfit:
             console.print(f"- {misfit}", markup=False, soft_wrap=True)
@@ -188,6 +193,16 @@ def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words:
         f"nearly all of {listed(held)} is a hold, in which the force may relax, and this is its law, of no spring: "
         f"identify the way there, `{words.identify(pieces, part, tire)}`, then `{words.diagnose(tire)}`"
     )
+
+
+def _is_said_to_be_a_part(path: Path, reading: Reading) -> bool:
+    """Return whether the settings of a recording say that it is one of a part; then no command has to be told."""
+    from ..recordings.metadata import read_sidecar
+    from ..recordings.pieces import split_piece
+
+    file, piece = split_piece(path)
+    sidecar = read_sidecar(file, reading.settings, piece.trial, piece.sheet)
+    return sidecar.overruled({}, {}, reading.radius, None, {}).part
 
 
 def _bars(quiet: bool) -> Progress:

@@ -104,6 +104,17 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
     return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
 
 
+def springless(fit: LawFit, tire: TireModel) -> str:
+    """Return a sentence where a law was asked for that has a spring, and the tire file has none; "" else."""
+    if fit.name == "constant" or tire.law != PowerLaw(LEAST_SPRING, 1.0):
+        return ""
+    symbol, value, deviation, unit = next(c for c in fit.constants if c[0] in ("k", "A"))
+    return (
+        f"{symbol} = {value:.3g} ± {deviation:.2g} {unit} is no spring that a tire file holds: the file has the "
+        f"preload alone, {tire.preload:.4g} N, as of --part constant"
+    )
+
+
 def ramp_before_hold(recording: Recording) -> tuple[float, float] | None:
     """Return the times [s] of the ramp after which a recording is a hold; None where it is not nearly all a hold.
 

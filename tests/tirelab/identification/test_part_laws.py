@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from rivals import looking_for, rivals
 from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise
-from tirelab.identification.part_tire import tire_of
+from tirelab.identification.part_tire import springless, tire_of
 from tirelab.identification.table import law_table, with_uncertainty
 from tirelab.recordings.recording import Recording
 from tirelab.recordings.writing import write_recording
@@ -210,6 +211,11 @@ def test_a_damper_without_a_spring_has_its_preload_alone() -> None:
     assert not tire.inflated
     assert tire.preload == pytest.approx(120.0, abs=0.5)
     assert tire.law.coefficient < 10.0  # type: ignore[attr-defined]
+    k, deviation = next((v, u) for symbol, v, u, _ in linear.constants if symbol == "k")
+    assert springless(linear, tire).startswith(f"k = {k:.3g} ± {deviation:.2g} N/mm is no spring")
+    assert f"the preload alone, {tire.preload:.4g} N" in springless(linear, tire)
+    sprung = replace(linear, constants=(("F0", 120.0, 1.0, "N"), ("k", 12.5, 4.3, "N/mm")))
+    assert springless(sprung, tire_of(sprung, [damper], "damper")) == ""
     # third differences leave the noise of 1 N, and of a sine of 6.3 rad/s in steps of 10 ms its part of 2.5e-4
     assert reading_noise([damper]) == pytest.approx(1.0, rel=0.1)
 
@@ -237,6 +243,13 @@ def test_a_damper_whose_force_falls_is_written_as_a_constant(tmp_path: Path) -> 
     assert command[at : at + 2] == ["--part", "constant"]
     done = CliRunner().invoke(main, [*command[1:], "--out", str(tmp_path / "part.json")])
     assert done.exit_code == 0, done.output
+    assert (
+        "--radius" in done.output
+    )  # of what is called a part here alone, no other command knows that it is none
+    (tmp_path / "recording.toml").write_text("part = true\n", encoding="utf-8")
+    known = CliRunner().invoke(main, [*words, "--part", "constant", "--out", str(tmp_path / "part.json")])
+    assert "tirelab diagnose" in known.output
+    assert "--radius" not in known.output
     assert read_tire(tmp_path / "part.json").preload == pytest.approx(float(np.mean(force)), abs=1.0)
 
 
