@@ -5,6 +5,8 @@ copied, stored and restored by any host. Where the numbers of each effect stand 
 translation to C has every effect of the catalogue and skips those whose switch is 0.
 
     deflection reading -> deflection of the tire -> factor -> elastic law -> parallel forces -> inertia -> force reading
+
+The factor acts on A x^B. The preload of a part, which is there without a deflection, is added after it.
 """
 
 from __future__ import annotations
@@ -142,11 +144,13 @@ def step(
             if p[TRACKED] != 0.0:
                 store(n, path.compression, tracking.begin(x))
 
-    bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
+    bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     at = Instant(
         time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held
     )
     elastic = through(path.scale, 1.0, at, p, s, n) * bare
+    if held:
+        elastic = elastic + p[PRELOAD]
     at = Instant(
         time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature, held
     )

@@ -124,7 +124,8 @@ class TireModel:
     two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
     and can pull. A tire on the ground can do neither.
     inflated: whether air carries its load: without, nothing of a pressure is looked for
-    preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring
+    preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring;
+    effects that multiply the law do not multiply it
     remainder: a force without physics that is added to all others, None where nobody asked for one
     """
 

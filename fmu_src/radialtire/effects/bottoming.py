@@ -24,7 +24,8 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     """Add the second spring's force [N]."""
     stiffness, onset, softness, power = values
     beyond = instant.deflection - onset
-    if stiffness == 0.0 or instant.deflection <= 0.0 or beyond <= -FAR * softness:
+    in_air = instant.deflection <= 0.0 and not instant.two_sided
+    if stiffness == 0.0 or in_air or beyond <= -FAR * softness:
         return signal, state
     if beyond < FAR * softness:
         beyond = softness * math.log1p(math.exp(beyond / softness))

@@ -24,7 +24,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     """Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x))."""
     bend, twist, reference, first, second, third, fourth, fifth = values
     x = abs(instant.deflection) if instant.two_sided else instant.deflection
-    if x <= 0.0:
+    if x <= 0.0 and not instant.two_sided:
         return signal, state
     exponent = 0.0
     if bend != 0.0 or twist != 0.0:

@@ -48,7 +48,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         largest, counted, uncounted = measure, max(x, 0.0), 0.0
     elif uncounted > DEAD_ZONE:
         path, counted, uncounted = path + uncounted, max(x, 0.0), 0.0
-    if share == 0.0 or x <= 0.0 or measure >= largest:
+    if share == 0.0 or (x <= 0.0 and not instant.two_sided) or measure >= largest:
         return signal, (largest, counted, path)
     fixed = FLAT_COEFFICIENT**load * (100.0 * width) ** (1.0 + load * FLAT_EXPONENT)
     below = (largest - measure) / (ratio * largest + fixed)

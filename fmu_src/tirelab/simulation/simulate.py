@@ -167,11 +167,11 @@ def elastic_stage(
             later, sooner = (upstream(tire, moved(history, h)) for h in (AHEAD, -AHEAD))
             rate = (later - sooner) / (2.0 * AHEAD)
     bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
-    if tire.two_sided:
-        bare += tire.preload
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
     elastic = factor * bare
+    if tire.two_sided:
+        elastic += tire.preload
     return replace(history, elastic_force=elastic), elastic
 
 

@@ -58,6 +58,11 @@ def tires(random_sets: int) -> Iterator[tuple[str, TireModel]]:
     yield "recalibrated twice", TireModel(law=Recalibrated(Recalibrated(LAW, ((0.2, 0.1, 0.1),)), TABLE))
     held = tuple((CATALOGUE[name], CATALOGUE[name].nominal) for name in HELD)
     yield "part held at both ends, without air", TireModel(PowerLaw(), held, two_sided=True, inflated=False)
+    shaped = (
+        (CATALOGUE["elastic_shape"], values(CATALOGUE["elastic_shape"], random.Random(21), optional=True)),
+        *held,
+    )
+    yield "part with a preload", TireModel(PowerLaw(), shaped, two_sided=True, preload=50.0, inflated=False)
     for effect in ORDER:
         for optional in (False, True):
             tire = TireModel(effects=((effect, values(effect, r, optional=optional)),))

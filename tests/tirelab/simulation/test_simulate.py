@@ -325,3 +325,17 @@ def test_a_part_of_a_file_starts_with_what_was_recorded_before_it() -> None:
     part = replace(cut(slice(150, None)), history=cut(slice(0, 150)))
     np.testing.assert_array_equal(simulate(tire, part), simulate(tire, whole)[150:])
     assert np.abs(simulate(tire, alone(part)) - simulate(tire, part)).max() > 10.0
+
+
+def test_the_preload_of_a_part_is_no_part_of_what_its_shape_multiplies() -> None:
+    """At x = 0 the force is the preload, beside 0 it is next to it, and A x^B alone is multiplied."""
+    effect = CATALOGUE["elastic_shape"]
+    bent = {"bend": 0.01, "reference": 2e-4, "height_1": 0.05}
+    values = tuple(bent.get(p.name, p.start) for p in effect.parameters)
+    tire = TireModel(PowerLaw(1000.0, 1.0), ((effect, values),), two_sided=True, preload=10.0)
+    x = np.array([-1e-5, -1e-10, 0.0, 1e-10, 1e-5])
+    log_ratio = np.log(np.maximum(np.abs(x) / 2e-4, 0.01))
+    expected = 10.0 + 1e5 * x * np.exp(0.01 * log_ratio**2 + 0.05)
+    time = np.arange(5.0)
+    recording = Recording.from_arrays(time, x, expected, "flat", name="part")
+    assert simulation.simulate(tire, recording) == pytest.approx(expected, rel=1e-12)
