@@ -101,6 +101,7 @@ class Instant(NamedTuple):
     curvature: [1/m] of the surface, convex > 0
     pressure: [Pa], gauge, and temperature [K] of the tire, as measured or as inputs; else NOT_MEASURED
     two_sided: whether the part is held at both ends, so that a deflection below 0 is no lost contact
+    preload: [N] part of that elastic force after "scale" which is there without a deflection
     """
 
     time: float
@@ -116,6 +117,7 @@ class Instant(NamedTuple):
     pressure: float = NOT_MEASURED
     temperature: float = NOT_MEASURED
     two_sided: bool = False
+    preload: float = 0.0
 
 
 Response = Callable[[float, Instant, State, State], "tuple[float, State]"]

@@ -146,13 +146,28 @@ def step(
 
     bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     at = Instant(
-        time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held
+        time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held, 0.0
     )
     elastic = through(path.scale, 1.0, at, p, s, n) * bare
+    preload = 0.0
     if held:
-        elastic = elastic + p[PRELOAD]
+        preload = p[PRELOAD]
+        elastic = elastic + preload
     at = Instant(
-        time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature, held
+        time - start,
+        interval,
+        first,
+        x,
+        v,
+        acceleration,
+        A,
+        B,
+        elastic,
+        bend,
+        pressure,
+        temperature,
+        held,
+        preload,
     )
     force = through(path.parallel, elastic, at, p, s, n)
     if force < 0.0 and not held:
@@ -234,10 +249,25 @@ def compressed(
     time, interval, first, pressure, temperature, held = moment
     A, B, bend = surface
     at = Instant(
-        time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held
+        time,
+        interval,
+        first,
+        deflection,
+        rate,
+        acceleration,
+        A,
+        B,
+        0.0,
+        bend,
+        pressure,
+        temperature,
+        held,
+        0.0,
     )
     x = unremembered(path.deflection, deflection, at, p, s)
-    at = Instant(time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held)
+    at = Instant(
+        time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held, 0.0
+    )
     return unremembered(path.series, x, at, p, s)
 
 

@@ -28,8 +28,8 @@ def at(time: float, interval: float, *, first: bool = False, elastic: float = 0.
     return Instant(time, interval, first, 0.01, 0.0, 0.0, 500.0, 1.4, elastic, 0.0)
 
 
-def relaxing(share: float, tau: float, sudden: float = 0.0) -> State:
-    return (share, tau, 0.0, 1.0, 0.0, 1.0, sudden, 0.0, 1.0, 0.0, 1.0)
+def relaxing(share: float, tau: float, sudden: float = 0.0, freshness: float = 0.0) -> State:
+    return (share, tau, 0.0, 1.0, 0.0, 1.0, sudden, 0.0, 1.0, 0.0, 1.0, freshness)
 
 
 def test_overstress_of_a_held_force_decays_with_its_time() -> None:
@@ -49,6 +49,20 @@ def test_the_first_sample_has_relaxed_already() -> None:
     )
     assert added == pytest.approx(7.0 - 0.2 * 0.5 * 100.0)
     assert states[1:] == (100.0,) * 5
+
+
+def test_the_first_sample_may_be_fresh() -> None:
+    """f = 1/2: held for tau_1 = 2 s; the third time is 1 s, so exp(-1) and exp(-2) of the force are left."""
+    values = relaxing(0.5, 2.0, 0.2, freshness=0.5)
+    added, states = relaxation_flow(7.0, at(0.0, 0.0, first=True, elastic=100.0), (0.0,) * 6, values)
+    assert added == pytest.approx(7.0 + 0.5 * 100.0 * (math.exp(-1.0) - 0.2))
+    assert states[1:] == pytest.approx(
+        (100.0 * (1.0 - math.exp(-1.0)), *[100.0 * (1.0 - math.exp(-2.0))] * 4)
+    )
+    again, _ = CATALOGUE["viscoelastic_relaxation"].respond(
+        7.0, at(0.0, 0.0, first=True, elastic=100.0), (0.0,) * 6, values
+    )
+    assert again == pytest.approx(added)
 
 
 def lagging(state: State, tau: float, quality: float, *, first: bool = False) -> tuple[float, State]:

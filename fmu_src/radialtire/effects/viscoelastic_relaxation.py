@@ -5,7 +5,15 @@
 A Prony series on the elastic force (quasi-linear viscoelasticity). g_i is the fraction of the elastic force that term
 i adds in a sudden deflection, tau_i its relaxation time. r says which force the elastic law is: r = 0 the slow one
 (fully relaxed, as in a press of 30 s), r = 1 the sudden one. Integrated exactly for an elastic force that is linear
-between two samples. The tire is taken as relaxed at the first sample.
+between two samples. F_elastic is without the preload of a part, which has relaxed.
+
+    h_i = F_elastic exp(-t0 / tau_i) at the first sample,    f = tau_1 / (tau_1 + t0)
+
+A recording need not begin at rest: it may be cut from a longer one, or begin in a hold. t0 is the time for which the
+first sample's deflection had been held after a sudden deflection; where that took a while, t0 counts from its middle,
+to the second order of its time over tau_i. The freshness f is 0 where all has relaxed, 1/2 where it was held for tau_1,
+1 where it was just reached. It belongs to the recordings, one value to all of them: without a force at the first sample
+it changes nothing.
 
 The storage part of one term is g (w tau)^2 / (1 + (w tau)^2), the loss part g w tau / (1 + (w tau)^2), greatest at
 w tau = 1. Rubber has relaxation times over several decades: about one term per decade follows a power of the
@@ -32,13 +40,27 @@ def overstress(h: float, change: float, interval: float, tau: float) -> float:
     return h * (1.0 - decay) + change * decay / passed
 
 
+def time_held(freshness: float, tau: float) -> float:
+    """Return t0 [s] for a freshness above 0 and the first relaxation time [s]."""
+    return tau * (1.0 / freshness - 1.0)
+
+
+def left(elastic: float, held: float, tau: float) -> float:
+    """Return h [N] of an elastic force [N] that was reached at once and held for a time [s]."""
+    return elastic * math.exp(-held / tau)
+
+
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Add the overstress [N]; the state holds the last elastic force and the five overstresses."""
-    g1, tau1, g2, tau2, g3, tau3, sudden, g4, tau4, g5, tau5 = values
-    elastic = instant.elastic_force
+    g1, tau1, g2, tau2, g3, tau3, sudden, g4, tau4, g5, tau5, freshness = values
+    elastic = instant.elastic_force - instant.preload
     last, h1, h2, h3, h4, h5 = state
     if instant.first:
         last = elastic
+        if freshness > 0.0:
+            held = time_held(freshness, tau1)
+            h1, h2, h3 = left(elastic, held, tau1), left(elastic, held, tau2), left(elastic, held, tau3)
+            h4, h5 = left(elastic, held, tau4), left(elastic, held, tau5)
     change = elastic - last
     h1 = overstress(h1, change, instant.interval, tau1)
     if g2 != 0.0:
@@ -57,14 +79,20 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
 
 def flow(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt = (F_elastic - q_i) / tau_i."""
-    g1, tau1, g2, tau2, g3, tau3, sudden, g4, tau4, g5, tau5 = values
-    elastic = instant.elastic_force
+    g1, tau1, g2, tau2, g3, tau3, sudden, g4, tau4, g5, tau5, freshness = values
+    elastic = instant.elastic_force - instant.preload
     _, q1, q2, q3, q4, q5 = state
     if instant.first:
-        added = -sudden * (g1 + g2 + g3 + g4 + g5) * elastic
-        return signal + added, (0.0, elastic, elastic, elastic, elastic, elastic)
+        q1, q2, q3, q4, q5 = elastic, elastic, elastic, elastic, elastic
+        if freshness > 0.0:
+            held = time_held(freshness, tau1)
+            q1, q2 = q1 - left(elastic, held, tau1), q2 - left(elastic, held, tau2)
+            q3 = q3 - left(elastic, held, tau3)
+            q4, q5 = q4 - left(elastic, held, tau4), q5 - left(elastic, held, tau5)
     h1, h2, h3, h4, h5 = elastic - q1, elastic - q2, elastic - q3, elastic - q4, elastic - q5
     added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic
+    if instant.first:
+        return signal + added, (0.0, q1, q2, q3, q4, q5)
     return signal + added, (0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5)
 
 
@@ -197,6 +225,17 @@ VISCOELASTIC_RELAXATION = Effect(
             "fifth relaxation time",
             optional=True,
             prior=Prior("log", 3.0, math.log(3), "duration"),
+        ),
+        Parameter(
+            "freshness",
+            "f",
+            "1",
+            0.0,
+            0.0,
+            1.0,
+            "at the first sample, 0: relaxed, 1: just deflected",
+            optional=True,
+            prior=Prior("normal", 0, 1, "1", "held for any time of the order of the first relaxation time"),
         ),
     ),
     initial_state=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),

@@ -24,10 +24,11 @@ def respond_loop(
     values: State,
     answer: FloatArray,
     two_sided: bool,
+    preload: float,
 ) -> None:
     """Fill `answer` with the effect's signal at every sample; `state` is its initial state.
 
-    two_sided: whether the part is held at both ends
+    two_sided: whether the part is held at both ends; preload: [N] its force without a deflection
     history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
     of every sample
     """
@@ -60,6 +61,7 @@ def respond_loop(
                 pressure[i],
                 temperature[i],
                 two_sided,
+                preload,
             ),
             state,
             values,

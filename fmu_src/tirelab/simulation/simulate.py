@@ -87,7 +87,7 @@ class History:
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
     coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]; channels: those of CHANNELS
-    two_sided: whether the part is held at both ends
+    two_sided: whether the part is held at both ends; preload: [N] part of the elastic force without a deflection
     """
 
     time: FloatArray
@@ -100,6 +100,7 @@ class History:
     curvature: FloatArray
     channels: tuple[FloatArray, ...]
     two_sided: bool
+    preload: float
 
 
 def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -225,6 +226,7 @@ def history_of(tire: TireModel, recording: Sampled, kinematics: Kinematics | Non
         curvature,
         channels,
         tire.two_sided,
+        tire.preload,
     )
 
 
@@ -249,6 +251,7 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
         tuple(float(value) for value in values),
         answer,
         history.two_sided,
+        history.preload,
     )
     return answer
 

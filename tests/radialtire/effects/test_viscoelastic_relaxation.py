@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from driving import LINEAR, STIFFNESS, drive, harmonic, only, sine
+from driving import LINEAR, STIFFNESS, drive, harmonic, only, sine, values_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from radialtire import CATALOGUE, TireModel
 from radialtire.effects.viscoelastic_relaxation import overstress
 
 NAME = "viscoelastic_relaxation"
@@ -107,6 +108,50 @@ def test_three_terms_follow_six() -> None:
     shares, *_ = np.linalg.lstsq(columns, six, rcond=None)
     assert np.all(shares > 0.0)
     assert np.max(np.abs(columns @ shares - six)) < 0.005
+
+
+TERMS = {"share_1": 0.2, "relaxation_time_1": 30.0, "share_2": 0.1, "relaxation_time_2": 800.0}
+
+
+@pytest.mark.parametrize("held", [0.0, 0.7, 30.0, 400.0])
+def test_a_recording_that_begins_in_a_hold_has_what_the_whole_one_has_left(held: float) -> None:
+    """A step, a rest, and then the recording: F_e (1 + sum g_i exp(-t / tau_i)) from the step on, in closed form; and
+    whatever follows as it is where the step is recorded too.
+    """
+    fresh = only(NAME, law=LINEAR, freshness=30.0 / (30.0 + held), **TERMS)
+    time = np.linspace(0.0, 300.0, 61)
+    force = drive(fresh, time, np.full(61, 0.01))
+    expected = 1000.0 * (1.0 + 0.2 * np.exp(-(held + time) / 30.0) + 0.1 * np.exp(-(held + time) / 800.0))
+    assert force == pytest.approx(expected, rel=1e-12)
+    x = 0.01 + 0.008 * np.sin(time / 20.0)
+    whole = drive(
+        only(NAME, law=LINEAR, **TERMS),
+        np.concatenate([[0.0, 1e-9, held + 2e-9], held + time[1:] + 2e-9]),
+        np.concatenate([[0.0, 0.01], x]),
+    )
+    assert drive(fresh, time, x) == pytest.approx(whole[2:], rel=1e-8)
+
+
+def test_of_a_deflection_that_took_a_while_the_time_counts_from_its_middle() -> None:
+    """A ramp of 2 s: (1 - exp(-T / tau)) tau / T is exp(-T / 2 tau) but for (T / tau)^2 / 24."""
+    ramp = drive(only(NAME, law=LINEAR, **TERMS), [0.0, 2.0, 102.0], [0.0, 0.01, 0.01])
+    fresh = drive(only(NAME, law=LINEAR, freshness=30.0 / 31.0, **TERMS), [0.0, 100.0], [0.01, 0.01])
+    assert fresh == pytest.approx(ramp[1:], abs=1.1 * 200.0 * (2.0 / 30.0) ** 2 / 24.0)
+
+
+def test_a_recording_that_begins_without_a_force_is_the_same_however_fresh() -> None:
+    time = np.linspace(0.0, 10.0, 101)
+    x = 0.01 * np.sin(time) - 1e-3
+    relaxed, fresh = (drive(only(NAME, freshness=f, **TERMS), time, x) for f in (0.0, 0.9))
+    assert fresh.tolist() == relaxed.tolist()
+    assert relaxed.max() > 100.0
+
+
+def test_a_preload_has_relaxed_already() -> None:
+    values = values_of(CATALOGUE[NAME], freshness=0.5, sudden=1.0, share_1=0.2, relaxation_time_1=30.0)
+    part = TireModel(LINEAR, ((CATALOGUE[NAME], values),), two_sided=True, preload=50.0)
+    # 1 - r g + g exp(-1) of -1 kN, beside the preload
+    assert drive(part, [0.0], [-0.01]) == pytest.approx(50.0 - 1000.0 * (1.0 - 0.2 + 0.2 * math.exp(-1.0)))
 
 
 def test_a_relaxing_tire_leaves_the_ground_before_its_shape_does() -> None:

@@ -327,6 +327,18 @@ def test_a_part_of_a_file_starts_with_what_was_recorded_before_it() -> None:
     assert np.abs(simulate(tire, alone(part)) - simulate(tire, part)).max() > 10.0
 
 
+def test_a_part_that_begins_under_load_is_simulated_as_it_is_stepped() -> None:
+    """Relaxation from before the first sample, of the law's force without the preload."""
+    effect = CATALOGUE["viscoelastic_relaxation"]
+    given = {"share_1": 0.2, "relaxation_time_1": 3.0, "share_3": 0.1, "sudden": 0.5, "freshness": 0.4}
+    values = tuple(given.get(p.name, p.start) for p in effect.parameters)
+    tire = TireModel(PowerLaw(1000.0, 1.2), ((effect, values),), two_sided=True, preload=50.0)
+    motion = random_motion(3)
+    same(tire, motion)
+    relaxed = replace(tire, effects=((effect, (*values[:-1], 0.0)),))
+    assert abs(stepped(tire, motion)[0] - stepped(relaxed, motion)[0]) > 1.0
+
+
 def test_the_preload_of_a_part_is_no_part_of_what_its_shape_multiplies() -> None:
     """At x = 0 the force is the preload, beside 0 it is next to it, and A x^B alone is multiplied."""
     effect = CATALOGUE["elastic_shape"]
