@@ -26,6 +26,7 @@ from .flat_step import (
 from .hull1996 import Hull1996
 from .learned_remainder import LearnedRemainder
 from .parameter import Parameter, ParameterError
+from .part_curve import PartCurve
 
 DEFLECTION_LOWEST = -1e3
 """Lowest deflection accepted [m]: a wheel this high above the ground is a mistake."""
@@ -126,6 +127,7 @@ class TireModel:
     inflated: whether air carries its load: without, nothing of a pressure is looked for
     preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring;
     effects that multiply the law do not multiply it
+    curve: a force over the deflection that is added to the preload, None for a part that a power law follows
     remainder: a force without physics that is added to all others, None where nobody asked for one
     """
 
@@ -139,6 +141,7 @@ class TireModel:
     preload: float = 0.0
     remainder: LearnedRemainder | None = None
     inflated: bool = True
+    curve: PartCurve | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reading_noise", READING_NOISE.checked(self.reading_noise))
@@ -147,6 +150,8 @@ class TireModel:
             raise ParameterError(
                 f"preload = {self.preload:g} N needs a two-sided part; a tire without a deflection has no force"
             )
+        if self.curve is not None and not self.two_sided:
+            raise ParameterError("a curve needs a two-sided part; a tire has a law of its ground")
         names = [effect.name for effect, _ in self.effects]
         if len(set(names)) < len(names):
             raise ParameterError(f"an effect occurs twice in {', '.join(names)}; keep one of each")
@@ -225,6 +230,13 @@ class TireModel:
         if self.bare:
             return power_law.force(deflection, *law), state
         path, parameters, _ = self._flat
+        if self.curve is not None:
+            x = self.tire_deflection(deflection, surface_radius, time, state, measured)
+            parameters = (
+                *parameters[:PRELOAD],
+                self.preload + self.curve.over(x),
+                *parameters[PRELOAD + 1 :],
+            )
         after = list(state)
         force, _ = flat_step.step(
             path, law, _motion(deflection, surface_radius, time, measured), parameters, state, after
@@ -265,6 +277,10 @@ class TireModel:
         law = self.law.coefficients(surface_radius)
         if self.bare:
             return power_law.stiffness(deflection, *law)
+        if self.curve is not None:
+            h, now = TANGENT_STEP, (surface_radius, state[TIME], state, measured)
+            above, below = (self.step(deflection + step, *now)[0] for step in (h, -h))
+            return (above - below) / (2.0 * h)
         path, parameters, _ = self._flat
         motion = _motion(deflection, surface_radius, state[TIME], measured)
         tangent = flat_step.stiffness(path, law, motion, parameters, state, list(state))

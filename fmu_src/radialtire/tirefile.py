@@ -8,7 +8,8 @@
 
 A parameter that is not given has its start value; an unknown name is an error, never passed over. `tested_range` may be
 null: then it is not known. `reading_noise` [m], 0 where it is not given, is that of `TireModel`. A learned remainder,
-where somebody asked for one, is under `learned_remainder` with `by`, `at`, `force` and, over the force, `law`.
+where somebody asked for one, is under `learned_remainder` with `by`, `at`, `force` and, over the force, `law`. A
+two-sided part may have a `curve` with `at` [m] and `force` [N].
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from .hull1996 import Hull1996
 from .learned_remainder import LearnedRemainder
 from .model import PRELOAD_FORCE, READING_NOISE, Law, TestedRange, TireModel
 from .parameter import Parameter, ParameterError
+from .part_curve import PartCurve
 from .power_law import PowerLaw
 from .recalibrated import Recalibrated
 
@@ -81,6 +83,8 @@ def to_text(tire: TireModel) -> str:
     }
     if tire.two_sided:
         content |= {"two_sided": True, "preload": tire.preload}
+    if tire.curve is not None:
+        content["curve"] = {"at": tire.curve.at, "force": tire.curve.force}
     if not tire.inflated:
         content |= {"inflated": False}
     if tire.remainder is not None:
@@ -108,6 +112,7 @@ def from_text(text: str) -> TireModel:
         "preload",
         "inflated",
         "learned_remainder",
+        "curve",
     }
     entry = _entry(content, "the tire", known, {"schema", "law"})
     if entry["schema"] != SCHEMA:
@@ -126,6 +131,7 @@ def from_text(text: str) -> TireModel:
             inflated=_flag(entry, "inflated", otherwise=True),
             preload=entry.get("preload", 0.0),
             remainder=_remainder(entry.get("learned_remainder")),
+            curve=_curve(entry.get("curve")),
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None
@@ -278,16 +284,28 @@ def _remainder(value: Any) -> LearnedRemainder | None:
         return None
     needed = {"by", "at", "force"}
     entry = _entry(value, "learned_remainder", {*needed, "law"}, needed)
+    rows = _points(entry, "learned_remainder")
+    law: Any = None if entry.get("law") is None else _law(entry["law"])
+    return LearnedRemainder(str(entry["by"]), rows[0], rows[1], law)
+
+
+def _curve(value: Any) -> PartCurve | None:
+    if value is None:
+        return None
+    needed = {"at", "force"}
+    return PartCurve(*_points(_entry(value, "curve", needed, needed), "curve"))
+
+
+def _points(entry: dict[str, Any], owner: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     rows = []
     for name in ("at", "force"):
         numbers = entry[name]
         if not isinstance(numbers, list) or any(
             isinstance(n, bool) or not isinstance(n, (int, float)) for n in numbers
         ):
-            raise TireFileError(f"{name} of learned_remainder must be a list of numbers")
+            raise TireFileError(f"{name} of {owner} must be a list of numbers")
         rows.append(tuple(map(float, numbers)))
-    law: Any = None if entry.get("law") is None else _law(entry["law"])
-    return LearnedRemainder(str(entry["by"]), rows[0], rows[1], law)
+    return rows[0], rows[1]
 
 
 def _tested_range(value: Any) -> TestedRange | None:

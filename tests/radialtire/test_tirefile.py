@@ -73,7 +73,7 @@ LAW = {"name": "hull1996"}
         ({"schema": 2, "law": LAW}, "schema 2 is not 1; use the version that wrote the file"),
         (
             {"schema": 1, "law": LAW, "colour": "red"},
-            "the tire has an unknown entry 'colour'; known are effects, inflated, law",
+            "the tire has an unknown entry 'colour'; known are curve, effects, inflated, law",
         ),
         ({"schema": 1, "law": LAW, "name": 5}, "name must be text, not 5"),
         ({"schema": 1, "law": "hull1996"}, "the law must be an object with name, not 'hull1996'"),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..identification.result import Identification
     from ..recordings.recording import Recording
 
-PART_LAWS = ("constant", "linear", "power", "power_preload", "linear_gap", "power_gap")
+PART_LAWS = ("constant", "linear", "power", "power_preload", "linear_gap", "power_gap", "piecewise")
 """Laws of `--part` that a tire file holds."""
 
 WIDTH_LEAST = 100
@@ -142,7 +142,7 @@ def _part(
     from ..computing.staging import staged
     from ..identification.misfit import misfit_sentence
     from ..identification.part_laws import fit_laws, reading_noise
-    from ..identification.part_tire import best_writable, springless, tire_of
+    from ..identification.part_tire import CURVE, best_writable, curve_advice, springless, tire_of
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
@@ -158,6 +158,11 @@ def _part(
         law = min(fits, key=lambda fit: fit.rmse)
     misfit = misfit_sentence(law.rmse, reading_noise(recordings), words.diagnose(output.out))
     if tire is not None:
+        reason = curve_advice(model, recordings) if misfit else ""
+        if reason:
+            misfit = (
+                f"{reason}: `{words.identify(words.recordings, CURVE, tire)}`, then `{words.diagnose(tire)}`"
+            )
         misfit = _advice_on_holds(found, part, tire, words) or misfit
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]

@@ -9,7 +9,7 @@ Deflection x and force F may have both signs. All samples count alike.
     power_preload F = F0 + A sign(x) |x|^B
     power_gap     F = A max(x - x0, 0)^B
     polynomial    F = F0 + k1 x + k2 x^2 + k3 x^3
-    piecewise     straight lines between the forces at x1 ... x6, which divide the samples alike
+    piecewise     straight lines between the forces at x1 ... xn, which divide the samples alike; n by the criterion
     mf_tyre       F = (q1 x + q2 x^2) (1 + p dp)         dp = pressure over the mean one, less 1, where it was recorded
 
 mf_tyre is the vertical force of MF-Tyre without speed and camber: H. Pacejka, "Tire and Vehicle Dynamics", 3rd ed.
@@ -19,7 +19,7 @@ mf_tyre is the vertical force of MF-Tyre without speed and camber: H. Pacejka, "
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -37,8 +37,12 @@ Array = NDArray[np.float64]
 SAMPLES_MOST = 20_000
 """Most samples that are fitted, evenly spaced."""
 
-KNOTS = 6
-"""Knots of the piecewise law; as many samples lie between each two."""
+LINES = (5, 10, 20, 40, 80)
+"""Numbers of straight lines of the piecewise law of which the one of the least criterion is taken: a detent needs four,
+a part has some. As many samples lie on each."""
+
+SAMPLES_OF_LINE = 8
+"""Fewest samples of one of many lines: four for each of its two numbers."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +50,14 @@ class LawFit:
     """One law fitted: its constants with standard uncertainties for white noise, and the RMSE [N] it leaves.
 
     constants: symbol, value, uncertainty and unit of each; bic: Bayesian criterion relative to nothing, lower is better
+    at: the deflections [m] whose forces the constants are, in the piecewise law
     """
 
     name: str
     constants: tuple[tuple[str, float, float, str], ...]
     rmse: float
     bic: float
+    at: tuple[float, ...] = ()
 
     def value(self, symbol: str) -> float:
         """Return a constant; raises KeyError where the law has none of that symbol."""
@@ -169,11 +175,18 @@ def _polynomial(s: _Samples) -> LawFit:
 
 
 def _piecewise(s: _Samples) -> LawFit:
-    knots = np.unique(np.quantile(s.x, np.linspace(0.0, 1.0, KNOTS)))
+    few = [n for n in LINES if n == LINES[0] or SAMPLES_OF_LINE * n <= s.x.size]
+    return min((_lines(s, n) for n in few), key=lambda fit: fit.bic)
+
+
+def _lines(s: _Samples, count: int) -> LawFit:
+    knots = np.unique(np.quantile(s.x, np.linspace(0.0, 1.0, count + 1)))
     hats = [np.interp(s.x, knots, np.eye(knots.size)[i]) for i in range(knots.size)]
     values, fitted = _lstsq(hats, s)
-    units = [(f"F({10.0 * knot:.3g} mm)", 1.0, "N") for knot in knots]
-    return _fit("piecewise", units, values, fitted)
+    digits = 3 if count == LINES[0] else 9  # so that near ones have different symbols
+    units = [(f"F({10.0 * knot:.{digits}g} mm)", 1.0, "N") for knot in knots]
+    at = tuple(float(knot) / CM_PER_M for knot in knots)
+    return replace(_fit("piecewise", units, values, fitted), at=at)
 
 
 def _mf_tyre(s: _Samples) -> LawFit:

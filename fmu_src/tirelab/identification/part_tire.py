@@ -1,4 +1,4 @@
-"""A law of a part as a tire, which a tire file and an FMU hold: a power law with a gap or with a preload."""
+"""A law of a part as a tire, which a file and an FMU hold: a power law with a gap or with a preload, or a curve."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
+from radialtire.part_curve import PartCurve
 
 from ..errors import TirelabError
 from ..recordings.recording import Recording
 from ..recordings.zero import FARTHEST
-from .part_laws import LawFit, constant_fit
+from .both_ways import common_curve
+from .part_laws import LawFit, constant_fit, reading_noise
 from .power_fit import EXPONENT_BOUNDS
 
 GAPS = ("linear_gap", "power_gap")
@@ -24,6 +26,11 @@ IN_GAP = 0.1
 
 TWO_SIDED = ("constant", "linear", "power", "power_preload")
 """Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
+
+CURVE = "piecewise"
+"""Law that a tire file holds as a curve of a part that is held at both ends. Every recording has one; it is proposed
+only where the force is one of the deflection, in and out alike, and no spring's.
+"""
 
 AT_REST, MOSTLY_HELD = 0.02, 0.9
 """A recording is a hold if more than MOSTLY_HELD of its samples lie within AT_REST of its stroke of one deflection."""
@@ -48,8 +55,11 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     """
     if fit.name in TWO_SIDED:
         return _described(_two_sided(fit, recordings), recordings, name)
+    if fit.name == CURVE and len(fit.at) > 1:
+        curve = PartCurve(fit.at, tuple(value for _, value, _, _ in fit.constants))
+        return _described(replace(_without_spring(0.0), curve=curve), recordings, name)
     if fit.name not in GAPS:
-        known = ", ".join((*TWO_SIDED, *GAPS))
+        known = ", ".join((*TWO_SIDED, *GAPS, CURVE))
         raise TirelabError(f"a tire file cannot hold the law {fit.name}; choose one of {known}")
     _refuse_pull(fit, recordings)
     x0 = 1e-3 * fit.value("x0")
@@ -68,16 +78,34 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
 def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> str:
     """Return the first of the laws that a tire file holds, "" where it holds none.
 
-    One whose spring is none is left to the constant.
+    One whose spring is none is left to the constant, and the curve is taken where it is proposed (`curve_advice`).
     """
     for fit in fits:
+        if fit.name == CURVE:
+            continue
         try:
-            law = tire_of(fit, recordings, "").law
+            tire = tire_of(fit, recordings, "")
         except TirelabError:
             continue
-        if fit.name == "constant" or law != PowerLaw(LEAST_SPRING, 1.0):
-            return fit.name
+        if fit.name == "constant" or tire.law != PowerLaw(LEAST_SPRING, 1.0):
+            return CURVE if curve_advice(tire, recordings) else fit.name
     return ""
+
+
+def curve_advice(tire: TireModel, recordings: Sequence[Recording]) -> str:
+    """Return the reason to take the curve instead of the law of `tire`, "" where there is none.
+
+    A diagnosis refits the law by factors, so it cannot follow a force that is more than the spring's.
+    """
+    if not tire.two_sided or tire.curve is not None:
+        return ""
+    common, spring = common_curve(recordings, tire)
+    if not (common > spring and common > reading_noise(recordings)):
+        return ""
+    return (
+        f"the force rises and falls with the deflection in and out alike, by {common:.2g} N, and the spring of this "
+        f"law by {spring:.2g} N, as with detents or a snap-through"
+    )
 
 
 def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:

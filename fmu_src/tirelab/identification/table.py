@@ -30,6 +30,10 @@ def surface_table(identification: Identification) -> Table:
     return table
 
 
+SHOWN = 6
+"""Most constants of a law that are printed; with --json all are."""
+
+
 def law_table(fits: Sequence[LawFit]) -> Table:
     """Return the laws that were compared: what each leaves, and its constants."""
     table = _table(
@@ -41,10 +45,13 @@ def law_table(fits: Sequence[LawFit]) -> Table:
     table.add_column("RMSE\n" + escape("[N]"), justify="right", no_wrap=True)
     table.add_column("constants")
     for fit in fits:
-        constants = (
+        constants = [
             f"{symbol} = {with_uncertainty(value, spread)}{'' if unit == '1' else ' ' + unit}"
             for symbol, value, spread, unit in fit.constants
-        )
+        ]
+        if len(constants) > SHOWN:
+            first, last = (f"{1e3 * x:.3g} mm" for x in (fit.at[0], fit.at[-1]))
+            constants = [f"{len(constants)} forces, from {first} to {last}"]
         table.add_row(fit.name, f"{fit.rmse:.4g}", escape(", ".join(constants)))
     return table
 

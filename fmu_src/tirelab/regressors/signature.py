@@ -28,6 +28,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from ..names import REFITTED_LAW
+from ..simulation.simulate import preload_of
 from .dataset import Dataset, Scales, arranged
 
 FloatArray = NDArray[np.float64]
@@ -147,7 +148,8 @@ def law_signature(dataset: Dataset) -> Signature:
         [np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments]
     )
     radius = gather([e.surface_radius for e in dataset.experiments])
-    force = dataset.stacked([e.baseline - dataset.tire.preload for e in dataset.experiments])
+    tire = dataset.tire  # what it is without a deflection, and its curve, are no factor's
+    force = dataset.stacked([e.baseline - preload_of(tire, e.deflection) for e in dataset.experiments])
     reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
     way = np.log(np.maximum(x / reference, LEAST_RATIO))
     places = 2.0 * reference * np.arange(1, HEIGHTS + 1) / HEIGHTS

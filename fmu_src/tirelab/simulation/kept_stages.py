@@ -44,7 +44,7 @@ class KeptStages(Behind):
     def simulate(self, tire: TireModel) -> FloatArray:
         """Return the radial force [N] of `tire` at every sample; it may be given out again: do not change it."""
         before = tuple((e.name, v) for e, v in tire.effects if e.place in (*UPSTREAM, "scale"))
-        law = (tire.law, tire.two_sided, tire.preload, tire.reading_noise, tire.differentiates)
+        law = (tire.law, tire.two_sided, tire.preload, tire.curve, tire.reading_noise, tire.differentiates)
         history, force = self._once(
             (law, before), (), lambda: elastic_stage(tire, self._motion, self._motion)
         )

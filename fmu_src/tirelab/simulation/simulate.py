@@ -172,8 +172,16 @@ def elastic_stage(
     factor = downstream(tire, history, np.ones_like(bare), ("scale",))
     elastic = factor * bare
     if tire.two_sided:
-        elastic += tire.preload
+        elastic += preload_of(tire, x)
     return replace(history, elastic_force=elastic), elastic
+
+
+def preload_of(tire: TireModel, deflection: FloatArray) -> FloatArray:
+    """Return the preload [N] of a two-sided part with its curve over its own `deflection` [m]."""
+    preload = np.full(deflection.shape, tire.preload)
+    if tire.curve is not None:
+        preload += np.interp(deflection, tire.curve.at, tire.curve.force)
+    return preload
 
 
 def upstream(tire: TireModel, history: History) -> FloatArray:

@@ -73,7 +73,7 @@ def test_a_remainder_is_counted_in_newtons_over_all_samples() -> None:
     Ten noises left in a quiet block are one of a loud one: of its samples, a fifth of all, the mean square is 99/100.
     """
     (loud,) = DATASET.experiments
-    quiet = replace(loud, noise=0.1 * loud.noise, size=loud.size // 4)
+    quiet = replace(loud, noise=0.1 * loud.noise, blocks=replace(loud.blocks, size=loud.size // 4))
     dataset = replace(DATASET, experiments=(loud, quiet))
     values = np.concatenate([np.ones(SIZE), np.full(SIZE, 10.0)])
     fit = left(values)

@@ -13,7 +13,7 @@ from rivals import looking_for, rivals
 from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise
-from tirelab.identification.part_tire import springless, tire_of
+from tirelab.identification.part_tire import curve_advice, springless, tire_of
 from tirelab.identification.table import law_table, with_uncertainty
 from tirelab.recordings.recording import Recording
 from tirelab.recordings.writing import write_recording
@@ -315,3 +315,70 @@ def test_the_law_of_a_ramp_that_is_held_is_identified_from_the_ramp(tmp_path: Pa
     assert done.exit_code == 0, done.output
     assert "is a hold" not in done.output
     assert read_tire(tmp_path / "part.json").law.coefficient == pytest.approx(40.0, rel=0.01)  # type: ignore[attr-defined]
+
+
+def shifter(tmp_path: Path) -> tuple[list[str], np.ndarray, np.ndarray]:
+    """Write two slow strokes over five detents of 10 N with 6 N of friction; return words, deflection and law."""
+    time = np.arange(0.0, 80.0, 0.04)
+    x = 0.04 * (1.0 - np.cos(2.0 * np.pi * time / 40.0))
+    detents = 10.0 * np.sin(2.0 * np.pi * x / 0.016)
+    force = detents + 6.0 * np.sign(np.gradient(x)) + 0.1 * np.random.default_rng(8).standard_normal(x.size)
+    rows = np.column_stack([time, 1e3 * x, force])
+    header = "time [s],deflection [mm],force [N]"
+    np.savetxt(tmp_path / "shifter.csv", rows, delimiter=",", header=header, comments="", fmt="%.6f")
+    signed = ["--columns", "deflection=+deflection [mm],force=+force [N]"]
+    return [str(tmp_path / "shifter.csv"), *signed], x, detents
+
+
+def test_detents_are_told_the_curve_and_friction_is_found_beside_it(tmp_path: Path) -> None:
+    words, x, detents = shifter(tmp_path)
+    out = tmp_path / "part.json"
+    line = CliRunner().invoke(main, ["identify", *words, "--part", "constant", "--out", str(out)])
+    (said,) = [row for row in line.output.splitlines() if "rises and falls with the deflection" in row]
+    again, diagnose = (shlex.split(said.split("`")[i]) for i in (1, 3))
+    compared = CliRunner().invoke(main, ["identify", *words, "--part", "compare", "--out", str(out)])
+    (best,) = [row for row in compared.output.splitlines() if "a tire file holds" in row]
+    assert shlex.split(best.split("`")[1]) == again
+    done = CliRunner().invoke(main, again[1:])
+    assert done.exit_code == 0, done.output
+    assert "rises and falls" not in done.output
+    tire = read_tire(out)
+    assert tire.curve is not None
+    moving = Recording("moving", np.arange(x.size) / 25.0, x, np.full(x.size, np.inf), detents)
+    height = np.sqrt(np.mean(detents**2))
+    assert np.sqrt(np.mean((simulate(tire, moving) - detents) ** 2)) < 0.25 * height
+    with looking_for(*rivals("rate_independent_hysteresis")):
+        diagnosed = CliRunner().invoke(main, [*diagnose[1:], "--out", str(tmp_path / "d"), "--quiet"])
+    assert diagnosed.exit_code == 0, diagnosed.output
+    content = json.loads((tmp_path / "d" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert content["verdict"]["fit"]["after"] < 0.25 * height
+    assert read_tire(tmp_path / "d" / "tire.json").curve == tire.curve
+
+
+def cycled(force: np.ndarray, x: np.ndarray) -> Recording:
+    return Recording("cycled", np.arange(x.size) / 50.0, x, np.full(x.size, np.inf), force)
+
+
+def test_springs_and_dampers_are_not_told_the_curve() -> None:
+    phase = 2.0 * np.pi * np.arange(4000) / 1000.0
+    x = 0.01 * np.sin(phase)
+    noise = np.random.default_rng(8).standard_normal(x.size)
+    rate = np.cos(phase)
+    parts = {
+        "damper": 50.0 * np.where(rate > 0.0, 2.0, 1.0) * np.sign(rate) * np.abs(rate) ** 0.7,
+        "mass": -80.0 * np.sin(phase) + 200.0,
+        "stiffening": 2e4 * x + 3e8 * x**3,
+        "friction": 30.0 * np.sign(rate),
+        "noise": 0.0 * x,
+    }
+    for name, force in parts.items():
+        recordings = [cycled(force + noise, x)]
+        for fit in fit_laws(recordings):
+            if fit.name in ("constant", "linear", "power", "power_preload") and not (
+                name == "stiffening" and fit.name == "constant"
+            ):
+                try:
+                    tire = tire_of(fit, recordings, "")
+                except TirelabError:
+                    continue
+                assert curve_advice(tire, recordings) == "", (name, fit.name)

@@ -60,6 +60,8 @@ def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFm
         raise TirelabError(
             "a learned remainder runs in the Python FMU only; leave out --native, or build the tire without it"
         )
+    if tire.curve is not None:
+        raise TirelabError("a part with a curve runs in the Python FMU only; leave out --native")
     description = described(tire)
     members = documentation.pages(tire, description, None, fmi=fmi)
     key = "guid"
