@@ -6,7 +6,6 @@ Nothing of the FMU is run here; `foreign_replay` does that, in a process of its 
 from __future__ import annotations
 
 import re
-import zipfile
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,6 +22,7 @@ from ..recordings.assignments import assignments
 from ..recordings.channels import CHANNELS, assignments_text
 from ..recordings.units import UnitError, conversion, measures
 from ..recordings.vocabulary import foreign_channel, plain
+from .unpacking import description_in, text_in
 
 TIMEOUT = 300.0
 """Time [s] after which the replay of one recording is ended where none is given."""
@@ -102,17 +102,12 @@ def tire_inside(path: Path) -> TireModel | None:
 
     Raises TirelabError where it is no archive, or its tire cannot be read.
     """
-    try:
-        with zipfile.ZipFile(path) as archive:
-            names = set(archive.namelist())
-            if "resources/tire.json" in names:
-                return from_text(archive.read("resources/tire.json").decode("utf-8"))
-    except FileNotFoundError:
-        raise TirelabError(f"{path} does not exist; check the path") from None
-    except (OSError, zipfile.BadZipFile) as error:
-        raise TirelabError(f"{path} cannot be read as an FMU ({error}); export it again") from None
-    except (TireFileError, UnicodeDecodeError) as error:
-        raise TirelabError(f"{path}: its resources/tire.json cannot be read: {error}") from None
+    text, names = text_in(path, "resources/tire.json")
+    if text is not None:
+        try:
+            return from_text(text)
+        except TireFileError as error:
+            raise TirelabError(f"{path}: its resources/tire.json cannot be read: {error}") from None
     if "resources/tire.dat" in names:
         raise TirelabError(
             f"{path} is a native FMU of an older tirelab, which holds no tire file; build it again, or give the tire "
@@ -158,18 +153,7 @@ def read_foreign(asked: Simulation) -> ForeignFmu:
 
 
 def _description(path: Path) -> ModelDescription:
-    try:
-        with open(
-            path, "rb"
-        ) as file:  # opened here, since fmpy leaves it open where it refuses the description
-            description = fmpy.read_model_description(file, validate=False)
-    except FileNotFoundError:
-        raise TirelabError(f"{path} does not exist; check the path") from None
-    except (OSError, zipfile.BadZipFile, KeyError) as error:
-        raise TirelabError(f"{path} cannot be read as an FMU ({error}); export it again") from None
-    except Exception as error:  # fmpy raises plain Exception for a description that breaks the standard
-        first = " ".join(str(error).splitlines()[:2])
-        raise TirelabError(f"{path} breaks the FMI standard ({first}); export it again") from None
+    description = description_in(path, validate=False, again="export it again")
     if not description.fmiVersion.startswith(("2.", "3.")):
         raise TirelabError(f"{path} is FMI {description.fmiVersion}; export it as FMI 2.0 or 3.0")
     return description

@@ -15,7 +15,6 @@ import sys
 import tempfile
 import threading
 import time
-import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -68,10 +67,7 @@ def replay_foreign(
     }
     with tempfile.TemporaryDirectory(prefix="tirelab_", ignore_cleanup_errors=True) as folder:
         place = Path(folder)
-        try:
-            unpack(fmu.path, place / "fmu")
-        except (OSError, zipfile.BadZipFile) as error:
-            raise TirelabError(f"{fmu.path} cannot be unpacked ({error}); export it again") from None
+        unpack(fmu.path, place / "fmu")
         (place / "job.json").write_text(json.dumps(job), encoding="utf-8")
         np.save(place / "inputs.npy", table)
         _followed(_Watch(fmu.path, name, len(table), timeout, progress), place)

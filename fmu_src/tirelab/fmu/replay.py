@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import shutil
 import tempfile
-import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from radialtire import CHANNELS
 
 from ..errors import TirelabError
 from ..simulation.channels import Sampled, begun, measured_of
-from .unpacking import unpack
+from .unpacking import description_in, unpack
 
 INPUTS = ("deflection", "surface_radius")
 OUTPUT = "radial_force"
@@ -47,16 +46,7 @@ def description_of(fmu: Path) -> ModelDescription:
 
     Raises TirelabError where it cannot be read, or is not FMI 2.0 Co-Simulation.
     """
-    try:
-        with open(fmu, "rb") as file:  # fmpy would leave it open where it refuses the description
-            description = fmpy.read_model_description(file)
-    except FileNotFoundError:
-        raise TirelabError(f"{fmu} does not exist; build it with build_fmu.py or name another") from None
-    except (OSError, zipfile.BadZipFile, KeyError) as error:
-        raise TirelabError(f"{fmu} cannot be read as an FMU ({error}); build it again") from None
-    except Exception as error:  # fmpy raises plain Exception for a description that breaks the standard
-        first = " ".join(str(error).splitlines()[:2])
-        raise TirelabError(f"{fmu} breaks the FMI standard ({first}); build it again") from None
+    description = description_in(fmu, validate=True, again="build it again")
     if description.fmiVersion != "2.0" or description.coSimulation is None:
         raise TirelabError(f"{fmu} is not an FMI 2.0 Co-Simulation unit; export it as one")
     return description
