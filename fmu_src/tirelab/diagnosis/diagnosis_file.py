@@ -80,7 +80,7 @@ def read_stated(folder: Path) -> Stated:
         return _stated(content, folder)
     except OSError as error:
         raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise DiagnosisFileError(f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
 
 
@@ -115,7 +115,7 @@ def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | C
         raise DiagnosisFileError(f"{path}: {error.strerror or error}; diagnose again") from None
     except TireFileError as error:
         raise DiagnosisFileError(f"{path}: the corrected tire cannot be read: {error}") from None
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise DiagnosisFileError(f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
 
 

@@ -77,7 +77,7 @@ def read_diagnosed(path: Path) -> Diagnosed:
         raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
     except TireFileError as error:
         raise TirelabError(f"{file}: the believed tire cannot be read: {error}") from None
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise TirelabError(f"{file} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
     table = None if data is None else file.parent / str(data)
     return Diagnosed(

@@ -108,7 +108,10 @@ def _content(file: Path) -> dict[str, Any]:
         content: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # also of an integer of 5000 digits, and of 1000 lists in one another
         raise TirelabError(f'{file} is not TOML ({error}); write for instance stroke = "20 mm"') from None
     for key in content:
         if key not in KEYS:

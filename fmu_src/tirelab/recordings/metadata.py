@@ -182,7 +182,10 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
 def _content(file: Path) -> dict[str, Any]:
     try:
         content: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # also of an integer of 5000 digits, and of 1000 lists in one another
         raise RecordingError(
             f'{file.name} is not TOML ({error}); write for instance radius = "25.4 cm"'
         ) from None

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit.container import OutOfOrderTableProxy
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Table
 
@@ -32,6 +33,10 @@ def settings_text(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> st
             for line in HEAD:
                 document.add(tomlkit.comment(line))
         files = document.setdefault("files", tomlkit.table(is_super_table=True))
+        if not isinstance(files, Table | OutOfOrderTableProxy):
+            raise RecordingError(
+                f'{file}: files = {files.as_string()} holds no table of a file; write [files."NAME"] in its place'
+            )
         for name, settings in understood.items():
             files[name] = _table(settings)
         return tomlkit.dumps(document)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tirelab.diagnosis.diagnosis_file import NOTHING, DiagnosisFileError, read_stated
+from tirelab.diagnosis.diagnosis_file import NOTHING, DiagnosisFileError, read_corrected, read_stated
 
 
 def written(folder: Path, **changes: Any) -> Path:
@@ -125,6 +125,8 @@ def test_what_is_no_diagnosis_is_refused_in_a_sentence(
 def test_a_file_that_is_not_there_or_no_json_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DiagnosisFileError, match="No such file or directory; diagnose again"):
         read_stated(tmp_path)
-    (tmp_path / "diagnosis.json").write_text("{")
-    with pytest.raises(DiagnosisFileError, match="is no diagnosis"):
-        read_stated(tmp_path)
+    for text in ("{", "[" * 100_000, '{"schema": 2, "verdict": ' + "1" * 5000 + "}"):
+        (tmp_path / "diagnosis.json").write_text(text)
+        for read in (read_stated, read_corrected):
+            with pytest.raises(DiagnosisFileError, match=r"is no diagnosis \(.+\); diagnose again"):
+                read(tmp_path)

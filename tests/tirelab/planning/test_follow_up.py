@@ -75,7 +75,12 @@ def test_the_believed_tire_and_the_stroke_of_a_part_are_those_of_the_diagnosis(t
 
 @pytest.mark.parametrize(
     ("content", "words"),
-    [("{}", " is no diagnosis"), ("no JSON", " is no diagnosis"), (None, ": No such file")],
+    [
+        ("{}", " is no diagnosis"),
+        ("no JSON", " is no diagnosis"),
+        ("[" * 100_000, " is no diagnosis"),
+        (None, ": No such file"),
+    ],
 )
 def test_what_is_no_diagnosis_is_told(content: str | None, words: str, tmp_path: Path) -> None:
     if content is not None:

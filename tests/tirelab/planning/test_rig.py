@@ -62,6 +62,8 @@ def test_bad_limits_are_told_in_a_sentence(given: dict[str, str], words: str) ->
         ("stroke = 20", "stroke: 20 is not a number with a unit"),
         ("depth = '20 mm'", "'depth' is not known here; the keys are stroke, speed, surfaces"),
         ("stroke = ", "is not TOML"),
+        ("stroke = " + "9" * 5000, "is not TOML"),
+        ("stroke = " + "[" * 20_000, "is not TOML"),
         ("surfaces = 3", "surfaces: 3 is no list; write for instance flat,25.4cm"),
     ],
 )

@@ -112,6 +112,16 @@ def test_what_others_wrote_there_stays(press: Path) -> None:
     assert content["files"]["press.csv"]["units"]["force"] == "kN"
 
 
+@pytest.mark.parametrize("files", ["[]", '""', "{}", "1"])
+def test_files_that_are_no_table_are_said_before_anything_is_written(tmp_path: Path, files: str) -> None:
+    settings = tmp_path / "recording.toml"
+    settings.write_text(f"files = {files}\n", encoding="utf-8")
+    with pytest.raises(
+        RecordingError, match=r"recording\.toml: files = .+ holds no table of a file; write \[files"
+    ):
+        settings_text(settings, {"press.csv": {"radius": "flat"}})
+
+
 def test_a_file_of_settings_that_is_named_is_read_instead(press: Path, tmp_path: Path) -> None:
     press.with_name("recording.toml").write_text('radius = "flat"\n', encoding="utf-8")
     other = tmp_path / "bump.toml"

@@ -41,6 +41,7 @@ class TestSidecar:
         [
             ("radius = 25.4", "not text"),
             ("radius = \n", "not TOML"),
+            ("radius = " + "9" * 5000, "not TOML"),
             ('diameter = "3 cm"', "not known"),
             ('[columns]\nstroke = "x"', "no channel"),
             ('columns = "x"', "table"),
