@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, metadata, version
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import pytest
 import tirelab
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
+from packaging.version import Version
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -49,12 +55,12 @@ def test_it_says_how_to_be_cited(settings: Any) -> None:
 
 
 def test_the_version_is_written_once(repository: Path, settings: Any) -> None:
-    version = settings["project"]["version"]
-    assert tirelab.__version__ == version
+    own = settings["project"]["version"]
+    assert tirelab.__version__ == own
     holding = [
         path.name
         for path in (repository / "fmu_src").rglob("*.py")
-        if f'"{version}"' in path.read_text(encoding="utf-8")
+        if f'"{own}"' in path.read_text(encoding="utf-8")
     ]
     assert holding == []
 
@@ -63,3 +69,21 @@ def test_the_packages_say_that_they_are_typed(repository: Path, settings: Any) -
     for package in ("tirelab", "radialtire"):
         assert (repository / "fmu_src" / package / "py.typed").is_file()
     assert "Typing :: Typed" in settings["project"]["classifiers"]
+
+
+def test_no_requirement_leaves_out_the_oldest_python(settings: Any) -> None:
+    """Where the release that is installed here wants a newer Python, the requirement allows an older release."""
+    project = settings["project"]
+    oldest = project["requires-python"].removeprefix(">=") + ".0"
+    lines = [*project["dependencies"], *chain(*project["optional-dependencies"].values())]
+    wanted = [Requirement(line) for line in lines if not line.startswith(project["name"])]
+    assert len(wanted) > 30
+    refused = []
+    for requirement in wanted:
+        with suppress(PackageNotFoundError):
+            python = metadata(requirement.name).get("Requires-Python") or ""
+            newest = Version(version(requirement.name))
+            bounds = [Version(s.version) for s in requirement.specifier if s.operator == ">="]
+            if not SpecifierSet(python).contains(oldest) and newest in bounds:
+                refused.append(f"{requirement} wants Python {python}")
+    assert refused == []
