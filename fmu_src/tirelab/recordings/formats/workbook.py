@@ -2,16 +2,26 @@
 
 import io
 import threading
+import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from ..memory import readable_size
 from .libraries import load_library
+from .table import RecordingError
 
 MOST_KEPT = 64 * 2**20
 """A workbook of up to this size [B] is kept open for the next test in it."""
+
+MOST_PACKED, PACKED_FROM = 100, 256 * 2**20
+"""A workbook that unpacks to so many times its size is refused, from that content [B] on.
+
+A cell of a measured number, with its markup, unpacks to 5 to 30 times its size; what says the same again and again, to
+up to 1000 times.
+"""
 
 OTHERS = (".xls", ".xlsb", ".ods")
 """The workbooks that openpyxl cannot read, and calamine can."""
@@ -70,8 +80,24 @@ def _kept(version: Version) -> OpenpyxlBook | CalamineBook:
 def _loaded(path: Path) -> OpenpyxlBook | CalamineBook:
     """Return a workbook that does not hold its file open."""
     stream = io.BytesIO(path.read_bytes())
+    _check_size(path, stream)
     if path.suffix.lower() in OTHERS:
         calamine = load_library(path, "python_calamine", "python-calamine")
         return CalamineBook(calamine.CalamineWorkbook.from_filelike(stream))
     openpyxl = load_library(path, "openpyxl", "openpyxl")
     return OpenpyxlBook(openpyxl.load_workbook(stream, read_only=True, data_only=True))
+
+
+def _check_size(path: Path, stream: io.BytesIO) -> None:
+    """Raise RecordingError for an archive that would fill the memory, before it is unpacked."""
+    if not zipfile.is_zipfile(stream):  # .xls, or what the library refuses
+        return
+    with zipfile.ZipFile(stream) as members:
+        content = sum(member.file_size for member in members.infolist())
+    packed = stream.getbuffer().nbytes
+    if content > PACKED_FROM and content > MOST_PACKED * packed:
+        raise RecordingError(
+            f"{path.name}: unpacks from {readable_size(packed)} to {readable_size(content)}, which no table of "
+            "measured numbers does; do not use it, or export its sheet as CSV"
+        )
+    stream.seek(0)

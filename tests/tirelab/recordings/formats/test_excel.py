@@ -12,6 +12,7 @@ from one_recording import COLUMNS, HEADERS, SAMPLES, TIME, assert_the_recording,
 from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.choices import Choices
 from tirelab.recordings.files import recording_files
+from tirelab.recordings.formats import workbook
 from tirelab.recordings.inspection import inspect_recording
 from tirelab.recordings.recording import read_recording
 
@@ -241,6 +242,29 @@ def test_an_open_document_is_read_as_the_others_are(tmp_path: Path) -> None:
     recording = read_recording(tmp_path / "a.ods", radius="flat")
     np.testing.assert_allclose(recording.force, 9.0 * np.arange(30))
     np.testing.assert_allclose(recording.deflection, 2e-4 * np.arange(30))
+
+
+@pytest.mark.parametrize("name", ["bomb.xlsx", "bomb.ods"])
+def test_a_workbook_that_would_fill_the_memory_is_refused_before_it_is_unpacked(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workbook, "PACKED_FROM", 2**20)
+    with zipfile.ZipFile(tmp_path / name, "w", zipfile.ZIP_DEFLATED) as book:
+        book.writestr("xl/worksheets/sheet1.xml", b"<c><v>1</v></c>" * 2**18)
+    assert "unpacks from" in (told := refusal(tmp_path / name))
+    assert f"to {2**18 * 15 / 1e6:.3g} MB, which no table of measured numbers does" in told
+
+
+def test_a_workbook_of_noise_is_far_from_that(tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    force = np.random.default_rng(1).normal(0.0, 5.0, 2000).round(1)
+    for row in (["time [s]", "stroke [mm]", "load [N]"], *([i, i % 7, f] for i, f in enumerate(force))):
+        book.active.append(row)
+    book.save(tmp_path / "a.xlsx")
+    with zipfile.ZipFile(tmp_path / "a.xlsx") as members:
+        content = sum(member.file_size for member in members.infolist())
+    assert 5 * content < workbook.MOST_PACKED * (tmp_path / "a.xlsx").stat().st_size
 
 
 def of_tests(path: Path, tests: int, header: list[str]) -> Path:
