@@ -2,7 +2,9 @@
 
 The simulated force stands in the recordings or comes from an FMU. Its elastic law is identified from it as from a
 recording: the law of a tire on the ground or, for a part that pulls or does not follow such a law, the straight line of
-a part that is held at both ends (that of a damper has hardly any slope). What is diagnosed is
+a part that is held at both ends (that of a damper has hardly any slope). Where the recorded part pulls and the
+simulation was never driven below a deflection of 0, its law is continued there as that of a part held at both ends:
+nothing that is known of it changes, and a law of the ground could not follow the recording. What is diagnosed is
 
     F - F_believed + law(x)
 
@@ -91,10 +93,19 @@ def believed_of(fitted: Sequence[Recording], kept: Sequence[Recording]) -> Belie
 def _law_of(recordings: Sequence[Recording]) -> TireModel:
     """Return the law of the simulated force, without what else it does."""
     simulated = [replace(r, force=believed_force(r)) for r in recordings]
-    if not all(_pulls(r.force) for r in recordings) or not all(_pulls(r.force) for r in simulated):
+    pull = [_pulls(r.force) for r in recordings]
+    if not all(pull) or not all(_pulls(r.force) for r in simulated):
         with suppress(TirelabError):
-            return identify(simulated, name=NAME).tire
+            tire = identify(simulated, name=NAME).tire
+            return _continued(tire, simulated) if any(pull) else tire
     return _straight(simulated)
+
+
+def _continued(tire: TireModel, simulated: Sequence[Recording]) -> TireModel:
+    """Return the law of a part held at both ends, unless the simulated force is known below 0 and is that of ground."""
+    held = replace(tire, two_sided=True, inflated=holds_air(simulated))
+    left = [rmse([r.force - simulate(law, r) for r in simulated]) for law in (held, tire)]
+    return held if left[0] <= left[1] else tire
 
 
 def _pulls(force: FloatArray) -> bool:

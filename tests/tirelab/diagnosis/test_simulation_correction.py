@@ -87,6 +87,36 @@ def test_what_is_diagnosed_has_the_misfit_of_the_simulation() -> None:
     )
 
 
+def test_a_part_that_pulls_has_a_simulation_that_is_held_at_both_ends_where_it_was_not_driven() -> None:
+    """What it lacks is an offset of 5 mm, so the part pulls near the simulation's zero; a ground could not."""
+    time, x, _ = ride(1, samples=1000)
+    x -= float(np.min(x))
+    noise = 4.0 * np.random.default_rng(1).standard_normal(x.size)
+    lifted = 100.0 * (x - 0.005)
+    recorded = SHAPE * np.sign(lifted) * np.abs(lifted) ** 1.3 + noise
+    simulated = SHAPE * (100.0 * x) ** 1.3
+    found = believed_of(
+        [Recording("a", time, x, np.full(x.size, np.inf), recorded, believed_force=simulated)], []
+    )
+    assert found is not None
+    assert found.tire.two_sided
+    (beside,) = found.fitted
+    left = beside.force - simulate(shifted_by(found.tire, -0.005), beside)
+    assert np.std(left) == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_simulation_of_ground_that_was_driven_into_the_air_stays_one() -> None:
+    """It is known not to pull there, whatever the recorded part does."""
+    time, x, _ = ride(1, samples=1000)
+    lifted = x - 0.3 * float(np.max(x))
+    simulated = SHAPE * (100.0 * np.maximum(lifted, 0.0)) ** 1.3
+    found = believed_of(
+        [Recording("a", time, lifted, np.full(x.size, np.inf), 1e5 * lifted, believed_force=simulated)], []
+    )
+    assert found is not None
+    assert not found.tire.two_sided
+
+
 def test_some_without_it_are_refused_and_none_is_nothing() -> None:
     one = driven(1)
     bare = Recording("bare", one.time, one.deflection, one.surface_radius, one.force)
