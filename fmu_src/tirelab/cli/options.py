@@ -186,6 +186,8 @@ def simulation_of(
             raise TirelabError(
                 "--variables and --fmu-timeout are those of --fmu; name the FMU, or leave them out"
             )
+        if tire is not None and tire.suffix == ".fmu":
+            raise TirelabError(f"{tire} is an FMU and no tire file; give it with --fmu {tire}")
         return tire
     if tire is not None:
         raise TirelabError("--fmu and --tire both name a simulation; give one of them")

@@ -92,6 +92,21 @@ def test_the_shell_completes_commands_and_options(shell: str, monkeypatch: pytes
     assert "--held-out" in found.output
 
 
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        ("diagnsoe", "(Did you mean 'diagnose'?)"),
+        ("identfy", "(Did you mean 'identify'?)"),
+        ("xyz", "'xyz'."),
+    ],
+)
+def test_a_command_that_was_mistyped_is_told_the_one_that_is_spelled_alike(typed: str, said: str) -> None:
+    result = CliRunner().invoke(main, [typed, "a.csv"])
+    assert result.exit_code == 2
+    assert f"No such command '{typed}'." in result.stderr
+    assert result.stderr.rstrip().endswith(said)
+
+
 def test_a_command_that_does_not_exist_is_refused() -> None:
     result = CliRunner().invoke(main, ["diagnosis"])
     assert result.exit_code == 2

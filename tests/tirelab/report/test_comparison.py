@@ -91,6 +91,7 @@ def test_anyones_fmu_is_compared_and_ended_where_it_hangs(repository: Path, tmp_
         (["nothing.csv"], "nothing.csv"),
         (["press/slow.csv", "--fmu", "nothing.fmu"], "nothing.fmu: there is no such file; check the path"),
         (["press/slow.csv", "--tire", "nothing.json"], "nothing.json: No such file"),
+        (["press/slow.csv", "--tire", "a.fmu"], "a.fmu is an FMU and no tire file; give it with --fmu a.fmu"),
         (["press/slow.csv", "--fmu", "a.fmu", "--tire", "b.json"], "--fmu and --tire both name a simulation"),
         (["press/slow.csv", "--fmu-timeout", "3"], "name the FMU, or leave them out"),
         (["press/slow.csv", "--out", "press/slow.csv"], "cannot be written"),
