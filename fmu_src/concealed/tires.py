@@ -182,17 +182,25 @@ def contact_patch_tire(rng: np.random.Generator) -> ContactPatchTire:
 def best_power_law(tire: Tire, radius: float, deepest: float) -> Surface:
     """The power law that a user would have identified: least RMSE of the force from 0 to `deepest` [m].
 
-    For a given B the best A is linear; B is found by golden section between 1 and 2.
+    B lies between 1 and 2.
     """
     deflection = np.linspace(0.0, deepest, 61)[1:]
     force = tire.force(deflection, np.full_like(deflection, radius), np.ones_like(deflection))
+    return Surface(radius, *best_power(100.0 * deflection, force, 1.0, 2.0))
+
+
+def best_power(x: FloatArray, force: FloatArray, low: float, high: float) -> tuple[float, float]:
+    """a and b of the power law a x^b that is closest to forces, by least squares; b lies between low and high.
+
+    For a given b the best a is linear; b is found by golden section.
+    """
 
     def miss(b: float) -> tuple[float, float]:
-        shape = (100.0 * deflection) ** b
+        shape = x**b
         a = float(shape @ force / (shape @ shape))
         return float(np.sum((force - a * shape) ** 2)), a
 
-    low, high, ratio = 1.0, 2.0, (math.sqrt(5.0) - 1.0) / 2.0
+    ratio = (math.sqrt(5.0) - 1.0) / 2.0
     while high - low > 1e-7:
         left, right = high - ratio * (high - low), low + ratio * (high - low)
         if miss(left)[0] < miss(right)[0]:
@@ -200,7 +208,7 @@ def best_power_law(tire: Tire, radius: float, deepest: float) -> Surface:
         else:
             low = left
     b = 0.5 * (low + high)
-    return Surface(radius, miss(b)[1], b)
+    return miss(b)[1], b
 
 
 def fitted_table(tire: Tire, deepest: Sequence[float], radii: Sequence[float]) -> PowerTire:

@@ -9,10 +9,17 @@ from ..motion import BoolArray, FloatArray, Motion
 from .effect import Conditions, Contact, Effect, Region
 
 
+@dataclass(frozen=True)
 class _Rim(Effect):
-    """A stiff stop beyond a deflection."""
+    """A stiff stop beyond an onset x_b, soft within a distance s [m]; `strength` k [N/m] is its stiffness."""
 
     onset: float
+    soft: float
+
+    name: ClassVar[str] = "bottoming"
+    unit: ClassVar[str] = "N/m"
+    limit: ClassVar[float] = 4e6
+    elastic_only: ClassVar[bool] = True
 
     def active(self, contact: Contact) -> BoolArray:
         """Beyond the onset."""
@@ -25,18 +32,7 @@ class _Rim(Effect):
 
 @dataclass(frozen=True)
 class QuadraticRim(_Rim):
-    """F = k (x - x_b)^2 / (2 s) up to x_b + s, from there a spring k: stiffness grows linearly over s [m].
-
-    `strength` k [N/m], onset x_b [m].
-    """
-
-    onset: float
-    soft: float
-
-    name: ClassVar[str] = "bottoming"
-    unit: ClassVar[str] = "N/m"
-    limit: ClassVar[float] = 4e6
-    elastic_only: ClassVar[bool] = True
+    """F = k (x - x_b)^2 / (2 s) up to x_b + s, from there a spring k: stiffness grows linearly over s."""
 
     @classmethod
     def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "QuadraticRim":
@@ -53,15 +49,7 @@ class QuadraticRim(_Rim):
 
 @dataclass(frozen=True)
 class SoftplusRim(_Rim):
-    """F = k s ln(1 + exp((x - x_b)/s)) less that at x = 0: stiffness k [N/m], onset x_b, softness s [m]."""
-
-    onset: float
-    soft: float
-
-    name: ClassVar[str] = "bottoming"
-    unit: ClassVar[str] = "N/m"
-    limit: ClassVar[float] = 4e6
-    elastic_only: ClassVar[bool] = True
+    """F = k s ln(1 + exp((x - x_b)/s)) less that at x = 0."""
 
     @classmethod
     def drawn(cls, rng: np.random.Generator, conditions: Conditions) -> "SoftplusRim":

@@ -9,7 +9,7 @@ from .. import article
 from ..excitation import DepthLimits, cycles_of, polyline, stairs
 from ..measurement import CoarseInstrument, drawn_cut_off
 from ..motion import Motion
-from ..tires import PowerTire, Surface, distinct
+from ..tires import PowerTire, Surface, best_power, distinct
 from ..trial import Record
 
 FloatArray = NDArray[np.float64]
@@ -74,7 +74,7 @@ def drawn_instrument(rng: np.random.Generator) -> CoarseInstrument:
 def fitted_power_law(records: tuple[Record, ...], *, logarithmic: bool) -> PowerTire:
     """F = A x^B of every surface, fitted to recordings by least squares of F, or of ln F against ln x.
 
-    For a given B the best A is linear; B is found by golden section between 0.6 and 3.
+    B lies between 0.6 and 3 in the fit of F.
     """
     radius = np.concatenate([r.radius for r in records])
     x = np.concatenate([r.deflection for r in records])
@@ -93,17 +93,4 @@ def _logarithmic(x: FloatArray, force: FloatArray) -> tuple[float, float]:
 
 
 def _linear(x: FloatArray, force: FloatArray) -> tuple[float, float]:
-    def miss(b: float) -> tuple[float, float]:
-        shape = x**b
-        a = float(shape @ force / (shape @ shape))
-        return float(np.sum((force - a * shape) ** 2)), a
-
-    low, high, ratio = 0.6, 3.0, (math.sqrt(5.0) - 1.0) / 2.0
-    while high - low > 1e-7:
-        left, right = high - ratio * (high - low), low + ratio * (high - low)
-        if miss(left)[0] < miss(right)[0]:
-            high = right
-        else:
-            low = left
-    b = 0.5 * (low + high)
-    return miss(b)[1], b
+    return best_power(x, force, 0.6, 3.0)
