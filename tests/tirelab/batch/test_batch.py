@@ -7,11 +7,11 @@ import json
 import os
 import warnings
 from collections.abc import Sequence
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import pytest
+from loaded import loaded_by
 from tirelab.batch.batch import Batch, diagnose_batch, find_items
 from tirelab.computing.workers import Cores
 from tirelab.errors import TirelabError
@@ -197,26 +197,11 @@ def test_nothing_to_diagnose_is_a_sentence(tmp_path: Path, place: str) -> None:
         run(tmp_path / place, tmp_path / "out")
 
 
-class Loaded(HTMLParser):
-    """Collects what a page would load from elsewhere."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.found: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Note links."""
-        if tag in ("script", "link", "iframe", "img", "object"):
-            self.found.append(tag)
-        self.found += [str(value) for name, value in attrs if name in ("src", "href")]
-
-
 def test_the_page_links_reports_and_loads_nothing(folder: Path, tmp_path: Path) -> None:
     run(folder, tmp_path / "out")
-    loaded = Loaded()
-    loaded.feed((tmp_path / "out" / "summary.html").read_text(encoding="utf-8"))
-    assert len(loaded.found) == 5
-    assert all((tmp_path / "out" / link.replace("%7E", "~")).is_file() for link in loaded.found)
+    loaded = loaded_by((tmp_path / "out" / "summary.html").read_text(encoding="utf-8"))
+    assert len(loaded) == 5
+    assert all((tmp_path / "out" / link.replace("%7E", "~")).is_file() for link in loaded)
 
 
 def test_a_dask_cluster_writes_the_same_summary(folder: Path, tmp_path: Path, cluster: Any) -> None:

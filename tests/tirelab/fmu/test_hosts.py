@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import json
 import os
 import shutil
 import stat
@@ -12,24 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from asked_forces import FORCES, INPUTS, forces
 
 Run = Callable[..., Any]
-INPUTS = [[0.02, 1e5], [0.02, 0.254], [0.01, -0.381]]
-
-# 2 cm on flat ground, on a convex 25.4 cm and 1 cm on a concave 38.1 cm surface, from equations 2, 5 and 6.
-FORCES = [
-    550.9 * 2**1.422,
-    (550.9 - 337.8 * 2.718281828459045 ** (-0.2519 * 25.4))
-    * 2 ** (1.422 - 0.2469 * 2.718281828459045 ** (-0.1651 * 25.4)),
-    550.9 + 7822.0 * 2.718281828459045 ** (-0.1398 * 38.1),
-]
-
-
-def forces(printed: str) -> list[float]:
-    (line,) = [line for line in printed.splitlines() if line.startswith("forces ")]
-    found = json.loads(line.removeprefix("forces "))
-    assert isinstance(found, list)
-    return found
 
 
 @pytest.mark.parametrize("package", ["libcosimpy", "ecospy"])

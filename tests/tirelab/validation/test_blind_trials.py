@@ -6,13 +6,13 @@ import hashlib
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
+from loaded import loaded_by
 from matplotlib.figure import Figure
 from radialtire import TireModel
 from tirelab.computing.workers import Cores
@@ -227,29 +227,9 @@ def test_a_test_file_without_a_channel_says_which(tmp_path: Path) -> None:
         read_test(path)
 
 
-class Loaded(HTMLParser):
-    """Collects what a page would load from elsewhere, and its scripts."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.found: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Note tags and attributes that load something."""
-        if tag in ("script", "link", "iframe", "img", "object"):
-            self.found.append(tag)
-        self.found += [
-            str(v)
-            for name, v in attrs
-            if name in ("src", "href", "xlink:href") and not str(v).startswith("#")
-        ]
-
-
 def test_the_page_loads_nothing_and_escapes_its_text(drawn: Path) -> None:
     text = (drawn / "proof.html").read_text(encoding="utf-8")
-    loaded = Loaded()
-    loaded.feed(text)
-    assert loaded.found == []
+    assert loaded_by(text) == []
     assert "url(" not in text.replace("url(#", "")
     assert "&lt;script&gt;" in text
 

@@ -14,19 +14,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from asked_forces import FORCES, INPUTS, forces
 from loader_bench import unpacked_archive
 from radialtire import PowerLaw, TireModel
 from scipy.integrate import solve_ivp
 from tirelab.fmu.native.pack import build_native_fmu
 
 Run = Callable[..., Any]
-INPUTS = [[0.02, 1e5], [0.02, 0.254], [0.01, -0.381]]
-FORCES = [
-    550.9 * 2**1.422,
-    (550.9 - 337.8 * math.exp(-0.2519 * 25.4)) * 2 ** (1.422 - 0.2469 * math.exp(-0.1651 * 25.4)),
-    550.9 + 7822.0 * math.exp(-0.1398 * 38.1),
-]
-"""Equations 2, 5 and 6 of the article on flat, convex and concave ground."""
 
 
 @pytest.fixture(scope="module")
@@ -36,13 +30,6 @@ def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[int, Path]:
         fmi: build_native_fmu(TireModel(), tmp_path_factory.mktemp(f"fmi{fmi}"), fmi=fmi).path
         for fmi in (2, 3)
     }
-
-
-def forces(printed: str) -> list[float]:
-    (line,) = [line for line in printed.splitlines() if line.startswith("forces ")]
-    found = json.loads(line.removeprefix("forces "))
-    assert isinstance(found, list)
-    return found
 
 
 @pytest.mark.parametrize("package", ["libcosimpy", "ecospy"])
