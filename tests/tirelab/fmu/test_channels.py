@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import fmpy
@@ -12,6 +10,7 @@ import pytest
 from native_me import RADIAL_FORCE, Unit
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, PowerLaw, TireModel
+from sampled_motion import Motion
 from tirelab.errors import TirelabError
 from tirelab.fmu.build import build_fmu
 from tirelab.fmu.native.pack import build_native_fmu
@@ -20,14 +19,6 @@ from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
 KINDS = pytest.mark.parametrize("native", [False, True], ids=["python", "native"])
-
-
-@dataclass(frozen=True)
-class Motion:
-    time: FloatArray
-    deflection: FloatArray
-    surface_radius: FloatArray
-    measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 def motion(low: float = -0.002, **measured: FloatArray) -> Motion:

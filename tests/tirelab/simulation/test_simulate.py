@@ -7,8 +7,7 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +17,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Effect, Hull1996, PowerLaw, TireModel
 from radialtire.effect import PLACES
+from sampled_motion import Motion
 from tirelab.preprocessing.samples import alone
 from tirelab.recordings.recording import Recording
 from tirelab.simulation import simulate as simulation
@@ -35,16 +35,6 @@ from tirelab.simulation.simulate import (
 FloatArray = NDArray[np.float64]
 
 FIELDS = ("time", "deflection", "surface_radius", "force")
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What `simulate` takes, and nothing else."""
-
-    time: FloatArray
-    deflection: FloatArray
-    surface_radius: FloatArray
-    measured: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 def stepped(tire: TireModel, motion: Motion) -> FloatArray:
