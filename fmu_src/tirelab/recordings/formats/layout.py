@@ -18,7 +18,15 @@ from .clock import is_clock
 from .encoding import find_encoding
 from .number_style import NumberStyle, style_of, with_plain_minus
 from .spaced import TAB, spaced_columns, with_tabs
-from .table import BLANK_WORDS, Header, RecordingError, is_comment, quoted
+from .table import (
+    BLANK_WORDS,
+    Header,
+    RecordingError,
+    is_comment,
+    quoted,
+    with_cell_units,
+    with_dates,
+)
 from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value, states_units
 
 HEAD = 65_536
@@ -39,8 +47,9 @@ class Layout:
     """What the head of a text file says about the whole.
 
     table_line: of the header, from 1, or of the first numbers where there is no header; provenance: the lines above it
-    plain: whether lines end as they usually do, so that a parser by columns may be tried; spaced: whether its columns
-    stand between spaces, which are read as tabs; counted: whether the first column holds no text, as far as was looked
+    plain: whether lines end as they usually do and units stand in the header alone, so that a parser by columns may be
+    tried; spaced: whether its columns stand between spaces, which are read as tabs; counted: whether the first column
+    holds no text, as far as was looked
     """
 
     encoding: str
@@ -93,15 +102,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     place = find_table(lines, first, declared) if skip_rows is None else None
     start = first if place is None else place.line
     separator = declared or (place.separator if place else _separator(path, lines[start:]))
-    rows = csv.reader(lines[start : start + SAMPLE], delimiter=separator)
-    try:
-        header = next(rows)
-        header_lines = rows.line_num
-        body = [row for row in rows if row and not is_comment(row[0])]
-    except csv.Error as error:
-        raise RecordingError(
-            f"{path.name}, row {start + 1}: {error}; correct the quotes of the header"
-        ) from None
+    header, header_lines, body = _first_rows(path, lines, start, separator)
     names, in_table, said = _names(lines, start, header, separator)
     widest = max((len(row) for row in body[:SAMPLE]), default=0)
     if len(names) == widest - 1 and all(not row[-1].strip() for row in body if len(row) == widest):
@@ -109,42 +110,45 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     headers = tuple(_header(cell, number) for number, cell in enumerate(names, 1))
     before = 0
     if in_table:
-        before = header_lines
         headers, below, more = below_names(lines, start + header_lines, headers, separator)
-        before += below
-        headers, above = above_names(lines[first:start], headers, separator)
-        said = (*said, *more, *above)
-    else:
-        headers, above = above_names(lines[first:start], headers, separator)
-        said = (*said, *above)
+        before, said = header_lines + below, (*said, *more)
+    headers, above = above_names(lines[first:start], headers, separator)
+    said = (*said, *above)
     if start > first:
         said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
-    clocks = _clock_columns(body)
     headers, beside = units_beside(headers, body)
     said = (*said, *beside)
-    headers = tuple(
-        replace(h, unit=cell_units[i], cell_unit=cell_units[i]) if i in cell_units else h
-        for i, h in enumerate(headers)
-    )
-    headers = tuple(
-        Header(h.name, "s", h.text, dated=True) if i in clocks else h for i, h in enumerate(headers)
-    )
+    headers = with_dates(with_cell_units(headers, cell_units), _clock_columns(body))
+    usual_ends = header_lines == 1 and all(line.endswith("\n") for line in lines[: start + 1])
     return Layout(
-        encoding,
-        separator,
-        headers,
-        start + before,
-        style_of(cell for row in (header, *body) for cell in row),
-        len(raw) / max(len(lines) - start, 1),
-        header_lines == 1
-        and not (cell_units or beside)
-        and all(line.endswith("\n") for line in lines[: start + 1]),
-        (*notes, *said),
-        start + 1,
-        _provenance(lines[:start], separator, declared),
-        spaced > 0,
-        column_counted(body),
+        encoding=encoding,
+        separator=separator,
+        headers=headers,
+        lines_before_data=start + before,
+        style=style_of(cell for row in (header, *body) for cell in row),
+        bytes_per_row=len(raw) / max(len(lines) - start, 1),
+        plain=usual_ends and not (cell_units or beside),
+        notes=(*notes, *said),
+        table_line=start + 1,
+        provenance=_provenance(lines[:start], separator, declared),
+        spaced=spaced > 0,
+        counted=column_counted(body),
     )
+
+
+def _first_rows(
+    path: Path, lines: Sequence[str], start: int, separator: str
+) -> tuple[list[str], int, list[list[str]]]:
+    """Return the first row of the table, how many lines it takes, and the rows below it, without comments."""
+    rows = csv.reader(lines[start : start + SAMPLE], delimiter=separator)
+    try:
+        header = next(rows)
+        header_lines = rows.line_num
+        return header, header_lines, [row for row in rows if row and not is_comment(row[0])]
+    except csv.Error as error:
+        raise RecordingError(
+            f"{path.name}, row {start + 1}: {error}; correct the quotes of the header"
+        ) from None
 
 
 def column_counted(body: Sequence[Sequence[str]]) -> bool:

@@ -3,7 +3,7 @@
 import datetime
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
@@ -13,7 +13,7 @@ from ..units import split_header
 from .cell_units import lines_without_units, row_without_units, taken_from_cells, units_in_cells
 from .layout import below_names, column_counted
 from .number_style import NumberStyle, style_of, with_plain_minus
-from .table import Header, RecordingError, listed, quoted
+from .table import Header, RecordingError, listed, quoted, with_cell_units, with_dates
 from .table_search import SEARCHED, find_table
 from .workbook import Version, opened
 
@@ -99,7 +99,9 @@ def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
     headers, below, notes = below_names(lines, start + 1, headers, "\t")
     body = head[start + 1 + below :]
-    headers = _with_units_of_cells(headers, body, cell_units)
+    values = next((row for row in body if holds_any(row)), ())
+    dated = {n for n, cell in enumerate(values) if isinstance(cell, DATES)}
+    headers = with_cell_units(with_dates(headers, dated), cell_units)
     if cell_units:
         notes = (*notes, taken_from_cells(cell_units.values()))
     if start > first:
@@ -111,19 +113,6 @@ def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     counted = column_counted([[cell_text(cell) for cell in row] for row in body])
     above = tuple("; ".join(filter(None, map(cell_text, row))) for row in head[:start] if holds_any(row))
     return Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted, above)
-
-
-def _with_units_of_cells(
-    headers: Sequence[Header], body: Sequence[Sequence[Any]], cell_units: Mapping[int, str]
-) -> tuple[Header, ...]:
-    """Return the headers with the units that their cells have: seconds of dates, and those behind numbers."""
-    values = next((row for row in body if holds_any(row)), ())
-    dated = {n for n, cell in enumerate(values) if isinstance(cell, DATES)}
-    timed = [Header(h.name, "s", h.text, dated=True) if n in dated else h for n, h in enumerate(headers)]
-    return tuple(
-        replace(h, unit=cell_units[n], cell_unit=cell_units[n]) if n in cell_units else h
-        for n, h in enumerate(timed)
-    )
 
 
 def _style_of_texts(body: Sequence[Sequence[Any]]) -> NumberStyle | None:

@@ -1,8 +1,8 @@
 """What every file format is turned into before it is interpreted: named columns of numbers."""
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -39,6 +39,18 @@ class Header:
     dated: bool = False
     cell_unit: str = ""
     unit_beside: bool = False
+
+
+def with_cell_units(headers: Sequence[Header], units: Mapping[int, str]) -> tuple[Header, ...]:
+    """Return the headers with the units that stand behind the numbers of some columns."""
+    return tuple(
+        replace(h, unit=units[i], cell_unit=units[i]) if i in units else h for i, h in enumerate(headers)
+    )
+
+
+def with_dates(headers: Sequence[Header], dated: Container[int]) -> tuple[Header, ...]:
+    """Return the headers with seconds as the unit of the `dated` columns."""
+    return tuple(Header(h.name, "s", h.text, dated=True) if i in dated else h for i, h in enumerate(headers))
 
 
 @dataclass(frozen=True)
