@@ -170,9 +170,12 @@ def test_the_inputs_of_a_tire_that_needs_its_motion(repository: Path, tmp_path: 
 def test_the_article_s_force_is_never_negative(wrapper: Any, tmp_path: Path) -> None:
     """min=0 stands where it is true: on force and stiffness of a tire without effects, not on the deflection."""
     fmu = build_native_fmu(TireModel(), tmp_path).path
-    for variable in fmpy.read_model_description(str(fmu)).modelVariables:
-        if variable.name in ("radial_force", "radial_stiffness"):
-            assert float(variable.min) == _modified(wrapper.symbols[variable.name])["min"].value == 0
+    variables = {v.name: v for v in fmpy.read_model_description(str(fmu)).modelVariables}
+    for name in ("radial_force", "radial_stiffness"):
+        assert float(variables[name].min) == _modified(wrapper.symbols[name])["min"].value == 0
+    least = _modified(wrapper.symbols["deflection"])["min"]
+    assert least.operator == "-"
+    assert float(variables["deflection"].min) == -least.operands[0].value < 0.0
 
 
 def test_the_import_is_named(wrapper: Any, repository: Path, block: str) -> None:

@@ -50,6 +50,7 @@ def test_the_sets_are_told_with_probabilities_that_add_up_to_one(found: Explanat
 
 def test_the_noise_floor_is_that_of_the_recordings(found: Explanation) -> None:
     # 5 N on the force and 5 um at 80 kN/m.
+    assert len(found.floors) == len(RIDES)
     for floor in found.floors:
         assert floor.level == pytest.approx(np.hypot(5.0, 0.4), rel=0.06)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -27,7 +28,7 @@ def test_the_interval_of_a_rate_is_wilsons(hits: int, trials: int, low: float, h
 
 def test_without_trials_a_rate_says_nothing() -> None:
     assert Rate(0, 0).interval == (0.0, 1.0)
-    assert Rate(0, 0).value != Rate(0, 0).value
+    assert math.isnan(Rate(0, 0).value)
 
 
 def test_brier_score_of_a_coin_that_says_half_is_a_quarter(score: Make) -> None:
