@@ -18,7 +18,7 @@ from typing import Any
 
 import radialtire
 
-from ..simulation.cache_folder import keep, private_folder
+from .cache_folder import keep, private_folder
 
 KERNEL = Path(__file__).with_name("kernel.py")
 

@@ -14,11 +14,11 @@ from radialtire import Effect, State, TireModel
 from .channels import Sampled
 from .simulate import (
     UPSTREAM,
-    Behind,
     History,
     Kinematics,
-    behind_law,
+    Stages,
     elastic_stage,
+    force_after_law,
     learned_force,
     respond_series,
 )
@@ -34,7 +34,7 @@ class Motion(Sampled, Kinematics, Protocol):
     """What is simulated, with its rate and acceleration."""
 
 
-class KeptStages(Behind):
+class KeptStages(Stages):
     """The stages of simulations of one motion."""
 
     def __init__(self, motion: Motion) -> None:
@@ -48,7 +48,7 @@ class KeptStages(Behind):
         history, force = self._once(
             (law, before), (), lambda: elastic_stage(tire, self._motion, self._motion)
         )
-        force = behind_law(tire, history, force, self)
+        force = force_after_law(tire, history, force, self)
         return force if tire.remainder is None else force + learned_force(tire, self._motion, self._motion)
 
     def respond(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
@@ -56,9 +56,9 @@ class KeptStages(Behind):
         given = (signal, history)
         return self._once((effect.name, values), given, lambda: respond_series(effect, values, *given))
 
-    def pushed(self, force: FloatArray) -> FloatArray:
-        """Return a force [N] that only pushes."""
-        return self._once("pushed", (force,), lambda: super(KeptStages, self).pushed(force))
+    def compressive(self, force: FloatArray) -> FloatArray:
+        """Return a force [N] without its tensile part."""
+        return self._once("compressive", (force,), lambda: super(KeptStages, self).compressive(force))
 
     def _once(self, what: Hashable, of: tuple[Any, ...], make: Callable[[], T]) -> T:
         """Return what `make` gives, made anew only where it was not kept for the same values `of` the same objects."""

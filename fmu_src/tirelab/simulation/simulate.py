@@ -111,30 +111,30 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
     """
     recording, before = begun(recording) if kinematics is None else (recording, 0)
     history, force = elastic_stage(tire, recording, kinematics)
-    force = behind_law(tire, history, force, Behind())
+    force = force_after_law(tire, history, force, Stages())
     if tire.remainder is not None:
         force = force + learned_force(tire, recording, kinematics)
     return force[before:]
 
 
-class Behind:
-    """What is run behind the elastic law: the effects, and a ground that cannot pull."""
+class Stages:
+    """Runs the stages of a simulation, each anew: the effects, and a ground that cannot pull."""
 
     def respond(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
         """Return the signal after an effect."""
         return respond_series(effect, values, signal, history)
 
-    def pushed(self, force: FloatArray) -> FloatArray:
-        """Return a force [N] that only pushes."""
+    def compressive(self, force: FloatArray) -> FloatArray:
+        """Return a force [N] without its tensile part."""
         return np.asarray(np.maximum(force, 0.0))
 
 
-def behind_law(tire: TireModel, history: History, force: FloatArray, run: Behind) -> FloatArray:
+def force_after_law(tire: TireModel, history: History, force: FloatArray, stages: Stages) -> FloatArray:
     """Return the radial force [N] from the elastic one, without a learned remainder."""
-    force = downstream(tire, history, force, ("parallel",), run)
+    force = downstream(tire, history, force, ("parallel",), stages)
     if not tire.two_sided:
-        force = run.pushed(force)
-    return downstream(tire, history, force, ("inertia", "reading"), run)
+        force = stages.compressive(force)
+    return downstream(tire, history, force, ("inertia", "reading"), stages)
 
 
 def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -165,7 +165,7 @@ def elastic_stage(
         elif tire.reading_noise < FINEST:
             rate, _ = track(history.time, x, tire.reading_noise)
         else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
-            later, sooner = (upstream(tire, moved(history, h)) for h in (AHEAD, -AHEAD))
+            later, sooner = (upstream(tire, extrapolated(history, h)) for h in (AHEAD, -AHEAD))
             rate = (later - sooner) / (2.0 * AHEAD)
     bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
@@ -191,7 +191,7 @@ def upstream(tire: TireModel, history: History) -> FloatArray:
     return history.deflection
 
 
-def moved(history: History, ahead: float) -> History:
+def extrapolated(history: History, ahead: float) -> History:
     """Return the motion of every sample a time `ahead` [s] later, at the acceleration that it has."""
     v, a = history.rate, history.acceleration
     return replace(history, deflection=history.deflection + ahead * v, rate=v + ahead * a)
@@ -202,12 +202,12 @@ def downstream(
     history: History,
     signal: FloatArray,
     places: tuple[str, ...],
-    run: Behind = Behind(),  # noqa: B008 - it holds nothing
+    stages: Stages = Stages(),  # noqa: B008 - it holds nothing
 ) -> FloatArray:
     """Return `signal` after the effects of `tire` at `places`."""
     for effect, values in tire.effects:
         if effect.place in places:
-            signal = run.respond(effect, values, signal, history)
+            signal = stages.respond(effect, values, signal, history)
     return signal
 
 
