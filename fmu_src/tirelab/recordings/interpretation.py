@@ -220,29 +220,14 @@ def interpret(
     rows = rows.reversed() if backwards else rows
     values = {name: _in_si(column, plan.conversions[name]) for name, column in rows.values.items()}
     samples = len(values["deflection"])
-    since_1970 = float(values["time"][0]) if "time" in values else 0.0
-    if YEAR_2001 <= since_1970 <= YEAR_2096:
-        values["time"] = values["time"] - since_1970
-    else:
-        since_1970 = 0.0
-    if plan.interval is not None:
-        kept = np.arange(samples) if rows.kept is None else rows.kept
-        values = {"time": np.asarray(kept * plan.interval, dtype=np.float64), **values}
+    time, time_notes = _time_from_first(values.get("time"), rows, plan, backwards)
+    values = {"time": time, **values} if "time" not in values else {**values, "time": time}
     if plan.radius is not None:
         values["radius"] = np.full(samples, plan.radius)
     values |= {name: np.full(samples, value) for name, value in plan.constants.items()}
     notes = [*read.notes, *rows.notes, *plan.notes]
     notes += [f"settings read from {source}" for source in sources]
-    notes += _unit_notes(plan.conversions, plan.headers)
-    if backwards:
-        notes.append("time falls from row to row: the rows read from the last to the first")
-    if backwards and plan.headers["time"].dated:
-        values["time"] = values["time"] - values["time"][0]
-    values["time"], midnight = over_midnight(values["time"])
-    if midnight is not None:
-        notes.append(f"the clock passes midnight at {rows.place(midnight)}: a day added from there on")
-    if since_1970:
-        notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
+    notes += [*_unit_notes(plan.conversions, plan.headers), *time_notes]
     counted = count_from_zero(values, plan.origin, plan.matches, plan.names, plan.settings)
     notes += counted.notes
     believed = values.get("believed_force")
@@ -270,6 +255,34 @@ def interpret(
     doubts = Doubts() if counted.fault else doubts_of(counted.gauges, values, units, where, part_alone)
     notes += [f"doubtful: {sentence}" for sentence in doubts.sentences]
     return Interpreted(values, rows, tuple(notes), counted, units, doubts, before, part_alone)
+
+
+def _time_from_first(
+    read: FloatArray | None, rows: Rows, plan: Plan, backwards: bool
+) -> tuple[FloatArray, list[str]]:
+    """Return the time of each sample [s], and the notes of what was done to it.
+
+    read: the times of the file, where it has any; backwards: whether these fell from row to row
+    """
+    notes = []
+    since_1970 = 0.0
+    if read is None:
+        assert plan.interval is not None  # a plan without a column of time has one
+        kept = np.arange(len(rows.values["deflection"])) if rows.kept is None else rows.kept
+        time = np.asarray(kept * plan.interval, dtype=np.float64)
+    else:
+        since_1970 = float(read[0]) if YEAR_2001 <= float(read[0]) <= YEAR_2096 else 0.0
+        time = read - since_1970 if since_1970 else read
+    if backwards:
+        notes.append("time falls from row to row: the rows read from the last to the first")
+        if plan.headers["time"].dated:
+            time = time - time[0]
+    time, midnight = over_midnight(time)
+    if midnight is not None:
+        notes.append(f"the clock passes midnight at {rows.place(midnight)}: a day added from there on")
+    if since_1970:
+        notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
+    return time, notes
 
 
 def _part_text(piece: Piece) -> str:
