@@ -123,18 +123,8 @@ def ground_from(
         raise TirelabError(f"smoothing length {smoothing:g} m; give a length of 0 m or more")
     heights = smoothed_heights(profile.s, profile.z, smoothing)
     chord = np.hypot(np.diff(profile.s), np.diff(heights))
-    if spacing is None:
-        own_spacing = float(np.clip(np.min(np.diff(profile.s)), FINEST_SPACING, COARSEST_SPACING))
-        spacing = FINEST_SPACING * np.floor(own_spacing / FINEST_SPACING + 1e-6)
-    if not (np.isfinite(spacing) and spacing > 0.0 and 4.0 * spacing <= profile.length):
-        raise TirelabError(
-            f"spacing {spacing:g} m on {profile.length:g} m of ground; give more than 0 m and at most a quarter of it"
-        )
-    count = int(profile.length / spacing + 1e-9) + 1
-    if count > MOST_POINTS:
-        raise TirelabError(
-            f"{profile.length:g} m of ground every {spacing:g} m is {count} points; space them wider or cut it"
-        )
+    spacing = _spacing_of(profile) if spacing is None else spacing
+    count = _points(profile, spacing)
     along = np.concatenate([[0.0], np.cumsum(chord)])
     curve = CubicSpline(along, np.column_stack([profile.s, heights]))
     _check_forward(curve, along)
@@ -165,6 +155,26 @@ def ground_from(
         profile.name,
         profile.notes + ((f"smoothed over {smoothing:g} m",) if smoothing > 0.0 else ()),
     )
+
+
+def _spacing_of(profile: Profile) -> float:
+    """Return the smallest spacing [m] of the profile's own points in whole millimetres, within 1 mm and 1 cm."""
+    own_spacing = float(np.clip(np.min(np.diff(profile.s)), FINEST_SPACING, COARSEST_SPACING))
+    return float(FINEST_SPACING * np.floor(own_spacing / FINEST_SPACING + 1e-6))
+
+
+def _points(profile: Profile, spacing: float) -> int:
+    """Return the number of points every `spacing` [m]. Errors: TirelabError where that cannot be, or is too many."""
+    if not (np.isfinite(spacing) and spacing > 0.0 and 4.0 * spacing <= profile.length):
+        raise TirelabError(
+            f"spacing {spacing:g} m on {profile.length:g} m of ground; give more than 0 m and at most a quarter of it"
+        )
+    count = int(profile.length / spacing + 1e-9) + 1
+    if count > MOST_POINTS:
+        raise TirelabError(
+            f"{profile.length:g} m of ground every {spacing:g} m is {count} points; space them wider or cut it"
+        )
+    return count
 
 
 def _arc_length(s: Floats, z: Floats, direction: Floats) -> Floats:

@@ -179,9 +179,9 @@ def constant_load_path(
 ) -> Floats:
     """Return the hub's height [m] at which the tire carries `load` [N] > 0 upwards, at every `position` [m].
 
-    Found by regula falsi (Illinois) between the rolling path, where the force is zero, and a drop with more force than
-    the load. Where the contact leaps from one place of the ground to another, the force of a tire with one contact
-    jumps, and no height may carry the load: there the hub stays at the jump, and the ride is flagged for it.
+    It lies between the rolling path, where the force is zero, and a drop with more force than the load. Where the
+    contact leaps from one place of the ground to another, the force of a tire with one contact jumps, and no height may
+    carry the load: there the hub stays at the jump, and the ride is flagged for it.
     """
     if not (np.isfinite(load) and load > 0.0):
         raise TirelabError(f"load {load:g} N; give a load above 0 N")
@@ -192,10 +192,9 @@ def constant_load_path(
         upward: Floats = _force(tire_force, touch) * np.cos(touch.inclination) - load
         return upward
 
-    everywhere = np.arange(position.size)
     low, below = np.zeros(position.size), np.full(position.size, -float(load))
     high = np.full(position.size, 0.01)
-    above = excess(high, everywhere)
+    above = excess(high, np.arange(position.size))
     while (short := np.flatnonzero(above < 0.0)).size:
         low[short], below[short] = high[short], above[short]
         high[short] *= 1.5
@@ -206,23 +205,39 @@ def constant_load_path(
                 "deflection; give a smaller load"
             )
         above[short] = excess(high[short], short)
-    drop, kept, open_ = high.copy(), np.zeros(position.size), everywhere
+    path: Floats = rolling - _roots(excess, (low, below), (high, above), FORCE_TOLERANCE * load)
+    return path
+
+
+def _roots(
+    function: Callable[[Floats, NDArray[np.int64]], Floats],
+    lower: tuple[Floats, Floats],
+    upper: tuple[Floats, Floats],
+    tolerance: float,
+) -> Floats:
+    """Return the root of many functions by regula falsi (Illinois), all at once.
+
+    function: of arguments and the indices of the functions; lower, upper: arguments (n,), which are changed, and values
+    (n,) < 0 and >= 0 there; tolerance: of the values, that of the arguments is LOAD_TOLERANCE
+    """
+    (low, below), (high, above) = lower, upper
+    root: Floats = high.copy()
+    last_side, open_ = np.zeros(high.size), np.arange(high.size)
     for _ in range(MOST_STEPS):
-        drop[open_] = (low[open_] * above[open_] - high[open_] * below[open_]) / (above[open_] - below[open_])
-        value = excess(drop[open_], open_)
+        root[open_] = (low[open_] * above[open_] - high[open_] * below[open_]) / (above[open_] - below[open_])
+        value = function(root[open_], open_)
         side = np.sign(value)
         up, down = open_[value >= 0.0], open_[value < 0.0]
-        high[up], above[up] = drop[up], value[value >= 0.0]
-        low[down], below[down] = drop[down], value[value < 0.0]
-        stuck = kept[open_] == side
+        high[up], above[up] = root[up], value[value >= 0.0]
+        low[down], below[down] = root[down], value[value < 0.0]
+        stuck = last_side[open_] == side
         below[open_[stuck & (side > 0.0)]] *= 0.5
         above[open_[stuck & (side < 0.0)]] *= 0.5
-        kept[open_] = side
-        open_ = open_[(np.abs(value) > FORCE_TOLERANCE * load) & (high[open_] - low[open_] > LOAD_TOLERANCE)]
+        last_side[open_] = side
+        open_ = open_[(np.abs(value) > tolerance) & (high[open_] - low[open_] > LOAD_TOLERANCE)]
         if not open_.size:
             break
-    path: Floats = rolling - drop
-    return path
+    return root
 
 
 def _force(tire_force: TireForce, touch: Contact) -> Floats:
