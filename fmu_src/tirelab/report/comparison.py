@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -62,17 +63,9 @@ def plot(comparison: Comparison, path: Path) -> None:
     r, simulated = comparison.recording, comparison.simulated
     figure = Figure(figsize=(11, 6.5), layout="constrained")
     loops, forces, residuals = figure.subplot_mosaic([["loop", "force"], ["loop", "residual"]]).values()
-    mm = 1000 * r.deflection
     measured: dict[str, Any] = {"color": "0.55", "lw": 1.0, "label": "recorded"}
     computed: dict[str, Any] = {"color": "tab:blue", "lw": 1.0, "label": "simulated"}
-    shown = _distinct(mm, r.force)
-    loops.plot(mm[shown], r.force[shown], ".", ms=2, color="0.55", label="recorded", rasterized=True)
-    order = np.lexsort((r.deflection, r.surface_radius))
-    sorted_radii = r.surface_radius[order]
-    breaks = np.flatnonzero(sorted_radii[1:] != sorted_radii[:-1]) + 1
-    for i, part in enumerate(np.split(order, breaks)):
-        line = envelope(mm[part], simulated[part]) if part.size > 2 * COLUMNS else (mm[part], simulated[part])
-        loops.plot(*line, color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
+    _draw_loops(loops, comparison)
     mark: dict[str, Any] = {
         "marker": "o",
         "ms": 9,
@@ -82,8 +75,7 @@ def plot(comparison: Comparison, path: Path) -> None:
         "ls": "none",
         "label": "peak error",
     }
-    loops.plot(mm[comparison.at], r.force[comparison.at], **mark)
-    loops.set(xlabel="deflection [mm]", ylabel="radial force [N]", title=r.name)
+    loops.plot(1000 * r.deflection[comparison.at], r.force[comparison.at], **mark)
     course = r.time if r.timed else np.arange(1.0, len(r.time) + 1.0)
     forces.plot(*envelope(course, r.force), **measured)
     forces.plot(*envelope(course, simulated), **computed)
@@ -102,6 +94,21 @@ def plot(comparison: Comparison, path: Path) -> None:
     loops.legend(frameon=False, loc="upper left")
     forces.legend(frameon=False, loc="upper right", ncols=2)
     figure.savefig(path, dpi=120)
+
+
+def _draw_loops(axes: Axes, comparison: Comparison) -> None:
+    """Draw the recorded force as dots and the simulated one as a line for each surface, over the deflection."""
+    r, simulated = comparison.recording, comparison.simulated
+    mm = 1000 * r.deflection
+    shown = _distinct(mm, r.force)
+    axes.plot(mm[shown], r.force[shown], ".", ms=2, color="0.55", label="recorded", rasterized=True)
+    order = np.lexsort((r.deflection, r.surface_radius))
+    sorted_radii = r.surface_radius[order]
+    breaks = np.flatnonzero(sorted_radii[1:] != sorted_radii[:-1]) + 1
+    for i, part in enumerate(np.split(order, breaks)):
+        line = envelope(mm[part], simulated[part]) if part.size > 2 * COLUMNS else (mm[part], simulated[part])
+        axes.plot(*line, color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
+    axes.set(xlabel="deflection [mm]", ylabel="radial force [N]", title=r.name)
 
 
 def _distinct(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -207,51 +207,78 @@ def draw_slow_changes(m: Misfit, noise: float, mark: str) -> Markup:
 
 
 def draw_maps(m: Misfit, noise: float, mark: str) -> tuple[list[Markup], str]:
-    """Return maps of the mean residual over deflection and a second coordinate, and the name of that one.
-
-    The second coordinate, rate or time, is the one that orders the residual before the correction better.
-    """
-    x_edges = np.linspace(m.deflection.min(), m.deflection.max(), CELLS[0] + 1)
-    choices = []
-    for name, values, edges in (
-        ("rate", m.rate, _rate_edges(m.rate, CELLS[1])),
-        ("time", m.time, np.linspace(m.time[0], m.time[-1], CELLS[1] + 1)),
-    ):
-        mean, count = _cells(m.deflection, values, m.before, x_edges, edges)
-        ordered = float(np.nansum(mean**2 * count)) - noise**2 * int(np.sum(np.isfinite(mean)))
-        choices.append((ordered, name, values, edges))
-    _, name, values, edges = max(choices, key=lambda choice: choice[0])
-    before, _ = _cells(m.deflection, values, m.before, x_edges, edges)
+    """Return maps of the mean residual over deflection and a second coordinate, and the name of that one."""
+    grid = _grid(m, noise)
+    before, _ = grid.means(m.before)
     size = np.abs(before[np.isfinite(before)])
     reach = max(float(np.quantile(size, 0.98)) if size.size else 0.0, noise)
+    residuals = {"before": m.before} if m.alike else {"before": m.before, "after": m.after}
     maps = []
-    for which, residual in (("before", m.before), ("after", m.after)):
-        if which == "after" and m.alike:
-            break
-        mean, _ = _cells(m.deflection, values, residual, x_edges, edges)
-        rows = edges if name == "time" else np.arange(edges.size)
+    for which, residual in residuals.items():
+        title = "Over deflection and " + grid.name if m.alike else f"{which.capitalize()} the correction"
+        mean, _ = grid.means(residual)
         with drawing(3.4) as (figure, axes):
-            drawn = axes.pcolormesh(
-                1e3 * x_edges, rows, mean.T, cmap=DIVERGING, vmin=-reach, vmax=reach, rasterized=True
-            )
-            axes.grid(False)
-            title = "Over deflection and " + name if m.alike else f"{which.capitalize()} the correction"
-            axes.set(xlabel="deflection [mm]", title=title)
-            if name == "time":
-                axes.set_ylabel("time [s]")
-            else:
-                at = _row_rates(m.rate, edges)
-                ticks = np.unique(np.linspace(0, at.size - 1, 8).round().astype(int))
-                axes.set_yticks(ticks + 0.5, labels=[number(1e3 * at[t], 2) for t in ticks])
-                axes.set_ylabel("rate [mm/s]")
+            _draw_map(axes, grid, mean, reach)
+            axes.set(title=title)
             figure.subplots_adjust(right=0.94)
-            bar = figure.colorbar(drawn, ax=axes, label="mean residual [N]", aspect=30)
+            bar = figure.colorbar(axes.collections[0], ax=axes, label="mean residual [N]", aspect=30)
             bar.outline.set_visible(False)
-            alt = f"Map of the mean residual over deflection and {name}, {which} the correction."
-            unit, factor = ("[s]", 1.0) if name == "time" else ("[mm/s]", 1e3)
-            numbers = cells_link(f"map_{which}", 1e3 * x_edges, (f"{name} {unit}", factor * edges), mean)
+            alt = f"Map of the mean residual over deflection and {grid.name}, {which} the correction."
+            unit, factor = ("[s]", 1.0) if grid.name == "time" else ("[mm/s]", 1e3)
+            across = (f"{grid.name} {unit}", factor * grid.edges)
+            numbers = cells_link(f"map_{which}", 1e3 * grid.x_edges, across, mean)
             maps.append(inline_svg(figure, alt, mark + which) + numbers)
-    return maps, name
+    return maps, grid.name
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """Cells over the deflection [m] and a second coordinate, the rate [m/s] or the time [s], by its `name`.
+
+    deflection, values: the coordinates of the samples; x_edges, edges: the bounds of the cells
+    """
+
+    name: str
+    deflection: FloatArray
+    values: FloatArray
+    x_edges: FloatArray
+    edges: FloatArray
+
+    def means(self, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the mean residual [N] and the number of samples of each cell."""
+        return _cells(self.deflection, self.values, residual, self.x_edges, self.edges)
+
+
+def _grid(m: Misfit, noise: float) -> _Grid:
+    """Return the cells over that second coordinate, rate or time, which orders the residual before the correction."""
+    x_edges = np.linspace(m.deflection.min(), m.deflection.max(), CELLS[0] + 1)
+    grids = [
+        _Grid("rate", m.deflection, m.rate, x_edges, _rate_edges(m.rate, CELLS[1])),
+        _Grid("time", m.deflection, m.time, x_edges, np.linspace(m.time[0], m.time[-1], CELLS[1] + 1)),
+    ]
+
+    def ordered(grid: _Grid) -> float:
+        mean, count = grid.means(m.before)
+        return float(np.nansum(mean**2 * count)) - noise**2 * int(np.sum(np.isfinite(mean)))
+
+    return max(grids, key=ordered)
+
+
+def _draw_map(axes: Axes, grid: _Grid, mean: FloatArray, reach: float) -> None:
+    """Draw the mean residuals [N] of the cells; reach [N]: where the colours end."""
+    rows = grid.edges if grid.name == "time" else np.arange(grid.edges.size)
+    axes.pcolormesh(
+        1e3 * grid.x_edges, rows, mean.T, cmap=DIVERGING, vmin=-reach, vmax=reach, rasterized=True
+    )
+    axes.grid(False)
+    axes.set(xlabel="deflection [mm]")
+    if grid.name == "time":
+        axes.set_ylabel("time [s]")
+        return
+    at = _row_rates(grid.values, grid.edges)
+    ticks = np.unique(np.linspace(0, at.size - 1, 8).round().astype(int))
+    axes.set_yticks(ticks + 0.5, labels=[number(1e3 * at[t], 2) for t in ticks])
+    axes.set_ylabel("rate [mm/s]")
 
 
 def _courses(m: Misfit, palette: Palette) -> list[tuple[FloatArray, str, str]]:
