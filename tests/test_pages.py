@@ -43,7 +43,7 @@ ELSEWHERE = {
     ". .venv/bin/activate": "tests/test_readme.py::test_tirelab_is_a_command_before_the_reader_types_it",
     "tirelab open": "tests/tirelab/local_page/test_open.py::test_from_drop_to_download",
     "tirelab open [DIR]": "tests/tirelab/local_page/test_open.py::test_from_drop_to_download",
-    "tirelab diagnose press/*.csv --fmu model.fmu": "tests/tirelab/diagnosis/test_simulation_correction.py::"
+    "tirelab diagnose press/*.csv --fmu model.fmu": "tests/tirelab/diagnosis/test_simulation_correction_of_fmus.py::"
     "test_what_is_printed_says_what_was_taken_and_that_it_is_native_code",
     "python examples/gallery.py": "tests/examples/test_gallery.py::test_all_pictures_are_the_scripts",
     "python tests/constants.py": "tests/test_constants.py::test_the_page_is_what_the_source_says",

@@ -70,32 +70,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     for name, column in values.items():
         if NOT_MEASURED <= column.max() < np.inf:
             values[name] = np.where(column >= NOT_MEASURED, np.nan, column)
-    # The greatest value is NaN as soon as one is: one pass, and no array of flags for a clean column.
-    blank = {name: np.isnan(column) for name, column in values.items() if np.isnan(column.max())}
-    notes: list[str] = []
-    kept: NDArray[np.intp] | None = None
-    if blank:
-        none = np.zeros(samples, dtype=bool)
-        empty = np.logical_and.reduce([blank.get(name, none) for name in values])
-        for name in [name for name in OPTIONAL if name in blank]:
-            missing = int(np.count_nonzero(blank[name] & ~empty))
-            if missing > MOST_BLANK * samples:
-                notes.append(f"{name} left out: {missing} of {samples} rows have no value for it")
-                del blank[name], values[name]
-        lacking = np.logical_or.reduce([none, *blank.values()])
-        partial = np.flatnonzero(lacking & ~empty)
-        channels = " and ".join(name for name in blank if np.any(blank[name][partial]))
-        if len(partial) > MOST_BLANK * samples:
-            raise RecordingError(
-                f"{origin}: {len(partial)} of {samples} rows have no value for {channels} "
-                f"({columns.place(int(partial[0]))} the first); delete them, or record the channels together"
-            )
-        if len(partial):
-            notes.append(f"skipped for want of {channels}: {_places(columns, partial)}")
-        if np.any(empty):
-            notes.append(f"skipped as empty: {_places(columns, np.flatnonzero(empty))}")
-        kept = np.flatnonzero(~(lacking | empty))
-        values = {name: column[kept] for name, column in values.items()}
+    values, kept, notes = _without_blanks(origin, columns, values)
     repeated = _repeated(values)
     if len(repeated):
         whole = np.arange(samples) if kept is None else kept
@@ -111,6 +86,40 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             "a recording needs at least two"
         )
     return Rows(origin, headers, values, kept, columns, tuple(notes))
+
+
+def _without_blanks(
+    origin: Origin, columns: Columns, values: Mapping[str, FloatArray]
+) -> tuple[dict[str, FloatArray], NDArray[np.intp] | None, list[str]]:
+    """Return the rows that lack no value, their numbers, None where all are kept, and notes of the others."""
+    # The greatest value is NaN as soon as one is: one pass, and no array of flags for a clean column.
+    blank = {name: np.isnan(column) for name, column in values.items() if np.isnan(column.max())}
+    if not blank:
+        return dict(values), None, []
+    notes = []
+    samples = len(columns.values[0])
+    none = np.zeros(samples, dtype=bool)
+    empty = np.logical_and.reduce([blank.get(name, none) for name in values])
+    for name in [name for name in OPTIONAL if name in blank]:
+        missing = int(np.count_nonzero(blank[name] & ~empty))
+        if missing > MOST_BLANK * samples:
+            notes.append(f"{name} left out: {missing} of {samples} rows have no value for it")
+            del blank[name]
+            values = {other: column for other, column in values.items() if other != name}
+    lacking = np.logical_or.reduce([none, *blank.values()])
+    partial = np.flatnonzero(lacking & ~empty)
+    channels = " and ".join(name for name in blank if np.any(blank[name][partial]))
+    if len(partial) > MOST_BLANK * samples:
+        raise RecordingError(
+            f"{origin}: {len(partial)} of {samples} rows have no value for {channels} "
+            f"({columns.place(int(partial[0]))} the first); delete them, or record the channels together"
+        )
+    if len(partial):
+        notes.append(f"skipped for want of {channels}: {_places(columns, partial)}")
+    if np.any(empty):
+        notes.append(f"skipped as empty: {_places(columns, np.flatnonzero(empty))}")
+    kept = np.flatnonzero(~(lacking | empty))
+    return {name: column[kept] for name, column in values.items()}, kept, notes
 
 
 def _repeated(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
