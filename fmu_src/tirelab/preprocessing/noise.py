@@ -108,8 +108,8 @@ def noise_of(
     interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2]: motion at the samples, each (n,)
     """
     levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
-    courses = deflection, rate, acceleration
-    found = _that_stays(levels, deflection) or _that_reaches_all(levels, courses)
+    signals = deflection, rate, acceleration
+    found = _noise_at_plateau(levels, deflection) or _noise_at_whole_variation(levels, signals)
     return found or Noise(white_level(residual), 1)
 
 
@@ -128,14 +128,14 @@ class _Levels:
         The level of third differences of a sine is up to 1.8 times its own at one lag, and next to none at others.
         """
         level = _level_of(self.residual, noise.memory, self.slow)
-        return level > STAYS**2 * min(noise.level, _varied(self.residual, noise.memory, self.slow))
+        return level > STAYS**2 * min(noise.level, _local_rms(self.residual, noise.memory, self.slow))
 
 
 def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span: float) -> _Levels:
-    """Return the levels of a residual; the other arguments are those of `_slow`."""
+    """Return the levels of a residual; the other arguments are those of `_where_slow`."""
     lags, slow = [1], np.ones(residual.size, dtype=bool)
     while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
-        slower = _slow(change, bend, span, 2 * lags[-1])
+        slower = _where_slow(change, bend, span, 2 * lags[-1])
         if slower.sum() < FEWEST_LAGS * 2 * lags[-1]:
             break
         lags.append(2 * lags[-1])
@@ -143,42 +143,46 @@ def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span:
     return _Levels(residual, tuple(lags), slow, tuple(_level_of(residual, lag, slow) for lag in lags))
 
 
-def _that_stays(levels: _Levels, deflection: FloatArray) -> Noise | None:
+def _noise_at_plateau(levels: _Levels, deflection: FloatArray) -> Noise | None:
     """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
-    last = _staying(levels.values)
+    last = _plateau(levels.values)
     if last == 0:
         return None
-    found = _at(levels.values, last)
+    found = _noise_of_level(levels.values, last)
     if found.memory == 1:
         return Noise(white_level(levels.residual), 1)
     if levels.oscillates(found):
         return Noise(min(levels.values), 1)
-    visits = _seen(deflection, found.memory, levels.slow)
+    visits = _seen_visits(deflection, found.memory, levels.slow)
     between = ([_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits)
-    return min((found, *(_at(own, _staying(own)) for own in between)), key=lambda noise: noise.level)
+    return min(
+        (found, *(_noise_of_level(own, _plateau(own)) for own in between)), key=lambda noise: noise.level
+    )
 
 
-def _that_reaches_all(levels: _Levels, courses: tuple[FloatArray, FloatArray, FloatArray]) -> Noise | None:
+def _noise_at_whole_variation(
+    levels: _Levels, signals: tuple[FloatArray, FloatArray, FloatArray]
+) -> Noise | None:
     """Return the noise whose level reaches the whole variation of the residual within a few lags; None without such.
 
-    courses: deflection, rate and acceleration; if one of them would reach its variation as well, the level may be that
+    signals: deflection, rate and acceleration; if one of them would reach its variation as well, the level may be that
     of a misfit that follows it
     """
     residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
-        found, lag = _at(levels.values, last), levels.lags[last]
-        most = _varied(residual, lag, slow)
+        found, lag = _noise_of_level(levels.values, last), levels.lags[last]
+        most = _local_rms(residual, lag, slow)
         rises = any(_rises(levels.values)[last:])
         if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
             continue
-        visits = _seen(courses[0], found.memory, slow)
+        visits = _seen_visits(signals[0], found.memory, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
-        if least * STAYS >= most and not any(_follows(course, lag, slow, visits) for course in courses):
+        if least * STAYS >= most and not any(_may_follow(signal, lag, slow, visits) for signal in signals):
             return Noise(least, found.memory)
     return None
 
 
-def _seen(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[IntArray, IntArray]]:
+def _seen_visits(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[IntArray, IntArray]]:
     """Return the pairs of each kind of visit (`_visits`) with both samples `seen`; no kind with too few of them."""
     pairs = [
         (one[both], other[both])
@@ -188,25 +192,25 @@ def _seen(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[In
     return [p for p in pairs if p[0].size >= FEWEST_LAGS * memory]
 
 
-def _follows(
-    course: FloatArray, lag: int, seen: BoolArray, visits: Sequence[tuple[IntArray, IntArray]]
+def _may_follow(
+    signal: FloatArray, lag: int, seen: BoolArray, visits: Sequence[tuple[IntArray, IntArray]]
 ) -> bool:
-    """Return whether a misfit in proportion to a course of the motion could be taken for noise with this memory.
+    """Return whether a misfit in proportion to a signal of the motion could be taken for noise of this memory.
 
-    The lag shows the part r of the variation of the course, beside white noise. To rise by the factor STAYS, and to
+    The lag shows the part r of the variation of the signal, beside white noise. To rise by the factor STAYS, and to
     come within that factor of the whole variation, it needs r^2 >= STAYS^2 - 1.
     """
-    levels = [_level_of(course, lag, seen), *(_level_between(course, lag, *v) for v in visits)]
-    return bool(min(levels) ** 2 >= (STAYS**2 - 1.0) * _varied(course, lag, seen) ** 2)
+    levels = [_level_of(signal, lag, seen), *(_level_between(signal, lag, *v) for v in visits)]
+    return bool(min(levels) ** 2 >= (STAYS**2 - 1.0) * _local_rms(signal, lag, seen) ** 2)
 
 
-def _varied(values: FloatArray, lag: int, seen: BoolArray) -> float:
+def _local_rms(values: FloatArray, lag: int, seen: BoolArray) -> float:
     """Return the root mean square of values about their mean over four lags, where they are `seen`."""
     varied = values - uniform_filter1d(values, 4 * lag + 1, mode="nearest")
     return float(np.sqrt(np.mean(varied[seen] ** 2)))
 
 
-def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolArray:
+def _where_slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolArray:
     """Return around which samples the motion is slow enough for the differences over a lag.
 
     change [m], bend [m]: first and second difference of the deflection; span [m] of the deflection. The frequency of a
@@ -219,14 +223,14 @@ def _slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolAr
     return np.asarray((rests | follows) & (np.pi * change_there * lag <= LONGEST_PHASE * span))
 
 
-def _staying(levels: Sequence[float]) -> int:
+def _plateau(levels: Sequence[float]) -> int:
     """Return the index of the last level from which on the levels over doubled lags stay constant; 0 where none is."""
     # One doubling without a rise may be chance between two rises: the level has to hold over a factor of four.
     pairs = enumerate(itertools.pairwise(_rises(levels)))
     return max((i + 1 for i, pair in pairs if not any(pair)), default=0)
 
 
-def _at(levels: Sequence[float], last: int) -> Noise:
+def _noise_of_level(levels: Sequence[float], last: int) -> Noise:
     """Return the noise with the level `last`; its memory is that of the last rise before it, else 1."""
     risen = [i for i, rise in enumerate(_rises(levels)[:last]) if rise]
     return Noise(levels[last], 2 ** (risen[-1] + 1)) if risen else Noise(levels[0], 1)
@@ -250,8 +254,9 @@ def _visits(deflection: FloatArray, memory: int) -> Iterator[tuple[IntArray, Int
     inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
     begin = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
     turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
-    way = 2.0 * float(np.ptp(deflection)) * inwards
-    for place in (deflection, deflection + way, np.abs(deflection - deflection[turn]) + way):
+    # Added to a place, it keeps loading and unloading apart.
+    apart = 2.0 * float(np.ptp(deflection)) * inwards
+    for place in (deflection, deflection + apart, np.abs(deflection - deflection[turn]) + apart):
         order = np.argsort(place, kind="stable")
         one, other = order[:-1], order[1:]
         pairs = (np.abs(one - other) > 4 * memory) & (place[other] - place[one] <= near)
