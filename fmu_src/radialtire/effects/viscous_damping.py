@@ -66,13 +66,17 @@ def rate_at(force: float, size: float, exponent: float, thinning: float) -> tupl
 
 
 def carried(
-    reach: float, interval: float, compliance: float, size: float, exponent: float, thinning: float
+    reach: float, interval: float, start: float, compliance: float, dashpot: tuple[float, float, float]
 ) -> float:
-    """Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by Newton's method in a bracket."""
+    """Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by Newton's method in a bracket.
+
+    start [N]: from where it begins, if it is in the bracket; dashpot: size, exponent and thinning
+    """
+    size, exponent, thinning = dashpot
     high = force_at(reach / interval, size, exponent, thinning)
     if compliance > 0.0:
         high = min(high, reach / compliance)
-    low, force = 0.0, high
+    low, force = 0.0, start if 0.0 < start < high else high
     for _ in range(HALVINGS_MOST):
         if force <= 0.0:  # less than the smallest number
             break
@@ -125,7 +129,8 @@ def in_series(instant: Instant, given_way: float, values: State) -> tuple[float,
     size = size_of(side, x, values)
     if size <= 0.0:
         return 0.0, side * half
-    force = carried(beyond, instant.interval, compliance, size, values[1], values[3])
+    before = (side * given_way - half) / compliance if compliance > 0.0 else 0.0
+    force = carried(beyond, instant.interval, before, compliance, (size, values[1], values[3]))
     return side * force, side * (half + compliance * force)
 
 

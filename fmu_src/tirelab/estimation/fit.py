@@ -168,7 +168,7 @@ class Linearised:
     residual: FloatArray
     slopes: FloatArray
     positions: FloatArray
-    forms: tuple[FloatArray, ...]
+    forms: tuple[NDArray[np.floating], ...]
     errors: tuple[float, ...]
     groups: IntArray
     widths: FloatArray
@@ -302,7 +302,7 @@ class Fit:
 
     positions (k,): of its free parameters; log_likelihood: marginal (Laplace); variance: V of the discrepancy
     residual (m,), jacobian (m, k): in units of the noise; near: the linearisation from which the evidence is computed
-    forms (m, f): columns of the form errors, scaled
+    scales: of the form errors of each effect
     beyond_forms: sum of squares that form errors and refitted parameters leave
     sizes: root mean square of the response that each effect adds to the others, by its name
     held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
@@ -315,7 +315,7 @@ class Fit:
     residual: FloatArray
     jacobian: FloatArray
     near: Linearised
-    forms: FloatArray
+    scales: FloatArray
     beyond_forms: float
     sizes: Mapping[str, float]
     evaluations: int
@@ -345,7 +345,8 @@ class Fit:
     @property
     def slopes(self) -> FloatArray:
         """Columns (m, k + f) of all linear coefficients: of the parameters and of the form errors."""
-        return np.concatenate([self.jacobian, self.forms], axis=1)
+        forms = (f * scale for f, scale in zip(self.near.forms, self.scales, strict=True))
+        return np.concatenate([self.jacobian, *forms], axis=1)
 
     @property
     def power(self) -> float:
@@ -369,7 +370,7 @@ class Fit:
             self,
             log_likelihood=evidence.log_likelihood,
             variance=evidence.variance,
-            forms=_scaled(self.near.forms, evidence.scales, self.residual.size),
+            scales=evidence.scales,
             beyond_forms=float(evidence.beyond_forms @ evidence.beyond_forms),
         )
 
@@ -421,12 +422,12 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         found.residual,
         found.jacobian[:, ~held],
         found.positions[~held],
-        tuple(forms.values()),
+        # Most of a fit's memory: seven digits are enough for what is known to one.
+        tuple(f.astype(np.float32) for f in forms.values()),
         tuple(form_error(name) for name in forms),
         problem.groups[~held],
         problem.widths(found.positions)[~held],
     )
-    nothing = np.zeros((found.residual.size, 0))
     fit = Fit(
         problem,
         found.positions,
@@ -435,18 +436,12 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         found.residual,
         found.jacobian,
         near,
-        nothing,
+        np.ones(len(forms)),
         np.inf,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
     )
     return fit.with_discrepancy(discrepancy)
-
-
-def _scaled(forms: Sequence[FloatArray], scales: FloatArray, rows: int) -> FloatArray:
-    """Return all columns (rows, f) of the form errors at their scales."""
-    scaled = [f * scale for f, scale in zip(forms, scales, strict=True)]
-    return np.concatenate([np.zeros((rows, 0)), *scaled], axis=1)
 
 
 def _held(problem: EstimationProblem, found: Iterate) -> NDArray[np.bool_]:

@@ -275,6 +275,7 @@ class FittedSets:
         """Return the signatures of all other candidates beside a fitted set: anew of those that act on its signal."""
         names = frozenset(base.names)
         if names not in self.others:
+            self.others.clear()  # one set of them at a time: they are large
             to = Beside(base.tire, self.dataset.misfit - base.residual, base.residual)
             self.others[names] = {
                 n: drawn_beside(s, self.dataset, to) if names and acts_on_signal(n) else s
