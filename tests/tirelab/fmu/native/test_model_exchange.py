@@ -228,6 +228,22 @@ def test_states_have_the_values_of_the_start_in_initialization_mode(tmp_path: Pa
             assert list(row) == pytest.approx(rest, abs=1e-9)
 
 
+def test_what_relaxed_before_the_first_sample_is_in_the_states(tmp_path: Path) -> None:
+    """Held for tau / 3 before (f = 3/4), so h = F exp(-(t + tau / 3) / tau) in a hold, and q = F - h."""
+    g, tau, held = 0.2, 0.5, STIFFNESS * 0.01
+    given = {"share_1": g, "relaxation_time_1": tau, "freshness": 0.75}
+    one = unit(tire_with(viscoelastic_relaxation=given), tmp_path, 0.01, FLAT)
+    q, h, time = one.continuous(), 1e-3, 0.0
+    assert q[0] == pytest.approx(held * (1.0 - math.exp(-1.0 / 3.0)), rel=1e-12)
+    for _ in range(500):
+        q = runge_kutta(lambda t, q: one.evaluate(t, [0.01, FLAT], q)[1], time, q, h)
+        time += h
+        one.evaluate(time, [0.01, FLAT], q)
+        one.accept()
+    expected = held * (1.0 + g * math.exp(-time / tau - 1.0 / 3.0))
+    assert one.evaluate(time, [0.01, FLAT], q)[0] == pytest.approx(expected, rel=1e-9)
+
+
 def test_states_and_rates_mean_the_same_in_co_simulation(tmp_path: Path) -> None:
     """Over h the force rises by D: q = F - D tau / h (1 - exp(-h / tau)), q' = (F - q) / tau, dF/dq = -g."""
     g, tau, h = 0.2, 0.5, 0.1
