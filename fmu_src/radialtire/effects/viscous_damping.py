@@ -76,7 +76,7 @@ def carried(
     high = force_at(reach / interval, size, exponent, thinning)
     if compliance > 0.0:
         high = min(high, reach / compliance)
-    low, force = 0.0, start if 0.0 < start < high else high
+    low, force = 0.0, start if start > 0.0 and start < high else high
     for _ in range(HALVINGS_MOST):
         if force <= 0.0:  # less than the smallest number
             break

@@ -28,12 +28,14 @@ static const double PAUSE = 10.0;
 static const double POWER_LAW = 1.0;
 static const double PRESS = 0.0001;
 static const double REFERENCE = 0.025;
+static const double RELEASED = 0.001;
 static const double RIDE = 10.0;
 static const double SHARP = 10000000.0;
 static const double SMOOTH = 100.0;
 static const double SNAP_MAX = 128.0;
 static const double SOONEST = 1e-30;
 static const double SPEED = 0.1;
+static const double STEEPEST = 300.0;
 static const double SWITCH = 0.02;
 static const double TAIL = 4.0;
 static const double TANGENT_STEP = 1e-07;
@@ -48,7 +50,7 @@ typedef struct { double v[4]; } Vector4;
 typedef struct { Vector14x4 a; Vector4 b; double c; } Tuple3;
 typedef struct { double a; double b; bool c; double d; double e; bool f; } Tuple4;
 typedef struct { double v[3]; } Vector3;
-typedef struct { double time; double interval; bool first; double deflection; double rate; double acceleration; double coefficient; double exponent; double elastic_force; double curvature; double pressure; double temperature; bool two_sided; } Instant;
+typedef struct { double time; double interval; bool first; double deflection; double rate; double acceleration; double coefficient; double exponent; double elastic_force; double curvature; double pressure; double temperature; bool two_sided; double preload; } Instant;
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
@@ -59,7 +61,7 @@ typedef struct { double a; Vector1 b; } Tuple15;
 typedef struct { double a; Vector8 b; } Tuple16;
 typedef struct { double v[6]; } Vector6;
 typedef struct { double a; Vector6 b; } Tuple18;
-typedef struct { double v[11]; } Vector11;
+typedef struct { double v[12]; } Vector12;
 typedef struct { double v[16]; } Vector16;
 typedef struct { double v[32]; } Vector32;
 typedef struct { double a; Vector32 b; } Tuple22;
@@ -316,8 +318,8 @@ static inline Tuple3 tracked_track(const double *s, double deflection, double in
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 59), *(const Vector14 *)(s + 73), *(const
-        Vector14 *)(s + 87), *(const Vector14 *)(s + 101)}}, *(const Vector4 *)(s + 115), s[119]};
+    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 60), *(const Vector14 *)(s + 74), *(const
+        Vector14 *)(s + 88), *(const Vector14 *)(s + 102)}}, *(const Vector4 *)(s + 116), s[120]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -331,16 +333,16 @@ static inline void store_track(double *n, Tuple3 track)
     Vector4 probability = track.b;
     double last = track.c;
     for (int i = 0; i < 14; i++)
-        n[59 + i] = modes.v[0].v[i];
+        n[60 + i] = modes.v[0].v[i];
     for (int i = 0; i < 14; i++)
-        n[73 + i] = modes.v[1].v[i];
+        n[74 + i] = modes.v[1].v[i];
     for (int i = 0; i < 14; i++)
-        n[87 + i] = modes.v[2].v[i];
+        n[88 + i] = modes.v[2].v[i];
     for (int i = 0; i < 14; i++)
-        n[101 + i] = modes.v[3].v[i];
+        n[102 + i] = modes.v[3].v[i];
     for (int i = 0; i < 4; i++)
-        n[115 + i] = probability.v[i];
-    n[119] = last;
+        n[116 + i] = probability.v[i];
+    n[120] = last;
 }
 
 /* tracking.py: Return the rate [m/s] of the deflection at the last sample, 0 before the second one. */
@@ -412,6 +414,7 @@ static inline double series_compliance_stiffening(double x, double k, double h, 
     double miss;
     double slope;
     double following;
+    bool near;
     double low = 0.0;
     double high = x - plain;
     double d = high < x ? high : 0.5 * x;
@@ -428,13 +431,15 @@ static inline double series_compliance_stiffening(double x, double k, double h, 
         }
         slope = 1.0 + 2.0 * h * d + k * B * force / (x - d);
         following = d - miss / slope;
+        near = fabs(following - d) <= NEAR * (x - d);
         if (following <= low || following >= high) {
             following = 0.5 * (low + high);
-        }
-        if (fabs(following - d) <= 1e-15 * x) {
-            break;
+            near = fabs(following - d) <= 1e-15 * x;
         }
         d = following;
+        if (near) {
+            break;
+        }
     }
     return x - d;
 }
@@ -507,9 +512,9 @@ static inline double compressed(Vector3 read, Tuple4 moment, Vector3 surface, co
     bool held = moment.f;
     double A = surface.v[0], B = surface.v[1], bend = surface.v[2];
     Instant at = (Instant){time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure,
-        temperature, held};
+        temperature, held, 0.0};
     double x = unremembered_deflection(deflection, at, p, s);
-    at = (Instant){time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held};
+    at = (Instant){time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held, 0.0};
     return unremembered_series(x, at, p, s);
 }
 
@@ -520,8 +525,8 @@ static inline Tuple3 tracked_compression(const double *s, double deflection, dou
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 120), *(const Vector14 *)(s + 134), *(const
-        Vector14 *)(s + 148), *(const Vector14 *)(s + 162)}}, *(const Vector4 *)(s + 176), s[180]};
+    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 121), *(const Vector14 *)(s + 135), *(const
+        Vector14 *)(s + 149), *(const Vector14 *)(s + 163)}}, *(const Vector4 *)(s + 177), s[181]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -535,16 +540,16 @@ static inline void store_compression(double *n, Tuple3 track)
     Vector4 probability = track.b;
     double last = track.c;
     for (int i = 0; i < 14; i++)
-        n[120 + i] = modes.v[0].v[i];
+        n[121 + i] = modes.v[0].v[i];
     for (int i = 0; i < 14; i++)
-        n[134 + i] = modes.v[1].v[i];
+        n[135 + i] = modes.v[1].v[i];
     for (int i = 0; i < 14; i++)
-        n[148 + i] = modes.v[2].v[i];
+        n[149 + i] = modes.v[2].v[i];
     for (int i = 0; i < 14; i++)
-        n[162 + i] = modes.v[3].v[i];
+        n[163 + i] = modes.v[3].v[i];
     for (int i = 0; i < 4; i++)
-        n[176 + i] = probability.v[i];
-    n[180] = last;
+        n[177 + i] = probability.v[i];
+    n[181] = last;
 }
 
 /* power_law.py: Return the force [N] of a part that is held at both ends and pulls as it presses: A sign(x) |x|^B,
@@ -564,7 +569,7 @@ static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothi
     double bend = values.v[0], twist = values.v[1], reference = values.v[2], first = values.v[3], second =
         values.v[4], third = values.v[5], fourth = values.v[6], fifth = values.v[7];
     double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
-    if (x <= 0.0) {
+    if (x <= 0.0 && !instant.two_sided) {
         return (Tuple8){signal, state};
     }
     double exponent = 0.0;
@@ -650,7 +655,7 @@ static inline Tuple13 mullins_softening_respond(double signal, Instant instant, 
         counted = greater(x, 0.0);
         uncounted = 0.0;
     }
-    if (share == 0.0 || x <= 0.0 || measure >= largest) {
+    if (share == 0.0 || (x <= 0.0 && !instant.two_sided) || measure >= largest) {
         return (Tuple13){signal, (Vector3){{largest, counted, path}}};
     }
     double fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
@@ -798,17 +803,191 @@ static inline Tuple16 rate_independent_hysteresis_respond(double signal, Instant
     return (Tuple16){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
 }
 
-/* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
-   ends always is. */
-static inline Tuple8 viscous_damping_respond(double signal, Instant instant, Nothing state, Vector5 values)
+/* effects.viscous_damping.py: Return the dashpot's force [N] at the rate v0 on the way in (side 1) or back (-1). */
+static inline double viscous_damping_size_of(double side, double deflection, Vector7 values)
 {
-    double size;
-    double damping = values.v[0], rate_exponent = values.v[1], deflection_exponent = values.v[2], thinning =
-        values.v[3], rebound = values.v[4];
+    double damping = values.v[0], deflection_exponent = values.v[2], rebound = values.v[4];
+    double size = damping * SPEED;
+    if (deflection_exponent != 0.0) {
+        size *= pow(fabs(deflection) / DEPTH, deflection_exponent);
+    }
+    return side > 0.0 ? size : size * rebound;
+}
+
+/* effects.viscous_damping.py: Return the dashpot's force [N] at a rate [m/s], both above 0; size [N]: at the rate
+   v0. */
+static inline double viscous_damping_force_at(double rate, double size, double exponent, double thinning)
+{
+    if (thinning > 0.0) {
+        rate = asinh(thinning * rate) / thinning;
+    }
+    double force = size * pow(rate / SPEED, exponent);
+    return force;
+}
+
+/* effects.viscous_damping.py: Return the force [N] at a constant rate [m/s], and by how much the mounts give way
+   [m]. */
+static inline Vector2 viscous_damping_steady(double rate, double deflection, Vector7 values)
+{
+    if (rate == 0.0) {
+        return (Vector2){{0.0, 0.0}};
+    }
+    double side = rate > 0.0 ? 1.0 : -1.0;
+    double force = viscous_damping_force_at(fabs(rate), viscous_damping_size_of(side, deflection, values),
+        values.v[1], values.v[3]);
+    return (Vector2){{side * force, side * (0.5 * values.v[6] + values.v[5] * force)}};
+}
+
+/* effects.viscous_damping.py: Return the dashpot's rate [m/s] at a force [N] above 0, and its derivative [m/s/N].
+   */
+static inline Vector2 viscous_damping_rate_at(double force, double size, double exponent, double thinning)
+{
+    double turned;
+    double rate = SPEED * pow(force / size, 1.0 / exponent);
+    double slope = rate / (exponent * force);
+    if (thinning > 0.0) {
+        turned = lesser(thinning * rate, STEEPEST);
+        return (Vector2){{sinh(turned) / thinning, slope * cosh(turned)}};
+    }
+    return (Vector2){{rate, slope}};
+}
+
+/* effects.viscous_damping.py: Add the dashpot's force [N] for a solver: the state is by how much compliance and
+   play give way. */
+static inline Tuple15 viscous_damping_flow(double signal, Instant instant, Vector1 state, Vector7 values)
+{
+    double compliance = values.v[5];
+    double half = 0.5 * values.v[6];
     double x = instant.deflection;
     double v = instant.rate;
     if (x <= 0.0 && !instant.two_sided) {
-        return (Tuple8){signal, state};
+        return (Tuple15){signal, (Vector1){{instant.first ? 0.0 : -state.v[0] / RELEASED}}};
+    }
+    const Vector2 t1 = viscous_damping_steady(v, x, values);
+    double force = t1.v[0], given_way = t1.v[1];
+    if (instant.first) {
+        return (Tuple15){signal + force, (Vector1){{given_way}}};
+    }
+    if (compliance <= 0.0 && half <= 0.0) {
+        return (Tuple15){signal + force, (Vector1){{0.0}}};
+    }
+    double z = state.v[0];
+    double side = z > 0.0 ? 1.0 : -1.0;
+    double beyond = fabs(z) - half;
+    if (compliance <= 0.0) {
+        if (beyond >= 0.0 && v * side > 0.0) {
+            return (Tuple15){signal + force, (Vector1){{0.0}}};
+        }
+        return (Tuple15){signal, (Vector1){{v}}};
+    }
+    if (beyond <= 0.0) {
+        return (Tuple15){signal, (Vector1){{v}}};
+    }
+    double size = viscous_damping_size_of(side, x, values);
+    if (size <= 0.0) {
+        return (Tuple15){signal, (Vector1){{v - side * beyond / RELEASED}}};
+    }
+    const Vector2 t2 = viscous_damping_rate_at(beyond / compliance, size, values.v[1], values.v[3]);
+    double rate = t2.v[0];
+    return (Tuple15){signal + side * beyond / compliance, (Vector1){{v - side * rate}}};
+}
+
+/* effects.viscous_damping.py: Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by
+   Newton's method in a bracket. */
+static inline double viscous_damping_carried(double reach, double interval, double start, double compliance, Vector3
+    dashpot)
+{
+    double rate;
+    double slope;
+    double miss;
+    double following;
+    bool near;
+    double size = dashpot.v[0], exponent = dashpot.v[1], thinning = dashpot.v[2];
+    double high = viscous_damping_force_at(reach / interval, size, exponent, thinning);
+    if (compliance > 0.0) {
+        high = lesser(high, reach / compliance);
+    }
+    double low = 0.0;
+    double force = start > 0.0 && start < high ? start : high;
+    for (int t1 = 0; t1 < 60; t1++) {
+        if (force <= 0.0) {
+            break;
+        }
+        const Vector2 t2 = viscous_damping_rate_at(force, size, exponent, thinning);
+        rate = t2.v[0];
+        slope = t2.v[1];
+        miss = compliance * force + interval * rate - reach;
+        if (miss > 0.0) {
+            high = force;
+        } else {
+            low = force;
+        }
+        following = force - miss / (compliance + interval * slope);
+        near = fabs(following - force) <= NEAR * force;
+        if (following < low || following > high) {
+            following = 0.5 * (low + high);
+            near = high - low <= 1e-15 * high;
+        }
+        force = following;
+        if (near) {
+            break;
+        }
+    }
+    return force;
+}
+
+/* effects.viscous_damping.py: Return the force [N] behind compliance and play after a step, and by how much they
+   give way [m]. */
+static inline Vector2 viscous_damping_in_series(Instant instant, double given_way, Vector7 values)
+{
+    double x = instant.deflection;
+    double v = instant.rate;
+    double compliance = values.v[5];
+    double half = 0.5 * values.v[6];
+    double reach = given_way + v * instant.interval;
+    double side = reach > 0.0 ? 1.0 : -1.0;
+    double beyond = fabs(reach) - half;
+    if (beyond <= 0.0) {
+        return (Vector2){{0.0, reach}};
+    }
+    if (instant.interval <= 0.0) {
+        return (Vector2){{compliance > 0.0 ? side * beyond / compliance : 0.0, reach}};
+    }
+    double size = viscous_damping_size_of(side, x, values);
+    if (size <= 0.0) {
+        return (Vector2){{0.0, side * half}};
+    }
+    double before = compliance > 0.0 ? (side * given_way - half) / compliance : 0.0;
+    double force = viscous_damping_carried(beyond, instant.interval, before, compliance, (Vector3){{size,
+        values.v[1], values.v[3]}});
+    return (Vector2){{side * force, side * (half + compliance * force)}};
+}
+
+/* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
+   ends always is. */
+static inline Tuple15 viscous_damping_respond(double signal, Instant instant, Vector1 state, Vector7 values)
+{
+    double force;
+    double given_way;
+    double size;
+    double damping = values.v[0], rate_exponent = values.v[1], deflection_exponent = values.v[2], thinning =
+        values.v[3], rebound = values.v[4], compliance = values.v[5], play = values.v[6];
+    double x = instant.deflection;
+    double v = instant.rate;
+    if (x <= 0.0 && !instant.two_sided) {
+        return (Tuple15){signal, (Vector1){{0.0}}};
+    }
+    if (compliance > 0.0 || play > 0.0) {
+        if (instant.first) {
+            const Vector2 t1 = viscous_damping_steady(v, x, values);
+            force = t1.v[0];
+            given_way = t1.v[1];
+        } else {
+            const Vector2 t2 = viscous_damping_in_series(instant, state.v[0], values);
+            force = t2.v[0];
+            given_way = t2.v[1];
+        }
+        return (Tuple15){signal + force, (Vector1){{given_way}}};
     }
     if (thinning > 0.0) {
         v = asinh(thinning * v) / thinning;
@@ -823,29 +1002,56 @@ static inline Tuple8 viscous_damping_respond(double signal, Instant instant, Not
     if (v < 0.0) {
         v *= rebound;
     }
-    return (Tuple8){signal + damping * v, state};
+    return (Tuple15){signal + damping * v, (Vector1){{0.0}}};
+}
+
+/* effects.viscoelastic_relaxation.py: Return t0 [s] for a freshness above 0 and the first relaxation time [s]. */
+static inline double viscoelastic_relaxation_time_held(double freshness, double tau)
+{
+    return tau * (1.0 / freshness - 1.0);
+}
+
+/* effects.viscoelastic_relaxation.py: Return h [N] of an elastic force [N] that was reached at once and held for a
+   time [s]. */
+static inline double viscoelastic_relaxation_left(double elastic, double held, double tau)
+{
+    return elastic * exp(-held / tau);
 }
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt =
    (F_elastic - q_i) / tau_i. */
-static inline Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector11 values)
+static inline Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector12 values)
 {
-    double added;
+    double held;
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
         values.v[5], sudden = values.v[6], g4 = values.v[7], tau4 = values.v[8], g5 = values.v[9], tau5 =
-        values.v[10];
-    double elastic = instant.elastic_force;
+        values.v[10], freshness = values.v[11];
+    double elastic = instant.elastic_force - instant.preload;
     double q1 = state.v[1], q2 = state.v[2], q3 = state.v[3], q4 = state.v[4], q5 = state.v[5];
     if (instant.first) {
-        added = -sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
-        return (Tuple18){signal + added, (Vector6){{0.0, elastic, elastic, elastic, elastic, elastic}}};
+        q1 = elastic;
+        q2 = elastic;
+        q3 = elastic;
+        q4 = elastic;
+        q5 = elastic;
+        if (freshness > 0.0) {
+            held = viscoelastic_relaxation_time_held(freshness, tau1);
+            q1 = q1 - viscoelastic_relaxation_left(elastic, held, tau1);
+            q2 = q2 - viscoelastic_relaxation_left(elastic, held, tau2);
+            q3 = q3 - viscoelastic_relaxation_left(elastic, held, tau3);
+            q4 = q4 - viscoelastic_relaxation_left(elastic, held, tau4);
+            q5 = q5 - viscoelastic_relaxation_left(elastic, held, tau5);
+        }
     }
     double h1 = elastic - q1;
     double h2 = elastic - q2;
     double h3 = elastic - q3;
     double h4 = elastic - q4;
     double h5 = elastic - q5;
-    added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
+    double added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
+    if (instant.first) {
+        return (Tuple18){signal + added, (Vector6){{0.0, q1, q2, q3, q4, q5}}};
+    }
     return (Tuple18){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
 }
 
@@ -863,16 +1069,25 @@ static inline double viscoelastic_relaxation_overstress(double h, double change,
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N]; the state holds the last elastic force and the five
    overstresses. */
-static inline Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector11
+static inline Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector12
     values)
 {
+    double held;
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
         values.v[5], sudden = values.v[6], g4 = values.v[7], tau4 = values.v[8], g5 = values.v[9], tau5 =
-        values.v[10];
-    double elastic = instant.elastic_force;
+        values.v[10], freshness = values.v[11];
+    double elastic = instant.elastic_force - instant.preload;
     double last = state.v[0], h1 = state.v[1], h2 = state.v[2], h3 = state.v[3], h4 = state.v[4], h5 = state.v[5];
     if (instant.first) {
         last = elastic;
+        if (freshness > 0.0) {
+            held = viscoelastic_relaxation_time_held(freshness, tau1);
+            h1 = viscoelastic_relaxation_left(elastic, held, tau1);
+            h2 = viscoelastic_relaxation_left(elastic, held, tau2);
+            h3 = viscoelastic_relaxation_left(elastic, held, tau3);
+            h4 = viscoelastic_relaxation_left(elastic, held, tau4);
+            h5 = viscoelastic_relaxation_left(elastic, held, tau5);
+        }
     }
     double change = elastic - last;
     h1 = viscoelastic_relaxation_overstress(h1, change, instant.interval, tau1);
@@ -900,7 +1115,8 @@ static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing s
 {
     double stiffness = values.v[0], onset = values.v[1], softness = values.v[2], power = values.v[3];
     double beyond = instant.deflection - onset;
-    if (stiffness == 0.0 || instant.deflection <= 0.0 || beyond <= -FAR * softness) {
+    bool in_air = instant.deflection <= 0.0 && !instant.two_sided;
+    if (stiffness == 0.0 || in_air || beyond <= -FAR * softness) {
         return (Tuple8){signal, state};
     }
     if (beyond < FAR * softness) {
@@ -923,28 +1139,35 @@ static inline double through_parallel(double signal, Instant at, const double *p
         for (int i = 0; i < 8; i++)
             n[10 + i] = after.v[i];
     }
-    if (p[58] != 0.0) {
-        const Tuple8 t2 = viscous_damping_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 59));
+    if (p[58] != 0.0 && p[3] != 0.0) {
+        const Tuple15 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 59));
         signal = t2.a;
-    }
-    if (p[64] != 0.0 && p[3] != 0.0) {
-        const Tuple18 t3 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 18), *(const Vector11
-            *)(p + 65));
+        Vector1 flowed = t2.b;
+        n[18] = flowed.v[0];
+    } else if (p[58] != 0.0) {
+        const Tuple15 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 59));
         signal = t3.a;
-        Vector6 flowed = t3.b;
-        for (int i = 0; i < 6; i++)
-            n[18 + i] = flowed.v[i];
-    } else if (p[64] != 0.0) {
-        const Tuple18 t4 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 18), *(const Vector11
-            *)(p + 65));
-        signal = t4.a;
-        Vector6 after = t4.b;
-        for (int i = 0; i < 6; i++)
-            n[18 + i] = after.v[i];
+        Vector1 after = t3.b;
+        n[18] = after.v[0];
     }
-    if (p[76] != 0.0) {
-        const Tuple8 t5 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 77));
+    if (p[66] != 0.0 && p[3] != 0.0) {
+        const Tuple18 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
+            *)(p + 67));
+        signal = t4.a;
+        Vector6 flowed = t4.b;
+        for (int i = 0; i < 6; i++)
+            n[19 + i] = flowed.v[i];
+    } else if (p[66] != 0.0) {
+        const Tuple18 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
+            *)(p + 67));
         signal = t5.a;
+        Vector6 after = t5.b;
+        for (int i = 0; i < 6; i++)
+            n[19 + i] = after.v[i];
+    }
+    if (p[79] != 0.0) {
+        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 80));
+        signal = t6.a;
     }
     return signal;
 }
@@ -958,8 +1181,8 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[81] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[82]}});
+    if (p[84] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[85]}});
         signal = t1.a;
     }
     return signal;
@@ -1184,31 +1407,31 @@ static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[83] != 0.0 && p[3] != 0.0) {
-        const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[84], p[85],
-            p[86]}});
+    if (p[86] != 0.0 && p[3] != 0.0) {
+        const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[87], p[88],
+            p[89]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
-            n[24 + i] = flowed.v[i];
-    } else if (p[83] != 0.0) {
-        const Tuple24 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 24), (Vector3){{p[84], p[85],
-            p[86]}});
+            n[25 + i] = flowed.v[i];
+    } else if (p[86] != 0.0) {
+        const Tuple24 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[87], p[88],
+            p[89]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
-            n[24 + i] = after.v[i];
+            n[25 + i] = after.v[i];
     }
-    if (p[87] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[88]}});
+    if (p[90] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[91]}});
         signal = t3.a;
     }
-    if (p[89] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[90], p[91]}});
+    if (p[92] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[93], p[94]}});
         signal = t4.a;
     }
-    if (p[92] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[93], p[94]}});
+    if (p[95] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[96], p[97]}});
         signal = t5.a;
     }
     return signal;
@@ -1258,12 +1481,17 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
             }
         }
     }
-    double bare = held ? p[5] + power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
+    double bare = held ? power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
     Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure,
-        temperature, held};
+        temperature, held, 0.0};
     double elastic = through_scale(1.0, at, p, s, n) * bare;
+    double preload = 0.0;
+    if (held) {
+        preload = p[5];
+        elastic = elastic + preload;
+    }
     at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature,
-        held};
+        held, preload};
     double force = through_parallel(elastic, at, p, s, n);
     if (force < 0.0 && !held) {
         force = 0.0;

@@ -2,10 +2,10 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "cbd5da5ce584e44d" /* what stands where in p and s */
+#define LAYOUT "e52498750235dbbd" /* what stands where in p and s */
 enum {
-    PARAMETERS = 95,
-    STATES = 181,
+    PARAMETERS = 98,
+    STATES = 182,
     S_TIME = 0,
     S_STARTED = 4,
     P_TRACKED = 0, /* p: rate and acceleration follow from the readings */
