@@ -134,7 +134,7 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
 
 def springless(fit: LawFit, tire: TireModel) -> str:
     """Return a sentence where a law was asked for that has a spring, and the tire file has none; "" else."""
-    if fit.name == "constant" or tire.law != PowerLaw(LEAST_SPRING, 1.0):
+    if fit.name in ("constant", CURVE) or tire.law != PowerLaw(LEAST_SPRING, 1.0):
         return ""
     symbol, value, deviation, unit = next(c for c in fit.constants if c[0] in ("k", "A"))
     return (
