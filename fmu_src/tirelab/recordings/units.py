@@ -30,6 +30,9 @@ OF_A_SPECIMEN = {
 }
 """What a test of a material states in place of a length and of a force: a unit of it, and how one becomes the other."""
 
+ANGLES = frozenset({"rad", "mrad", "radian", "radians", "deg", "degree", "degrees", "°", "rev", "turn"})
+"""Units of the angle that a test of torsion states in place of a length."""
+
 _COMMON = {
     "s": ("s", "ms", "us", "min", "h"),
     "m": ("m", "cm", "mm", "in", "ft"),
@@ -162,6 +165,7 @@ def conversion(unit: str, si: str) -> Conversion:
             known or text == "%" or "/" in text
         )
         advice = becomes if measured and of_specimen else _advice(text, si, known=True)
+        advice = _of_torsion(text, si, torque=known == registry.Unit("N*m").dimensionality) or advice
         what = f"{unit[:40]!r} is not a unit of {quantity}; {advice}"
         raise UnitError(what, _likely(text, si, known=True))
     zero, one = registry.Quantity(0.0, parsed), registry.Quantity(1.0, parsed)
@@ -171,6 +175,15 @@ def conversion(unit: str, si: str) -> Conversion:
         divisor = 1
     offset = -STANDARD_ATMOSPHERE if absolute else float(zero.to(si).magnitude)
     return Conversion(unit, si, 1.0 if divisor > 1 else factor, float(divisor), offset, absolute)
+
+
+def _of_torsion(unit: str, si: str, *, torque: bool) -> str:
+    """Return how an angle stands for a deflection, or a torque for a force; "" where the unit is of neither."""
+    if si == "m" and unit.casefold() in ANGLES:
+        return f"an angle may stand for a deflection, 1 {unit} as 1 mm"
+    if si == "N" and torque:
+        return f"a torque may stand for a force, 1 {unit} as 1 N"
+    return ""
 
 
 @lru_cache(maxsize=MOST_TEXTS)

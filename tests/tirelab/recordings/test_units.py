@@ -1,6 +1,7 @@
 """Units against their definitions (SI Brochure, NIST SP 811), and against text of any kind."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -165,11 +166,25 @@ def test_what_is_no_radius_is_refused(text: str | float) -> None:
         ("%", "m", "a strain times the length of the specimen"),
         ("mm/mm", "m", "a strain times the length of the specimen"),
         ("N/mm^2", "N", "a stress times the cross-section of the specimen"),
-        ("deg", "m", "write m, cm, mm, in or ft"),
+        ("kg", "m", "write m, cm, mm, in or ft"),
     ],
 )
 def test_what_is_measured_of_a_specimen_is_told_how_to_become_a_length_or_a_force(
     unit: str, si: str, advice: str
 ) -> None:
     with pytest.raises(UnitError, match=advice):
+        conversion(unit, si)
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "how"),
+    [
+        ("rad", "m", "an angle may stand for a deflection, 1 rad as 1 mm"),
+        ("deg", "m", "an angle may stand for a deflection, 1 deg as 1 mm"),
+        ("mN*m", "N", "a torque may stand for a force, 1 mN*m as 1 N"),
+        ("N*m", "N", "a torque may stand for a force"),
+    ],
+)
+def test_a_test_of_torsion_is_told_what_stands_for_what(unit: str, si: str, how: str) -> None:
+    with pytest.raises(UnitError, match=re.escape(how)):
         conversion(unit, si)

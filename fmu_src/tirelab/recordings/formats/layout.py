@@ -191,6 +191,19 @@ def _names(
     names = _commented_names(lines[:start], separator)
     if len(names) == len(header):
         return names, False, (f"column names taken from the comment in row {start}",)
+    above = _words_above(lines[:start], separator)
+    if len(above) > len(header):
+        unheld = " and ".join(map(quoted, above[len(header) :]))
+        return (
+            above[: len(header)],
+            False,
+            (f"row {start} names {unheld} too, of which the rows hold nothing",),
+        )
+    if len(above) > 1:
+        unnamed = (
+            f"row {start} names {len(above)} columns and the rows hold {len(header)}: its names are not taken"
+        )
+        return [""] * len(header), False, (unnamed,)
     return [""] * len(header), False, ("the file has no header row: its columns are known by number only",)
 
 
@@ -355,6 +368,13 @@ def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
         return []
     text = preamble[-1].strip().lstrip("# ")
     return next(csv.reader([text], delimiter=separator), [])
+
+
+def _words_above(preamble: Sequence[str], separator: str) -> list[str]:
+    """The cells of the line right above the numbers, where each of them is a word; none else."""
+    cells = next(csv.reader([preamble[-1].strip()], delimiter=separator), []) if preamble else []
+    words = [cell.strip() for cell in cells]
+    return words if all(words) and not any(map(is_value, words)) else []
 
 
 def _all_numeric(cells: Sequence[str]) -> bool:

@@ -308,3 +308,25 @@ class TestClocks:
         path.write_text("Zeit;Weg [mm];Kraft [N]\n" + "\n".join(lines) + "\n", encoding="utf-8")
         with pytest.raises(RecordingError, match="row 42, column 'Zeit': 'later' is not a time like those"):
             read_recording(path, radius="flat")
+
+
+def test_a_header_that_names_more_columns_than_the_rows_hold(tmp_path: Path) -> None:
+    """A logger whose last sensor is not plugged in."""
+    rows = "".join(f"{0.1 * i:g},{2.0 * i:g},{0.5 * i:g}\n" for i in range(40))
+    path = tmp_path / "a.csv"
+    path.write_text("Millis,Load_Cell,Linear_Pot,Velocity,Thermocouple\n" + rows, encoding="utf-8")
+    units = {"time": "s", "force": "N", "deflection": "mm"}
+    found = read_recording(path, radius="flat", units=units)
+    np.testing.assert_allclose(found.force, 2.0 * np.arange(40))
+    np.testing.assert_allclose(found.deflection, 5e-4 * np.arange(40))
+    assert "row 1 names 'Velocity' and 'Thermocouple' too, of which the rows hold nothing" in found.notes
+
+
+def test_a_header_that_names_fewer_columns_than_the_rows_hold_is_said(tmp_path: Path) -> None:
+    rows = "".join(f"{0.1 * i:g},{2.0 * i:g},{0.5 * i:g}\n" for i in range(40))
+    path = tmp_path / "a.csv"
+    path.write_text("time [s],force [N]\n" + rows, encoding="utf-8")
+    columns = {"time": "#1", "force": "#2", "deflection": "#3"}
+    units = {"time": "s", "force": "N", "deflection": "mm"}
+    found = read_recording(path, radius="flat", columns=columns, units=units)
+    assert "row 1 names 2 columns and the rows hold 3: its names are not taken" in found.notes
