@@ -30,10 +30,9 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     positions = problem.positions(values)
     slopes = np.ones((dataset.misfit.size, positions.size))
     residual = problem.residual(positions)
-    forms = np.zeros((residual.size, 0))
     near = Linearised(residual, slopes, positions, (), (), problem.groups, problem.widths(positions))
     left = float(residual @ residual)
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, forms, left, {}, 1)
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), left, {}, 1)
 
 
 def model_of(effects: Mapping[str, Mapping[str, float]], radius: float = np.inf) -> FittedModel:

@@ -28,7 +28,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from ..names import REFITTED_LAW
-from ..simulation.simulate import preload_of
+from ..simulation.simulate import UPSTREAM, preload_of
 from .dataset import Dataset, Scales, arranged
 
 FloatArray = NDArray[np.float64]
@@ -126,7 +126,7 @@ def candidates() -> tuple[str, ...]:
 
 def acts_on_signal(name: str) -> bool:
     """Whether an effect changes what other effects are given or give, so that its response depends on them."""
-    return name != LAW and CATALOGUE[name].place not in ("parallel", "inertia")
+    return name != LAW and CATALOGUE[name].place in (*UPSTREAM, "scale", "reading")
 
 
 def form_error(name: str) -> float:

@@ -23,12 +23,11 @@ def respond_loop(
     state: State,
     values: State,
     answer: FloatArray,
-    two_sided: bool,
-    preload: float,
+    part: tuple[bool, float],
 ) -> None:
     """Fill `answer` with the effect's signal at every sample; `state` is its initial state.
 
-    two_sided: whether the part is held at both ends; preload: [N] its force without a deflection
+    part: whether it is held at both ends, and then its force without a deflection [N]
     history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
     of every sample
     """
@@ -60,8 +59,8 @@ def respond_loop(
                 curvature[i],
                 pressure[i],
                 temperature[i],
-                two_sided,
-                preload,
+                part[0],
+                part[1],
             ),
             state,
             values,

@@ -258,8 +258,7 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
         effect.initial_state,
         tuple(float(value) for value in values),
         answer,
-        history.two_sided,
-        history.preload,
+        (history.two_sided, history.preload),
     )
     return answer
 
