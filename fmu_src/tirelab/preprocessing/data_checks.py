@@ -169,13 +169,19 @@ RARE = 0.02
 
 
 def spikes(misfit: FloatArray) -> BoolArray:
-    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction."""
+    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction.
+
+    The first and the last one have one neighbour: they differ from it by far more than that one from the next.
+    """
     level = white_level(misfit)
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
     lone[1:-1] = (
         (np.abs(before) > STANDS_OUT * level) & (np.abs(after) > STANDS_OUT * level) & (before * after > 0.0)
     )
+    for end, near, next_one in ((0, 1, 2), (-1, -2, -3)):
+        step, usual = abs(misfit[end] - misfit[near]), abs(misfit[near] - misfit[next_one])
+        lone[end] = step > STANDS_OUT * max(level, float(usual))
     # Frequent ones are noise of a part of the recording, such as the steps of a gauge while the tire moves.
     return lone if lone.mean() < RARE else np.zeros_like(lone)
 

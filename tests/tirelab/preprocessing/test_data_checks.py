@@ -23,6 +23,7 @@ from tirelab.preprocessing.data_checks import (
     check_signal,
     compared,
     not_compared,
+    spikes,
 )
 from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.recordings.recording import Recording
@@ -224,3 +225,27 @@ def test_it_is_said_with_recording_and_place() -> None:
     (said,) = not_compared([Read(), Read("whole", deflection=noisy(MOTION))])
     assert said.startswith("In clipped the deflection's reading stands still at 21 mm in ")
     assert "whole" not in said
+
+
+def with_lone(**lone: float) -> FloatArray:
+    """A misfit that grows by 20 N beside 1 N of noise, with so many newtons more at some samples."""
+    misfit = np.linspace(0.0, 20.0, 1000) + np.random.default_rng(8).normal(size=1000)
+    for place, more in lone.items():
+        misfit[int(place.removeprefix("at_"))] += more
+    return misfit
+
+
+@pytest.mark.parametrize("place", [0, 1, 500, 998, 999])
+def test_one_sample_far_off_is_an_outlier_also_at_an_end(place: int) -> None:
+    assert np.flatnonzero(spikes(with_lone(**{f"at_{place}": -40.0}))).tolist() == [place]
+
+
+def test_noise_and_a_steep_misfit_have_no_outliers() -> None:
+    assert not spikes(with_lone()).any()
+    steep = 40.0 * np.arange(1000.0) + with_lone()
+    assert not spikes(steep).any()
+
+
+def test_what_stands_out_often_is_noise_of_its_own() -> None:
+    often = with_lone(**{f"at_{place}": 40.0 for place in range(5, 1000, 10)})
+    assert not spikes(often).any()
