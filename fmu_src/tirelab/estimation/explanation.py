@@ -230,7 +230,6 @@ def explain_misfit(
     allowed = [name for name in candidates() if name in catalogue and name not in impossible]
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
-    held = held_out_of(held_out, baseline)
     progress("comparing the effects' signatures")
     dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
     hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
@@ -238,31 +237,17 @@ def explain_misfit(
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
-    samples = samples_of(recordings, baseline)
+    blocks = _Blocks(dataset, raw, samples_of(recordings, baseline), held_out_of(held_out, baseline))
     alike = partial(_alike, excitation)
-
-    def less_distorted(tire: TireModel) -> Dataset | None:
-        """Return the dataset without what its blocks leave out of a tire, if that is more than was subtracted: it
-        passed for noise, or for something that another effect is.
-        """
-        left_out = samples.left_out(quiet, tire)
-        more = [new - e.left_out for new, e in zip(left_out, quiet.experiments, strict=True)]
-        if size_of(quiet.stacked(more)) <= LIKE_NOISE:
-            return None
-        return _with_saturated_noise(dataset.corrected(left_out), raw)
-
-    sets = _begun(dataset, raw, quiet, held)
-    if (changed := less_distorted(sets.best_fit.tire)) is not None:
-        quiet = changed
-        sets = _begun(dataset, raw, quiet, held)
+    sets = blocks.begun(quiet)
+    sets = blocks.less_distorted(sets, sets.best_fit.tire)
     ranking = ranked(sets, alike)
-    if (changed := less_distorted(ranking.best.tire)) is not None:
-        quiet = changed
-        sets = _begun(dataset, raw, quiet, held)
-        ranking = ranked(sets, alike)
-    ranking = corrected(ranking, samples)
-    like_law = _like_law(tuple(sets.signatures.values()), quiet.misfit, ranking.best.variance)
-    return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+    again = blocks.less_distorted(sets, ranking.best.tire)
+    if again is not sets:
+        sets, ranking = again, ranked(again, alike)
+    ranking = corrected(ranking, blocks.samples)
+    like_law = _like_law(tuple(sets.signatures.values()), sets.dataset.misfit, ranking.best.variance)
+    return _explanation(blocks.samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 
 
 def _signatures(
@@ -280,15 +265,37 @@ def _signatures(
     return dataset, raw, quiet
 
 
-def _begun(
-    dataset: Dataset, raw: Sequence[Signature], quiet: Dataset, held_out: HeldOutRecordings | None
-) -> FittedSets:
-    """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
-    signatures = tuple(in_other_noise(s, dataset, quiet) for s in raw)
-    rough = discrepancy_of(quiet.misfit, usual_form_error())
-    equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
-    starts = [(e.variance, parts_of(e, equations, rough)) for e in search(equations, rough).starts(BEGUN)]
-    return begun(quiet, signatures, rough, starts, held_out)
+@dataclass(frozen=True)
+class _Blocks:
+    """What sets are fitted to: the dataset in blocks and its signatures, as first read; the samples of the blocks; the
+    held-out recordings.
+    """
+
+    dataset: Dataset
+    signatures: tuple[Signature, ...]
+    samples: Samples
+    held_out: HeldOutRecordings | None
+
+    def begun(self, quiet: Dataset) -> FittedSets:
+        """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
+        signatures = tuple(in_other_noise(s, self.dataset, quiet) for s in self.signatures)
+        rough = discrepancy_of(quiet.misfit, usual_form_error())
+        equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
+        likely = search(equations, rough).starts(BEGUN)
+        starts = [(e.variance, parts_of(e, equations, rough)) for e in likely]
+        return begun(quiet, signatures, rough, starts, self.held_out)
+
+    def less_distorted(self, sets: FittedSets, tire: TireModel) -> FittedSets:
+        """Return the sets begun anew without what blocks leave out of a tire's response; the same ones where that is
+        no more than noise.
+
+        It passed for noise, or for something that another effect is.
+        """
+        left_out = self.samples.left_out(sets.dataset, tire)
+        more = [new - e.left_out for new, e in zip(left_out, sets.dataset.experiments, strict=True)]
+        if size_of(sets.dataset.stacked(more)) <= LIKE_NOISE:
+            return sets
+        return self.begun(_with_saturated_noise(self.dataset.corrected(left_out), self.signatures))
 
 
 def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
