@@ -302,6 +302,18 @@ def test_the_print_has_the_pictures_and_not_the_controls(chromium: Any, reports:
     shown.context.close()
 
 
+def test_no_sentence_of_the_print_is_torn_by_the_end_of_a_page(
+    chromium: Any, reports: dict[str, Path]
+) -> None:
+    shown = opened(chromium, reports["alternatives"])
+    shown.page.emulate_media(media="print")
+    broken = "p => getComputedStyle(p).breakInside != 'avoid'"
+    torn = f"[...document.querySelectorAll('main p')].filter({broken}).length"
+    assert shown.page.locator("main p").count() > 5
+    assert shown.page.evaluate(torn) == 0
+    shown.context.close()
+
+
 def test_names_are_text_in_the_script_too(chromium: Any, kinds: dict[str, Any], tmp_path: Path) -> None:
     script = "document.title='run'"
     hostile = f'</script><script>{script}</script><img src=x onerror="{script}"> \u2028 {{{{7*7}}}}'
