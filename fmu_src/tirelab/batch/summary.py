@@ -77,7 +77,7 @@ class Count:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """All verdicts, and the files skipped because their suffix is not that of a recording."""
+    """All verdicts, and the files that were skipped, since they are no recordings."""
 
     rows: tuple[Row, ...]
     skipped: tuple[Path, ...]

@@ -139,6 +139,8 @@ def _batch(recordings: tuple[Path, ...], options: Mapping[str, Any]) -> None:
     cores = Cores(options["jobs"], options["dask"], output.quiet)
     batch = Batch(recordings, folder, options["tire"], options["reading"])
     result = diagnose_batch(batch, cores, output.stage)
+    for path in result.skipped:
+        output.note(f"{path} skipped: it is no recording")
     written = [str(folder / "summary.csv"), str(folder / "summary.html")]
     if output.as_json:
         output.result((), {**summary_content(result, folder), "written": written})

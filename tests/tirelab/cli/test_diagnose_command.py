@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -368,9 +369,15 @@ def test_a_folder_that_cannot_be_written_is_reported_at_once(
 
 def test_each_gives_a_verdict_for_every_recording(rides: Path, tmp_path: Path) -> None:
     (tmp_path / "broken.csv").write_text("no table\n")
+    (tmp_path / "more").mkdir()
+    for name in ("ride", "kept"):
+        shutil.copy(rides / f"{name}.csv", tmp_path / "more")
+    (tmp_path / "more" / "tests.csv").write_text("operator,day\nA,1\n")
+    rides = tmp_path / "more"
     with looking_for("viscous_damping", "inertia"):
         result = run("--each", rides, tmp_path / "broken.csv", "--jobs", "1", "--out", tmp_path / "out")
     assert result.exit_code == 0, result.output
+    assert f"note: {rides / 'tests.csv'} skipped: it is no recording" in result.stdout
     summary = (tmp_path / "out" / "summary.csv").read_text(encoding="utf-8-sig")
     rows = list(csv.DictReader(io.StringIO(summary, newline="")))
     assert [row["missing"] for row in rows] == ["viscous damping", "viscous damping", ""]
