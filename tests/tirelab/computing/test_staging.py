@@ -65,10 +65,28 @@ def test_ctrl_c_between_two_files_waits_for_the_second(
             (folder / "a.txt").write_text("a")
             (folder / "b.txt").write_text("b")
 
-    with pytest.raises(KeyboardInterrupt):
-        written()
+    # where the tests run behind a terminal, as with nohup, it is ignored
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            written()
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert sorted(f.name for f in (tmp_path / "out").iterdir()) == ["a.txt", "b.txt"]
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there a signal that a program sends itself ends it")
+def test_ctrl_c_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with staged(tmp_path / "out") as folder:
+            (folder / "a.txt").write_text("a")
+            os.kill(os.getpid(), signal.SIGINT)
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert (tmp_path / "out" / "a.txt").is_file()
 
 
 def test_a_thread_writes_without_the_handlers_of_signals(tmp_path: Path) -> None:

@@ -101,6 +101,7 @@ def test_blank_cells_cost_their_row_and_are_named(path: Path, spoiled: dict[int,
 def test_text_among_the_numbers_is_named_by_row_column_and_value(
     path: Path, row: int, column: int, text: str
 ) -> None:
+    assume((row, column) != (ROWS - 1, 0))  # there it may be a line of statistics, see below
     rows = clean_rows()
     rows[row][column] = text
     path.write_text(as_text(rows), encoding="utf-8")
@@ -108,6 +109,21 @@ def test_text_among_the_numbers_is_named_by_row_column_and_value(
     assert isinstance(said, str)
     assert f"row {row + 2}, column {HEADER.split(',')[column]!r}" in said
     assert "is not a number" in said
+
+
+@dirty
+@given(not_numbers)
+def test_text_before_the_numbers_of_the_last_row_is_said(path: Path, text: str) -> None:
+    """As a line of statistics below the table, which is left out, or refused as any other row."""
+    rows = clean_rows()
+    rows[-1][0] = text
+    path.write_text(as_text(rows), encoding="utf-8")
+    found = outcome(path)
+    if isinstance(found, str):
+        assert f"row {ROWS + 1}, column 'time [s]'" in found
+    else:
+        assert len(found) == ROWS - 1
+        assert [note for note in found.notes if f"row {ROWS + 1} (" in note]
 
 
 @dirty
