@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import uuid
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import fmpy.validation
+from radialtire import TireModel
 
 from ..computing.staging import staged
 from ..errors import TirelabError
@@ -19,6 +22,16 @@ MODEL = "BicycleTire"
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The date of every archive member: the earliest a ZIP can hold."""
+
+
+NO_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
+"""What no XML document can hold (XML 1.0, 2.2): characters that control a terminal, halves of a pair."""
+
+
+def named_for_xml(tire: TireModel) -> TireModel:
+    """Return a tire with a question mark for each character of its name and source that no description can hold."""
+    name, source = (re.sub(NO_XML, "?", text) for text in (tire.name, tire.source))
+    return replace(tire, name=name, source=source)
 
 
 def content_guid(members: dict[str, bytes], description: ElementTree.Element, key: str = "guid") -> str:

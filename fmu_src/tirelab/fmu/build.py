@@ -26,7 +26,7 @@ from radialtire.tirefile import to_text
 
 from ..errors import TirelabError
 from . import documentation
-from .archive import MODEL, check_fmu, content_guid, write_archive, xml_text
+from .archive import MODEL, check_fmu, content_guid, named_for_xml, write_archive, xml_text
 from .loader import Compiler, compile_loader
 
 SHELL = "bicycle_tire_fmu"
@@ -63,8 +63,8 @@ class Correction:
     def to_dict(self) -> dict[str, object]:
         """Return the content of correction.json."""
         return {
-            "believed": json.loads(to_text(self.believed)),
-            "corrected": json.loads(to_text(self.corrected)),
+            "believed": json.loads(to_text(named_for_xml(self.believed))),
+            "corrected": json.loads(to_text(named_for_xml(self.corrected))),
             "surface_radius": min(self.surface_radius, FLAT_RADIUS),
             "moves": self.moves,
         }
@@ -77,6 +77,7 @@ def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> Bui
     pythonfmu's, which runs in Python hosts only
     Raises TirelabError where the folder cannot be written, a compiler fails, or the FMU is not valid FMI 2.0.
     """
+    tire = named_for_xml(tire)
     content = _Content(SHELL, MODEL, "tire.json", to_text(tire))
     return _built(content, folder, with_loader, lambda d: documentation.pages(tire, d, _wrapper_license()))
 

@@ -7,8 +7,11 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import fmpy.validation
@@ -17,6 +20,7 @@ from radialtire import CATALOGUE, Effect, PowerLaw, TireModel, read_tire
 from radialtire.effect import PLACES
 from tirelab.errors import TirelabError
 from tirelab.fmu.build import build_fmu
+from tirelab.fmu.foreign import tire_inside
 from tirelab.fmu.native.pack import build_native_fmu
 
 
@@ -253,6 +257,22 @@ def test_the_fmu_holds_the_tire_it_was_built_from(article_fmu: Path, tmp_path: P
     with zipfile.ZipFile(article_fmu) as archive:
         archive.extract("resources/tire.json", tmp_path)
     assert read_tire(tmp_path / "resources" / "tire.json") == TireModel()
+
+
+@pytest.mark.parametrize(
+    "build", [partial(build_fmu, with_loader=False), build_native_fmu, partial(build_native_fmu, fmi=3)]
+)
+def test_a_name_with_letters_that_no_description_can_hold_is_written_without_them(
+    build: Callable[..., Any], tmp_path: Path
+) -> None:
+    tire = replace(TireModel(), name="<b>\x1b[31m\ud800 Größe\n& 'x'", source="a\x00b")
+    built = build(tire, tmp_path)
+    inside = tire_inside(built.path)
+    assert inside is not None
+    assert (inside.name, inside.source) == ("<b>?[31m? Größe\n& 'x'", "a?b")
+    assert "<b>?[31m? Größe" in fmpy.read_model_description(str(built.path)).description
+    with zipfile.ZipFile(built.path) as archive:
+        assert "<b>?" not in archive.read("documentation/index.html").decode()
 
 
 def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from radialtire.tirefile import to_text
 
 from ...errors import TirelabError
 from .. import documentation
-from ..archive import MODEL, check_fmu, content_guid, write_archive, xml_text
+from ..archive import MODEL, check_fmu, content_guid, named_for_xml, write_archive, xml_text
 from . import kernel
 from .fmi3 import as_fmi3
 from .make import PLATFORMS, c_files, source_files
@@ -56,6 +56,7 @@ def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFm
 
     Raises TirelabError where the folder cannot be written, the binaries are not there, or the FMU is not valid.
     """
+    tire = named_for_xml(tire)
     if tire.remainder is not None:
         raise TirelabError(
             "a learned remainder runs in the Python FMU only; leave out --native, or build the tire without it"
