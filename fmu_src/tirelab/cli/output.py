@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -14,6 +15,9 @@ import click
 
 from .option_group import Decorator, option_group
 from .options import FILE
+
+CONTROLS = "[\x00-\x08\x0b-\x1f\x7f-\x9f]"
+"""What would control a terminal, in a name that stands in a file of others."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class Output:
             )
             return
         for line in lines:
-            echo(line)
+            echo(re.sub(CONTROLS, "?", line))
 
     def note(self, text: str) -> None:
         """Print a note: before the result, or on standard error where that is JSON."""

@@ -184,3 +184,13 @@ def test_bad_input_is_refused_in_one_sentence(words: list[str], match: str, tmp_
     assert done.exit_code == 2, done.output
     assert match in done.output
     assert not (tmp_path / "out").exists()
+
+
+def test_a_name_of_others_controls_no_terminal(tmp_path: Path) -> None:
+    file = tmp_path / "tire.json"
+    file.write_text(to_text(TireModel(name="\x1b[31mred\x07 Größe")), encoding="utf-8")
+    words = ["build", "--tire", str(file), "--native", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, words, color=True)
+    assert done.exit_code == 0, done.output
+    assert "\x1b" not in done.output
+    assert "BicycleTire.fmu: ?[31mred? Größe, FMI 2.0" in done.output
