@@ -67,6 +67,21 @@ def test_compare_with_a_tire_file_and_with_an_fmu_agree(repository: Path, tmp_pa
     assert with_tire[1].splitlines()[-4:] == with_fmu[1].splitlines()[-4:]
 
 
+def test_our_fmu_of_fmi_3_is_compared_as_that_of_fmi_2(repository: Path, tmp_path: Path) -> None:
+    recorded = repository / "examples" / "recordings" / "press" / "slow.csv"
+    told = []
+    for fmi in ("2", "3"):
+        out = tmp_path / fmi
+        assert run("build", "--native", "--fmi", fmi, "--out", out)[0] == 0
+        status, printed = run(
+            "compare", recorded, "--fmu", out / "BicycleTire.fmu", "--out", out, "--json", "--quiet"
+        )
+        assert status == 0, printed
+        told.append(json.loads(printed))
+    assert told[1]["rmse"] == pytest.approx(told[0]["rmse"], rel=1e-12)
+    assert told[1]["at"] == told[0]["at"]
+
+
 def test_anyones_fmu_is_compared_and_ended_where_it_hangs(repository: Path, tmp_path: Path) -> None:
     """A spring of 1e5 N/m with a damper, pressed slowly: the spring's force is what it leaves out."""
     recorded = repository / "examples" / "recordings" / "press" / "slow.csv"
