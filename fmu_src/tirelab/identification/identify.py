@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS, Hull1996, PowerLaw, TestedRange, TireModel
 from radialtire.curvature_law import SURFACES_MAX, CurvatureLaw
+from radialtire.model import Law
 from radialtire.tirefile import LAWS
 
 from ..errors import TirelabError
@@ -62,22 +64,9 @@ def identify(
 
     form = form_of(surfaces, chosen)
     start = _start(form, fits)
-    done = 0
-
-    def step(what: str, total: int) -> None:
-        nonlocal done
-        done += 1
-        progress(what, done, total)
-
-    joint = joint_fit(surfaces, fits, form, start, lambda: step("joint fit", 0))
-    done = 0
-    profiles = profile(
-        form,
-        fits,
-        joint.logs,
-        joint.uncertainties,
-        lambda: step("intervals of the constants", len(form.parameters)),
-    )
+    joint = joint_fit(surfaces, fits, form, start, _counting(progress, "joint fit", 0))
+    stepped = _counting(progress, "intervals of the constants", len(form.parameters))
+    profiles = profile(form, fits, joint.logs, joint.uncertainties, stepped)
     uncertainties = profiles.widening * joint.uncertainties
 
     constants = _constants(form, joint.logs, start, uncertainties, profiles.intervals)
@@ -85,16 +74,9 @@ def identify(
         _row(surface, fit, pair)
         for surface, fit, pair in zip(surfaces, fits, form.coefficients(joint.logs).tolist(), strict=True)
     )
-    recorded = ", ".join(dict.fromkeys(recording.name for recording in recordings))
-    tire = TireModel(
-        law=form.law(joint.logs),
-        tested_range=_tested_range(surfaces),
-        name=name or f"tire identified from {recorded}",
-        source=f"identified by tirelab from the recordings {recorded}",
-    )
     alone = tuple(0 in s.samples for s in surfaces)
     return Identification(
-        tire=tire,
+        tire=_tire(form.law(joint.logs), surfaces, recordings, name),
         surfaces=rows,
         constants=constants,
         correlation=_correlation(joint),
@@ -115,6 +97,22 @@ def identify(
                 profiles.freedom,
             ),
         ),
+    )
+
+
+def _counting(progress: Progress, what: str, total: int) -> Callable[[], None]:
+    """Return what is called after each step of a stage; total: of its steps, 0 where it is not known."""
+    number = itertools.count(1)
+    return lambda: progress(what, next(number), total)
+
+
+def _tire(law: Law, surfaces: Sequence[Surface], recordings: Sequence[Recording], name: str) -> TireModel:
+    recorded = ", ".join(dict.fromkeys(recording.name for recording in recordings))
+    return TireModel(
+        law=law,
+        tested_range=_tested_range(surfaces),
+        name=name or f"tire identified from {recorded}",
+        source=f"identified by tirelab from the recordings {recorded}",
     )
 
 
