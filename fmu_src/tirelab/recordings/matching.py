@@ -143,7 +143,7 @@ def _matched(
     trials = _trials(found)
     if trials > 1:
         found = _of_trial(origin, found, trials, trial)
-    elif trial is not None and trial > _by_words(headers, columns):
+    elif trial is not None and trial > 1 and not _names_a_test(headers, columns):
         raise RecordingError(
             f"{origin}: has no trial {trial} side by side with others; leave out @trial{trial}"
         )
@@ -230,13 +230,10 @@ def _trials(found: Mapping[str, Sequence[int]]) -> int:
     return count if apart else 1
 
 
-def _by_words(headers: Sequence[Header], columns: Mapping[str, str]) -> float:
-    """Return how many tests stand side by side by the words alone; as many as are asked for where none does and the
-    columns are named by the user.
-    """
-    found = {c.name: _found(headers, c, set()) for c in CHANNELS}
-    named = {"deflection", "force"} <= columns.keys()
-    return float("inf") if named and len(found["force"]) != 1 else 1.0
+def _names_a_test(headers: Sequence[Header], columns: Mapping[str, str]) -> bool:
+    """Whether the user names the columns of one test, in a table that is not known to hold a single one."""
+    force = next(channel for channel in CHANNELS if channel.name == "force")
+    return {"deflection", "force"} <= columns.keys() and len(_found(headers, force, set())) != 1
 
 
 def _of_trial(
