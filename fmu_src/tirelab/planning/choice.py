@@ -108,7 +108,7 @@ def chosen_of(menu: Menu, seconds: float, progress: Callable[[str], None]) -> Ch
 
 
 def _between_loops(question: Question) -> bool:
-    effects = question.rival - {LAW}
+    effects = question.alternative - {LAW}
     return not question.nested and all("loop" in _traits(name) for name in (question.truth, *effects))
 
 

@@ -133,11 +133,11 @@ def alternatives_asked(diagnosed: Diagnosed, heard: Sequence[str], size: float) 
     """Return the questions between a verdict and its alternatives, of effects that respond."""
     verdict, found = diagnosed.names, list[Question]()
     for other in diagnosed.alternatives:
-        for one, rival in ((verdict, other), (other, verdict)):
-            rest = (rival & frozenset(heard)) | (rival & {LAW})
+        for one, alternative in ((verdict, other), (other, verdict)):
+            rest = (alternative & frozenset(heard)) | (alternative & {LAW})
             found += [
-                Question(name, rest, size, nested=rival < one)
-                for name in sorted(one - rival)
+                Question(name, rest, size, nested=alternative < one)
+                for name in sorted(one - alternative)
                 if name in heard
             ]
     return tuple(dict.fromkeys(found))

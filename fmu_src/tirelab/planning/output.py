@@ -54,7 +54,7 @@ def write_plan(plan: RecordingPlan, folder: Path) -> None:
 def draw_plan(plan: RecordingPlan, path: Path) -> None:
     """Draw the drives over time, and beside them the probability that each effect is told from each other one."""
     count = max(len(plan.drives), 1)
-    table, truths, rivals = _matrix(plan)
+    table, truths, alternatives = _matrix(plan)
     height = max(1.15 * count + 0.8, 0.3 * len(truths) + 2.4)
     figure = Figure(figsize=(13.5, height), layout="constrained", facecolor="white")
     left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.25), squeeze=False)[0]
@@ -75,33 +75,37 @@ def draw_plan(plan: RecordingPlan, path: Path) -> None:
         axis.tick_params(labelsize=8)
         axis.spines[["top", "right"]].set_visible(False)
     axes[-1].set_xlabel("time [s]", fontsize=8)
-    _draw_matrix(right.subplots(), table, truths, rivals, plan)
+    _draw_matrix(right.subplots(), table, truths, alternatives, plan)
     figure.savefig(path, dpi=110)
 
 
 def _matrix(plan: RecordingPlan) -> tuple[FloatArray, list[str], list[str]]:
     truths = list(dict.fromkeys(a.question.truth for a in plan.answers))
-    pairs = [(a.question.truth, _rival(a.question.rival), a.probability) for a in plan.answers]
-    order = [*truths, *(rival for _, rival, _ in pairs)]
-    rivals = list(dict.fromkeys(name for name in order if any(name == r for _, r, _ in pairs)))
-    table = np.full((len(truths), len(rivals)), math.nan)
-    for truth, rival, probability in pairs:
-        table[truths.index(truth), rivals.index(rival)] = probability
-    return table, truths, rivals
+    pairs = [
+        (a.question.truth, _alternative_name(a.question.alternative), a.probability) for a in plan.answers
+    ]
+    order = [*truths, *(alternative for _, alternative, _ in pairs)]
+    alternatives = list(dict.fromkeys(name for name in order if any(name == r for _, r, _ in pairs)))
+    table = np.full((len(truths), len(alternatives)), math.nan)
+    for truth, alternative, probability in pairs:
+        table[truths.index(truth), alternatives.index(alternative)] = probability
+    return table, truths, alternatives
 
 
-def _rival(rival: frozenset[str]) -> str:
-    """Return the name that stands for a rival; a refitted law stands beside every effect but is none of them."""
-    effects = sorted(rival - {LAW}) if len(rival) > 1 else sorted(rival)
+def _alternative_name(alternative: frozenset[str]) -> str:
+    """Return the name that stands for an alternative; a refitted law stands beside every effect but is none of them."""
+    effects = sorted(alternative - {LAW}) if len(alternative) > 1 else sorted(alternative)
     return " + ".join(short_title(n) if len(effects) > 1 else n for n in effects) or "nothing"
 
 
 def _draw_matrix(
-    axis: Axes, table: FloatArray, truths: list[str], rivals: list[str], plan: RecordingPlan
+    axis: Axes, table: FloatArray, truths: list[str], alternatives: list[str], plan: RecordingPlan
 ) -> None:
     image = axis.imshow(table, cmap=_SHADES, vmin=0.5, vmax=1.0, aspect="auto")
     axis.set_yticks(range(len(truths)), [short_title(n) for n in truths], fontsize=8)
-    axis.set_xticks(range(len(rivals)), [short_title(n) for n in rivals], fontsize=8, rotation=60, ha="right")
+    axis.set_xticks(
+        range(len(alternatives)), [short_title(n) for n in alternatives], fontsize=8, rotation=60, ha="right"
+    )
     for (i, j), value in np.ndenumerate(table):
         if math.isfinite(value) and value < TOLD:
             colour = PLAIN.ink if value < READABLE else "white"

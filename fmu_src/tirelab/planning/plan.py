@@ -127,7 +127,7 @@ class RecordingPlan:
             "pairs": [
                 {
                     "true": a.question.truth,
-                    "against": sorted(a.question.rival),
+                    "against": sorted(a.question.alternative),
                     "probability": a.probability,
                     "possible": a.possible,
                 }
@@ -254,6 +254,6 @@ def _rows(
 
 
 def _against(question: Question) -> str:
-    """Return the name that stands for a rival: the other effect, else the law, else "" for nothing."""
-    effects = sorted(question.rival - {LAW})
-    return " + ".join(effects) if effects else next(iter(question.rival), "")
+    """Return the name that stands for an alternative: the other effect, else the law, else "" for nothing."""
+    effects = sorted(question.alternative - {LAW})
+    return " + ".join(effects) if effects else next(iter(question.alternative), "")

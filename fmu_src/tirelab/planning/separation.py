@@ -1,8 +1,8 @@
 """With which probability a set of motions tells one effect from another, before anything is recorded.
 
-Effect i is true, with a response c of a given size. It is compared with a rival model M: a refitted law, perhaps with
-other effects, all linear in Gaussian coefficients, f = W z with z ~ N(0, 1), as in `selection.search`.
-What the rival cannot follow of c,
+Effect i is true, with a response c of a given size. It is compared with an alternative model M: a refitted law, perhaps
+with other effects, all linear in Gaussian coefficients, f = W z with z ~ N(0, 1), as in `selection.search`. What the
+alternative cannot follow of c,
 
     S^2 = min_z |c - W z|^2 / V + |z|^2 = c' (V + W W')^-1 c,
 
@@ -15,14 +15,15 @@ of each true effect, which are the best set's: what its forms usually miss, unde
 how large it is beside what all true effects may miss, over all that is recorded.
 
 An effect seldom acts alone. It is asked for by itself and beside each other effect, which is LOUDER times as large,
-stands in the true model and in the rival, and is refitted in the latter.
+stands in the true model and in the alternative, and is refitted in the latter.
 
 Two models of equal standing: the log likelihood ratio is normal with mean S^2/2 and variance S^2, so the right one is
-the likelier one with probability Phi(S/2). A rival within the true model, M without i: twice the ratio is noncentral
-chi-squared (S. S. Wilks, Ann. Math. Stat. 9, 60 (1938); A. Wald, Trans. AMS 54, 426 (1943)) with the noncentrality S^2
-and as many degrees of freedom as forms of i can be resolved; i is named where the ratio exceeds the prior odds and what
-its forms cost. An effect is named alone with at least the product of these probabilities over its rivals, where the
-ratios, all of one truth, are positively correlated (D. Slepian, Bell Syst. Tech. J. 41, 463 (1962)).
+the likelier one with probability Phi(S/2). An alternative within the true model, M without i: twice the ratio is
+noncentral chi-squared (S. S. Wilks, Ann. Math. Stat. 9, 60 (1938); A. Wald, Trans. AMS 54, 426 (1943)) with the
+noncentrality S^2 and as many degrees of freedom as forms of i can be resolved; i is named where the ratio exceeds the
+prior odds and what its forms cost. An effect is named alone with at least the product of these probabilities over its
+alternatives, where the ratios, all of one truth, are positively correlated (D. Slepian, Bell Syst. Tech. J. 41, 463
+(1962)).
 """
 
 from __future__ import annotations
@@ -56,14 +57,14 @@ in the median.
 
 @dataclass(frozen=True)
 class Question:
-    """Whether `truth` is told from the model of the names in `rival`; size: largest response over the peak force.
+    """Whether `truth` is told from the model of the names in `alternative`; size: largest response over the peak force.
 
-    nested: whether the rival is the true model without `truth`, else the rival stands in its place
-    beside: an effect that acts too, LOUDER times as large, and stands in the rival; "": none
+    nested: whether the alternative is the true model without `truth`, else the alternative stands in its place
+    beside: an effect that acts too, LOUDER times as large, and stands in the alternative; "": none
     """
 
     truth: str
-    rival: frozenset[str]
+    alternative: frozenset[str]
     size: float
     nested: bool
     beside: str = ""
@@ -71,20 +72,22 @@ class Question:
 
 def questions_of(names: Sequence[str], size: float) -> tuple[Question, ...]:
     """Return every effect against a refitted law alone, and against every other effect beside a refitted law; and a
-    refitted law against nothing and against every effect. The gain with a held pressure is part of every rival, so it
-    is asked for and is no rival of its own.
+    refitted law against nothing and against every effect. The gain with a held pressure is part of every alternative,
+    so it is asked for and is no alternative of its own.
     """
     effects = [name for name in names if name != LAW]
-    rivals = [name for name in effects if name != HELD.name]
+    alternatives = [name for name in effects if name != HELD.name]
     found = []
     for truth in effects:
         found.append(Question(truth, frozenset({LAW}), size, nested=True))
         found += [
-            Question(truth, frozenset({LAW, other}), size, nested=False) for other in rivals if other != truth
+            Question(truth, frozenset({LAW, other}), size, nested=False)
+            for other in alternatives
+            if other != truth
         ]
     if LAW in names:
         found.append(Question(LAW, frozenset(), size, nested=True))
-        found += [Question(LAW, frozenset({other}), size, nested=False) for other in rivals]
+        found += [Question(LAW, frozenset({other}), size, nested=False) for other in alternatives]
     return tuple(found)
 
 
@@ -108,10 +111,10 @@ def probabilities(
     nested: dict[int, _Gain] = {}
     groups: dict[tuple[frozenset[str], float, str, bool], list[int]] = {}
     for number, question in enumerate(questions):
-        key = question.rival, question.size, question.beside, question.truth != HELD.name
+        key = question.alternative, question.size, question.beside, question.truth != HELD.name
         groups.setdefault(key, []).append(number)
-    for (rival, size, beside, gain), numbers in groups.items():
-        weights = _weights(rival, size, beside, places, gram.shape[0])
+    for (alternative, size, beside, gain), numbers in groups.items():
+        weights = _weights(alternative, size, beside, places, gram.shape[0])
         if gain and PRIOR_OF_GAIN in places:
             weights[places[PRIOR_OF_GAIN]] = 1.0
         model = _Model(gram, weights)
@@ -128,8 +131,8 @@ def probabilities(
 
 @dataclass(frozen=True)
 class _Gain:
-    """Twice the log likelihood ratio of an effect over a rival without it, noncentral chi-squared: its noncentrality
-    for each draw, its degrees of freedom, and what it has to exceed.
+    """Twice the log likelihood ratio of an effect over an alternative without it, noncentral chi-squared: its
+    noncentrality for each draw, its degrees of freedom, and what it has to exceed.
     """
 
     separation: FloatArray
@@ -138,7 +141,7 @@ class _Gain:
 
 
 class _Model:
-    """A rival model: the eigenvalues of its columns' products, and the columns turned to their directions."""
+    """An alternative model: the eigenvalues of its columns' products, and the columns turned to their directions."""
 
     def __init__(self, gram: FloatArray, weights: FloatArray) -> None:
         self.gram = gram
@@ -161,10 +164,10 @@ class _Model:
 
 
 def _weights(
-    rival: frozenset[str], size: float, beside: str, places: Mapping[str, slice], count: int
+    alternative: frozenset[str], size: float, beside: str, places: Mapping[str, slice], count: int
 ) -> FloatArray:
     weights = np.zeros(count)
-    for name in rival:
+    for name in alternative:
         if name == LAW:
             weights[places[PRIOR_OF_LAW]] = 1.0
         else:
@@ -202,7 +205,7 @@ def _of(
 
 
 def _gain(separation: FloatArray, forms: FloatArray) -> _Gain:
-    """Return the law of the gain of an effect; forms: products of its draws beyond the rival."""
+    """Return the law of the gain of an effect; forms: products of its draws beyond the alternative."""
     values = np.maximum(np.linalg.eigvalsh(forms), 0.0)
     freedom = max(float(np.sum(values / (1.0 + values))), 1e-3)
     return _Gain(separation, freedom, 2.0 * PRIOR_ODDS + float(np.sum(np.log1p(values))))

@@ -94,7 +94,7 @@ def test_what_differs_is_asked_for_in_both_directions() -> None:
         frozenset({FRICTION}), (frozenset({DAMPING}), frozenset({FRICTION, "force_drift"})), 5.0, ()
     )
     asked = {
-        (q.truth, q.rival, q.nested)
+        (q.truth, q.alternative, q.nested)
         for q in alternatives_asked(diagnosed, (FRICTION, DAMPING, "force_drift"), 0.02)
     }
     assert asked == {

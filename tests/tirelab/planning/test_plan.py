@@ -63,7 +63,7 @@ def test_slow_triangles_at_each_other_pressure(plan: RecordingPlan) -> None:
     row = next(row for row in at_two.rows if row.effect == HELD.name)
     assert row.named[-1] > 0.9
     assert row.named[0] <= row.named[-1] + 1e-9
-    assert not any(HELD.name in a.question.rival for a in at_two.answers)
+    assert not any(HELD.name in a.question.alternative for a in at_two.answers)
 
 
 def test_its_content_is_json(plan: RecordingPlan) -> None:

@@ -95,7 +95,7 @@ def test_more_recordings_never_make_it_harder() -> None:
 
 def test_every_effect_is_asked_for_against_every_other() -> None:
     asked = questions_of(("inertia", "force_drift", LAW), 0.02)
-    pairs = {(q.truth, q.rival) for q in asked}
+    pairs = {(q.truth, q.alternative) for q in asked}
     assert pairs == {
         ("inertia", frozenset({LAW})),
         ("inertia", frozenset({LAW, "force_drift"})),
@@ -127,14 +127,14 @@ def test_a_loud_response_is_told_up_to_what_its_own_form_may_miss() -> None:
 
 def test_every_effect_is_asked_for_beside_every_other() -> None:
     asked = questions_beside(("inertia", "force_drift", LAW), 0.02)
-    assert {(q.truth, q.beside, q.rival, q.nested) for q in asked} == {
+    assert {(q.truth, q.beside, q.alternative, q.nested) for q in asked} == {
         ("inertia", "force_drift", frozenset({LAW, "force_drift"}), True),
         ("force_drift", "inertia", frozenset({LAW, "inertia"}), True),
     }
 
 
 def test_beside_another_effect_it_is_as_the_whole_covariance_has_it() -> None:
-    """The other one is LOUDER times as large in the rival, and its form may miss its part too."""
+    """The other one is LOUDER times as large in the alternative, and its form may miss its part too."""
     x, size = columns(level=300.0), 0.02
     loud = LOUDER * size
     question = Question("inertia", frozenset({LAW, "force_drift"}), size, nested=False, beside="force_drift")

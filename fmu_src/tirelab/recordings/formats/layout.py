@@ -165,7 +165,7 @@ def column_counted(body: Sequence[Sequence[str]]) -> bool:
 
 
 def _refuse_serial_monitor(path: Path, lines: Sequence[str]) -> None:
-    """Refuse text of a serial monitor that put its time stamps before an arrow, with the command that mends it."""
+    """Refuse text of a serial monitor that put its time stamps before an arrow, with the command that fixes it."""
     if sum(_SERIAL.match(line) is not None for line in lines) <= len(lines) / 2:
         return
     text = lines[-1].partition(" -> ")[2]
