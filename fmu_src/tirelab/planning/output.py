@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 PICTURE = "plan.png"
 
 DRAWN = 4000
-"""So many samples of a drive are drawn."""
+"""Most samples of a drive that are drawn."""
 
 READABLE = 0.75
 """Probability whose shade is dark enough for white figures."""

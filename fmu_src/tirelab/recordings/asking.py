@@ -32,7 +32,7 @@ OF_A_PART = (
 _AXIS = re.compile(r"(?:^|[\W_])[a-z]?(?P<axis>[xyz])(?=$|[\W_])", re.IGNORECASE)
 
 MOST_COLUMNS = 16
-"""So many columns are looked at for one that may be a channel."""
+"""Most columns that are searched for one that may be a channel."""
 
 
 EVENLY = 1.5

@@ -22,7 +22,7 @@ from .zero import ZEROED, Gauges, quantity_text, zero_in_si
 FloatArray = NDArray[np.float64]
 
 MOST_MOVED = 20.0
-"""So much [kg] may move between a part and the cell that measures its force: a rod, clamps, a plate."""
+"""Largest mass [kg] that may move between a part and the cell that measures its force: a rod, clamps, a plate."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ HEAD = 65_536
 """How much of a text file [B] is searched for a row of numbers."""
 
 MEASURED_ROWS = 20
-"""So many rows of numbers were measured, whatever the columns are called."""
+"""Fewest rows of numbers that make a file a recording, whatever its columns are called."""
 
 HIDDEN = (".", "~$")
 """Files that start like this are of the system or of an open workbook, and are left out without a note."""

@@ -23,7 +23,7 @@ from .zero import Zero
 FloatArray = NDArray[np.float64]
 
 LOOKED_AT = 20_000
-"""So many samples are looked at for the step of a gauge."""
+"""Most samples that are searched for the step of a gauge."""
 
 ON_GRID, MOST_STEPS = 0.1, 8.0
 """Differences of up to so many steps lie on the grid of a converter, or of the digits written, within this part of a

@@ -34,7 +34,7 @@ from .units import (
 FloatArray = NDArray[np.float64]
 
 MOST_LOOKED_AT = 8
-"""So many columns without a channel are looked at for a time."""
+"""Most columns without a channel that are searched for a time."""
 
 DEEPEST = 1.0
 """A compression [m] beyond the diameter of any bicycle wheel: its unit is wrong."""

@@ -19,7 +19,7 @@ from .zero import Gauges, Zero
 FloatArray = NDArray[np.float64]
 
 LOOKED_AT = 20_000
-"""So many samples, evenly spaced, are looked at."""
+"""Most samples that are checked, evenly spaced."""
 
 USUAL = (550.9, 1.422)
 """Coefficient [N/cm^B] and exponent of the article's tire on flat ground (Hull, Wang, Moore 1996, eq. 5, 6)."""

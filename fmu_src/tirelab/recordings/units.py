@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pint
 
 MOST_TEXTS = 4096
-"""So many texts are remembered as units or none: the tables of a workbook ask of the same ones again and again."""
+"""Most texts that are remembered as units or none: the tables of a workbook ask for the same ones many times."""
 
 STANDARD_ATMOSPHERE = 101_325.0
 """Ambient pressure [Pa] taken off an absolute pressure (ISO 2533:1975, sea level)."""

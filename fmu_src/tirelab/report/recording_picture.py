@@ -19,10 +19,10 @@ WIDTH, HEIGHT = 60, 12
 """Of a picture in the terminal, in characters."""
 
 MOST_LABELS = (5, 4)
-"""So many steps between labels of the picture in the terminal, along it and up."""
+"""Most steps between labels of the picture in the terminal, along it and up."""
 
 DRAWN = 4000
-"""So many samples of a recording are drawn, evenly spaced."""
+"""Most samples of a recording that are drawn, evenly spaced."""
 
 
 def terminal_picture(recording: Recording, width: int = WIDTH, height: int = HEIGHT) -> str:

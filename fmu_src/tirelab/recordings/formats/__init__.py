@@ -58,7 +58,7 @@ WORKBOOK_SUFFIXES = tuple(suffix for suffix, loader in LOADERS.items() if loader
 """Those of them that are workbooks, of which a sheet can be named."""
 
 SNIFFED = 4096
-"""So much of a file [B] is looked at for what it is."""
+"""Bytes at the beginning of a file that tell what it is."""
 
 _SIGNATURES = (
     (b"PAR1", "Parquet", ".parquet"),

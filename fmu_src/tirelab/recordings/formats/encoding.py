@@ -18,7 +18,7 @@ BYTE_ORDER_MARKS = (
 )
 
 JUDGED = 16_384
-"""So many bytes [B] of a file are shown to the detector."""
+"""Bytes of a file that are given to the detector."""
 
 _TOGETHER = re.compile(rb"[\x80-\xff]{2}")
 """Two bytes beyond ASCII side by side, as nearly every Chinese letter has them; one alone is a western one (µm, °C)."""

@@ -18,7 +18,7 @@ MOST_COLUMNS = 64
 """A matrix with more columns than this is a picture or a map, not a set of channels."""
 
 MOST_DATASETS = 2000
-"""So many datasets of a file are looked at."""
+"""Most datasets of a file that are searched."""
 
 UNIT_KEYS = ("unit", "units", "unit_string")
 """Attributes of a dataset that state its unit, in small letters."""

@@ -39,7 +39,7 @@ _UNITS_CALLED = re.compile(r'\s*"?(?:[xy]_)?(?:unit|einheit|unité|unidad)', re.
 _SERIAL = re.compile(r"\s*\d{1,2}:\d\d:\d\d[.,]\d+ -> ")
 
 BELOW_NAMES = 3
-"""So many rows of text may stand between the names of the columns and the numbers: units, addresses, remarks."""
+"""Most rows of text between the names of the columns and the numbers: units, addresses, remarks."""
 
 
 @dataclass(frozen=True)

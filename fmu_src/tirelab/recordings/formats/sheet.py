@@ -18,10 +18,10 @@ from .table_search import SEARCHED, find_table
 from .workbook import Version, opened
 
 MOST_SHEETS = 200
-"""So many sheets of a workbook are looked at."""
+"""Most sheets of a workbook that are searched."""
 
 KEPT = 4
-"""Of so many workbooks the tables are remembered."""
+"""Number of workbooks whose tables are remembered."""
 
 NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 """A number that is stored as text."""

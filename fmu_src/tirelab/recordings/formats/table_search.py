@@ -16,13 +16,13 @@ from .table import BLANK_WORDS, is_comment
 SEPARATORS = "\t;,|"
 
 SEARCHED = 300
-"""So many lines are searched for the beginning of the table."""
+"""Most lines that are searched for the beginning of the table."""
 
 LONGEST_ROW = 8
 """A row between quotes that takes more lines than this is a quote left open above the table."""
 
 CONFIRMED = 3
-"""So many rows of numbers in a row make a table; one above them is a line of text with numbers in it."""
+"""Fewest rows of numbers, one after another, that make a table; fewer are lines of text with numbers in them."""
 
 _SETTING = re.compile(r"[^=(\[]+=")
 """How a row begins that sets something, UNIT = gf, and names no columns."""

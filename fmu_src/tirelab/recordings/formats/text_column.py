@@ -19,7 +19,7 @@ from .table_search import bare_unit, is_units
 FloatArray = NDArray[np.float64]
 
 LOOKED_AT = 500
-"""So many cells are looked at for how numbers are written."""
+"""Number of cells from which it is found how numbers are written."""
 
 
 class TextFault(ValueError):

@@ -15,7 +15,7 @@ from .table import BLANK_WORDS, Header, RecordingError, listed, quoted
 from .table_search import bare_unit, is_value, states_units
 
 MOST_ASIDE = 60
-"""So many rows may stand below the table, or between a block of it and its next header."""
+"""Most rows of text below the table, or between a block of it and its next header."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ PLACE = re.compile(r"^(.+)\[(\d+)\]$")
 """A number at a constant place of a row or of an array."""
 
 LONG = 4
-"""So many neighbours are copied at once."""
+"""Fewest neighbours that are copied together."""
 
 
 def run_of(texts: list[str]) -> int:
