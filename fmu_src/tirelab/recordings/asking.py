@@ -140,28 +140,7 @@ def _parts(
     whole: Settings,
 ) -> list[tuple[str, str]]:
     """Return what is lacking, sentence by sentence, each with its advice."""
-    parts = []
-    unnamed = bool(headers) and all(header.text == f"#{i + 1}" for i, header in enumerate(headers))
-    if lacking.columns:
-        columns = {name: whole.columns[name] for name in lacking.columns}
-        if unnamed:
-            skipping = origin.kept.get("skip_rows", "")
-            below = f" below the rows that skip_rows in {skipping} leaves out" if skipping else ""
-            units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
-            parts.append(
-                (
-                    f"{origin}: has no header row{below}",
-                    "put one above the numbers, such as time [s],deflection [mm],force [N], or name columns by number: "
-                    f"{origin.columns(**columns)}{f' {origin.units(**units)}' if units else ''}",
-                )
-            )
-        else:
-            what = f"{origin}: no column for {', '.join(lacking.columns)}; its columns are {columns_listed(headers)}"
-            units = {name: whole.units[name] for name in lacking.columns if name in whole.units}
-            advice = origin.columns(**columns) + (f" and {origin.units(**units)}" if units else "")
-            if lacking.columns == ("time",):
-                advice += f", or {origin.columns(time='')} where it was not measured"
-            parts.append((what, f"name it with {advice}"))
+    parts = [_no_column(origin, headers, lacking.columns, whole)] if lacking.columns else []
     for name in lacking.units:
         unit = whole.units[name]
         header = headers[matches[name].index]
@@ -187,6 +166,27 @@ def _parts(
         others = [part for part in parts if "has no unit" not in part[0]]
         parts = [*others, (f"{origin}: no unit for {named}", "")]
     return parts
+
+
+def _no_column(
+    origin: Origin, headers: Sequence[Header], missing: Sequence[str], whole: Settings
+) -> tuple[str, str]:
+    """Return which channels have no column, and the advice to name one for each of them."""
+    naming = origin.columns(**{name: whole.columns[name] for name in missing})
+    units = {name: whole.units[name] for name in missing if name in whole.units}
+    if headers and all(header.text == f"#{i + 1}" for i, header in enumerate(headers)):
+        skipping = origin.kept.get("skip_rows", "")
+        below = f" below the rows that skip_rows in {skipping} leaves out" if skipping else ""
+        return (
+            f"{origin}: has no header row{below}",
+            "put one above the numbers, such as time [s],deflection [mm],force [N], or name columns by number: "
+            f"{naming}{f' {origin.units(**units)}' if units else ''}",
+        )
+    what = f"{origin}: no column for {', '.join(missing)}; its columns are {columns_listed(headers)}"
+    advice = naming + (f" and {origin.units(**units)}" if units else "")
+    if tuple(missing) == ("time",):
+        advice += f", or {origin.columns(time='')} where it was not measured"
+    return what, f"name it with {advice}"
 
 
 def _pulls(force: FloatArray | None) -> bool:
