@@ -16,7 +16,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
@@ -26,10 +25,6 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
-from ..planning.waveforms import Limits, second_pressure
-from ..preprocessing.motion import BoolArray, FloatArray
-from ..preprocessing.noise import STILL
-from ..preprocessing.samples import RawDataset
 from ..regressors.excitation import of_deflection
 from .acceptance import HeldOut
 
@@ -257,156 +252,3 @@ def _limited(odds: float) -> float:
 def _weights() -> Mapping[str, Mapping[str, float]]:
     content = json.loads((files(__package__) / "calibration.json").read_text(encoding="utf-8"))
     return {of: content[of]["weights"] for of in ("verdict", "effect")}
-
-
-CREDIBLE = 0.97
-"""Probability of the verdict and its alternatives together: the rate at which the true set should be among them."""
-
-MOST_LISTED = 10
-"""Most alternatives that are listed, the likeliest first."""
-
-LONG_ENOUGH = 1.0
-"""Shortest rest [s] that counts as a hold."""
-
-HOLD_DEPTH = 0.65
-"""Deflection of a recommended hold, as a part of the largest one recorded."""
-
-FASTER = 10.0
-"""Factor between a recorded speed and another one that is recommended."""
-
-USUAL_SPEED = 0.1
-"""Least top speed [m/s] assumed of a rig whose limits are not given; it is at least twice the fastest recorded
-speed."""
-
-LAW_TRAITS = ("static",)
-"""Traits of a refitted law: it depends on deflection and surface only."""
-
-
-@dataclass(frozen=True)
-class Alternative:
-    """Another set of effects that the recordings cannot rule out.
-
-    log_odds: of the verdict against it, not tempered; reason: what the recordings lack to decide, and what to record
-    probability: of the set, not a number where the recordings cannot show it; left [N]: error of its tire, where the
-    verdict names no effect
-    """
-
-    names: tuple[str, ...]
-    log_odds: float
-    reason: str
-    probability: float
-    left: float = float("nan")
-
-
-def alternatives_of(
-    explanation: Explanation, dataset: RawDataset, confidence: float, limits: Limits | None = None
-) -> tuple[Alternative, ...]:
-    """Return the sets that the recordings cannot rule out; confidence: probability of the verdict; limits: of the rig,
-    where they are known.
-
-    First come the sets that this motion cannot distinguish from the verdict's: each has the same part of the
-    probability that the verdict gave up to them (`sharing_odds`). Then the likeliest others follow, until all together
-    have the probability CREDIBLE; they share the rest of the probability by their evidence. No set gets more than its
-    evidence relative to the verdict's allows; what then remains belongs to sets that were not compared.
-
-    Effects that the excitation cannot show, and those that the verdict's refitted law can imitate, are listed last, in
-    addition to the verdict's own, with the reason.
-    """
-    best = explanation.model.names
-    own = next(e for e in explanation.evidence if set(e.names) == set(best))
-    others = [e for e in explanation.evidence if set(e.names) != set(best)]
-    whole = max(sum(e.probability for e in others), 1e-300)
-    count = len(explanation.confounded)
-    with_confounded = of_confounded(confidence, count)
-    covered, found = confidence, []
-    for e in others:
-        confounded = e.names in explanation.confounded
-        if covered >= CREDIBLE and not confounded:
-            continue
-        equal = (with_confounded - confidence) / count if confounded else 0.0
-        left = (1.0 - with_confounded) * e.probability / whole
-        covered += equal + left
-        stated = equal + min(left, confidence * e.probability / max(own.probability, 1e-300))
-        reason = reason_of(best, e.names, explanation, dataset, limits)
-        found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, stated))
-    found.sort(key=lambda a: a.names not in explanation.confounded)
-    listed = found[:MOST_LISTED]
-    listed_sets = {frozenset(a.names) for a in listed}
-    beside_law = {n: (*best, n) for n in explanation.within_law if frozenset((*best, n)) not in listed_sets}
-    reasons = {n: reason_of(best, names, explanation, dataset, limits) for n, names in beside_law.items()}
-    unseen = [
-        Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan"))
-        for name, why in (*reasons.items(), *explanation.hidden)
-    ]
-    return (*listed, *unseen)
-
-
-def reason_of(
-    names: Sequence[str],
-    other: Sequence[str],
-    explanation: Explanation,
-    dataset: RawDataset,
-    limits: Limits | None = None,
-) -> str:
-    """Return what the recordings lack to decide between two sets, and what to record: "no hold: hold 10 s at 15 mm"."""
-    differing = [set(_traits(n)) for n in set(names) ^ set(other)]
-    common = set.intersection(*differing) if differing else set()
-    lacks = insufficient_excitation(explanation, dataset, limits)
-    if "static" in common:
-        if not explanation.model.baseline.inflated:
-            return "they depend on the deflection only: no motion of this part tells them apart"
-        return f"they depend on deflection and surface only: {second_pressure(limits)}"
-    if "slow" in common:
-        return "they all change slowly with time: repeat the first cycle after a rest"
-    if {"loop", "rate"} & set.union(set(), *differing):
-        loops = [text for text in lacks if "surface" not in text]
-        another = f"repeat at {_another_speed(dataset, limits)}"
-        return "; ".join(loops) or f"their loops are alike at the recorded rates: {another}"
-    return "; ".join(lacks) or "the difference is smaller than these recordings can show"
-
-
-def insufficient_excitation(
-    explanation: Explanation, dataset: RawDataset, limits: Limits | None = None
-) -> list[str]:
-    """Return what the recordings lack to distinguish effects, each with what to record."""
-    timed = explanation.excitation.timed
-    lacks = []
-    if not timed:
-        lacks.append("no time: record the time of each sample")
-    elif explanation.excitation.one_speed:
-        lacks.append(f"one speed at each deflection only: repeat at {_another_speed(dataset, limits)}")
-    mountable = set() if limits is None else set(limits.surfaces)
-    ground = not explanation.model.baseline.is_part
-    if ground and len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):
-        lacks.append("one surface only: press on a second surface")
-    rates = [np.abs(e.motion.rate) for e in dataset.experiments]
-    typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
-    held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
-    if timed and held < LONG_ENOUGH:
-        level = 1e3 * HOLD_DEPTH * dataset.max_deflection
-        lacks.append(f"no hold: hold 10 s at {level:.{'0f' if level >= 1.0 else '2g'}} mm")
-    if len({float(d) for e in dataset.experiments for d in np.unique(e.motion.direction)}) == 1:
-        lacks.append("no way back: release it as slowly as it was loaded, and load it again")
-    elif max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
-        lacks.append("no repeated cycle: drive each cycle twice")
-    return lacks
-
-
-def _another_speed(dataset: RawDataset, limits: Limits | None) -> str:
-    """Return a speed far from those recorded, with its unit: ten times the typical one where the rig reaches that."""
-    speeds = np.concatenate([np.abs(e.motion.rate) for e in dataset.experiments])
-    typical, fastest = float(np.sqrt(np.mean(speeds**2))), float(speeds.max())
-    reached = max(2.0 * fastest, USUAL_SPEED) if limits is None else limits.fastest
-    speed = FASTER * typical if FASTER * typical <= reached else typical / FASTER
-    return f"{float(f'{1e3 * speed:.2g}'):g} mm/s"
-
-
-def _traits(name: str) -> tuple[str, ...]:
-    return CATALOGUE[name].traits if name in CATALOGUE else LAW_TRAITS
-
-
-def _longest_hold(time: FloatArray, still: BoolArray) -> float:
-    ends = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
-    return max(
-        (float(time[b - 1] - time[a]) for a, b in zip(ends[::2], ends[1::2], strict=True)), default=0.0
-    )

@@ -26,15 +26,8 @@ from .acceptance import (
     validation_on,
     without_unlikely,
 )
-from .confidence import (
-    USUAL_SPEED,
-    Alternative,
-    alternatives_of,
-    confidence_of,
-    grounds_of_effect,
-    grounds_of_verdict,
-    probability,
-)
+from .alternatives import USUAL_SPEED, Alternative, alternatives_of
+from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import contradiction_of, residual_models, unexplained_by

@@ -24,7 +24,7 @@ from ..recordings.pieces import split_piece
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.titles import difference, newtons
-from .confidence import Alternative
+from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 

@@ -12,7 +12,7 @@ from ..names import REFITTED_LAW, UNKNOWN
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import DECIDED, SURE, confidence_word, whole_percent
 from .acceptance import NO_WORSE
-from .confidence import Alternative
+from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 from .verdict import FitErrors

@@ -21,7 +21,7 @@ from ..recordings.recording import Recording
 from ..report.titles import headline, more_than_noise
 from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
-from .confidence import Alternative
+from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .effect_figures import LawChange, effect_size, law_changes, load_of, sketch_of
 from .localization import Span, law_corrected

@@ -1,14 +1,13 @@
 """The entry of the engine: which effects explain the misfit of a baseline tire in recordings.
 
-The signatures of all effects are compared with the misfit (`selection`). The noise of the misfit is estimated from the
-residual of the saturated model, which has the signatures of all effects at once. Every set that can still win is fitted
-with the effects' own equations (`estimation`), and the sets are ranked by those fits.
+The signatures of all effects are compared with the misfit (`selection`). Every set that can still win is fitted with
+the effects' own equations, and the sets are ranked by those fits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
@@ -16,9 +15,9 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.data_checks import compared
-from ..preprocessing.noise import NoiseFloor, noise_of
+from ..preprocessing.noise import NoiseFloor
 from ..preprocessing.samples import Recorded
-from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
+from ..regressors.dataset import Samples, dataset_of, samples_of
 from ..regressors.excitation import Excitation, excitation_of, of_deflection
 from ..regressors.signature import (
     AS_GOOD,
@@ -26,22 +25,13 @@ from ..regressors.signature import (
     Signature,
     candidates,
     constant,
-    in_other_noise,
-    law_signature,
-    signatures_of,
     single_valued,
     size_of,
 )
 from ..selection.search import (
-    LIKE_NOISE,
     LOST,
     PRIOR_ODDS,
-    NormalEquations,
     discrepancy_of,
-    normal_equations,
-    parts_of,
-    search,
-    usual_form_error,
 )
 from ..simulation.simulate import simulate
 from .findings import (
@@ -54,13 +44,10 @@ from .findings import (
     estimates_of,
     remainder_of,
 )
+from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .ranking import (
-    BEGUN,
-    FittedSets,
-    HeldOutRecordings,
     Ranking,
-    begun,
     corrected,
     held_out_of,
     ranked,
@@ -192,7 +179,7 @@ class Explanation:
         own = [readings[r.name] for r in samples.recordings]
         dataset = dataset_of(samples.recordings, self.model.baseline, own)
         dataset = dataset.corrected(samples.left_out(dataset, fit.tire)).only([kept[i] for i in chosen])
-        dataset = _quiet(dataset)
+        dataset = in_quiet_units(dataset)
         again = fitted(dataset, [fit.values], discrepancy_of(dataset.misfit, 0.0), fit.variance, -np.inf)
         return Refitted(again.tire, _residuals(again.tire, self._samples.recordings))
 
@@ -231,13 +218,13 @@ def explain_misfit(
     hidden = excitation.reasons(allowed)
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
-    dataset, raw, quiet = _signatures(dataset, recordings, shown, catalogue)
+    dataset, raw, quiet = with_signatures(dataset, recordings, shown, catalogue)
     hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
     if baseline.two_sided and LAW in catalogue:
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
-    blocks = _Blocks(dataset, raw, samples_of(recordings, baseline), held_out_of(held_out, baseline))
+    blocks = FirstSets(dataset, raw, samples_of(recordings, baseline), held_out_of(held_out, baseline))
     alike = partial(_alike, excitation)
     sets = blocks.begun(quiet)
     sets = blocks.less_distorted(sets, sets.best_fit.tire)
@@ -248,58 +235,6 @@ def explain_misfit(
     ranking = corrected(ranking, blocks.samples)
     like_law = _like_law(tuple(sets.signatures.values()), sets.dataset.misfit, ranking.best.variance)
     return _explanation(blocks.samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
-
-
-def _signatures(
-    dataset: Dataset, recordings: Sequence[Recorded], shown: Sequence[str], catalogue: Sequence[str]
-) -> tuple[Dataset, tuple[Signature, ...], Dataset]:
-    """Return the dataset in blocks at least as long as the noise is correlated, its signatures, and the dataset in
-    units of the noise that the saturated model leaves.
-    """
-    raw = _raw(dataset, shown, catalogue)
-    quiet = _with_saturated_noise(dataset, raw)
-    if any(e.reading.memory > e.size for e in quiet.experiments):
-        dataset = dataset_of(recordings, dataset.tire, [e.reading for e in quiet.experiments])
-        raw = _raw(dataset, shown, catalogue)
-        quiet = _with_saturated_noise(dataset, raw)
-    return dataset, raw, quiet
-
-
-@dataclass(frozen=True)
-class _Blocks:
-    """What sets are fitted to: the dataset in blocks and its signatures, as first read; the samples of the blocks; the
-    held-out recordings.
-    """
-
-    dataset: Dataset
-    signatures: tuple[Signature, ...]
-    samples: Samples
-    held_out: HeldOutRecordings | None
-
-    def begun(self, quiet: Dataset) -> FittedSets:
-        """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
-        signatures = tuple(in_other_noise(s, self.dataset, quiet) for s in self.signatures)
-        rough = discrepancy_of(quiet.misfit, usual_form_error())
-        equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
-        likely = search(equations, rough).starts(BEGUN)
-        starts = [(e.variance, parts_of(e, equations, rough)) for e in likely]
-        return begun(quiet, signatures, rough, starts, self.held_out)
-
-    def less_distorted(self, sets: FittedSets, tire: TireModel) -> FittedSets:
-        """Return the sets begun anew without what blocks leave out of a tire's response; the same ones where that is
-        no more than noise.
-
-        It passed for noise, or for something that another effect is.
-        """
-        left_out = self.samples.left_out(sets.dataset, tire)
-        more = [new - e.left_out for new, e in zip(left_out, sets.dataset.experiments, strict=True)]
-        if size_of(sets.dataset.stacked(more)) <= LIKE_NOISE:
-            return sets
-        return self.begun(_with_saturated_noise(self.dataset.corrected(left_out), self.signatures))
-
-
-def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
-    return (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
 
 
 def _explanation(
@@ -403,12 +338,6 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
     return tuple(fit.names for fit in found if ranking.behind(fit) - ranking.behind(chosen) < LOST)
 
 
-def _quiet(dataset: Dataset) -> Dataset:
-    """Return a dataset in units of the noise that the saturated model leaves."""
-    raw = (law_signature(dataset), *signatures_of(candidates(), dataset))
-    return _with_saturated_noise(dataset, raw)
-
-
 def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
     without = ranking.of(frozenset(chosen.names) - {name})
     misfit = chosen.problem.dataset.misfit
@@ -421,28 +350,3 @@ def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
 
 def _residuals(tire: TireModel, recordings: Sequence[Recorded]) -> tuple[FloatArray, ...]:
     return tuple(r.force - simulate(tire, r) for r in recordings)
-
-
-def _with_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
-    """Return the dataset with the noise of the blocks that the saturated model leaves.
-
-    By how much that is more than the noise of the readings is no noise but what the recordings contradict each other,
-    or what no effect explains: it counts alike in all of them, or the one that is fitted best would count most.
-    """
-    equations = normal_equations(signatures, dataset.misfit)
-    left = dataset.apart(dataset.misfit - _saturated(equations))
-    found = []
-    for e, own in zip(dataset.experiments, left, strict=True):
-        noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
-        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
-    read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
-    more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
-    shared = np.sqrt(np.minimum(levels, read) ** 2 + more)
-    return dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
-
-
-def _saturated(equations: NormalEquations) -> np.ndarray:
-    """Return the misfit predicted by the saturated model: all columns, each with a weak prior of the misfit's size."""
-    size = equations.power / equations.columns.shape[0]
-    gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
-    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))

@@ -27,6 +27,7 @@ from radialtire import CATALOGUE, Parameter, Recalibrated, TireModel
 
 from ..preprocessing.motion import branches
 from ..regressors.dataset import Dataset, Scales, arranged
+from ..regressors.draws import at_reading, centre_and_spread
 from ..regressors.signature import (
     BEND,
     EXPONENT,
@@ -39,8 +40,6 @@ from ..regressors.signature import (
     REFERENCE,
     SHAPE,
     TWIST,
-    at_reading,
-    centre_and_spread,
     form_error,
     preload_spread,
     size_of,

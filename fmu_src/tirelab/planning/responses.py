@@ -20,18 +20,10 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
 from ..regressors.dataset import Dataset, Scales, arranged
+from ..regressors.draws import drawn, strengthened
 from ..regressors.excitation import excitation_of
 from ..regressors.experiment import Experiment
-from ..regressors.signature import (
-    FACTOR,
-    LAW,
-    SILENT,
-    candidates,
-    drawn,
-    law_signature,
-    size_of,
-    strengthened,
-)
+from ..regressors.signature import FACTOR, LAW, SILENT, candidates, law_signature, size_of
 from ..simulation.simulate import simulate
 from .menu import Drive, experiment_of, peak_force
 from .rig import Rig

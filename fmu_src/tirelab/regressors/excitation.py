@@ -24,7 +24,8 @@ from ..preprocessing.motion import branches
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
-from .signature import ALIKE, DRAWS, drawn, size_of
+from .draws import drawn
+from .signature import ALIKE, DRAWS, size_of
 
 FloatArray = NDArray[np.float64]
 

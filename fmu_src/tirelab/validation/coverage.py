@@ -27,7 +27,8 @@ from ..estimation.explanation import explain_misfit
 from ..estimation.findings import estimates_of
 from ..recordings.recording import Recording
 from ..regressors.dataset import arranged, dataset_of
-from ..regressors.signature import candidates, quantile, strengthened
+from ..regressors.draws import quantile, strengthened
+from ..regressors.signature import candidates
 from ..simulation.simulate import simulate
 from .metrics import Rate
 

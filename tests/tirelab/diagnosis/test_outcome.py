@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from tirelab.diagnosis.confidence import Alternative
+from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.outcome import (
     Replayed,

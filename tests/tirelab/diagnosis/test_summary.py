@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from tirelab.diagnosis.confidence import Alternative
+from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.diagnosis.summary import summarise

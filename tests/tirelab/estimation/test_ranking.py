@@ -11,17 +11,7 @@ import pytest
 from drives import damped, flat_force
 from radialtire import TireModel
 from tirelab.estimation.fit import fitted
-from tirelab.estimation.ranking import (
-    TEMPERATURE,
-    Ranking,
-    additions,
-    begun,
-    corrected,
-    held_out_of,
-    predicted_gains,
-    ranked,
-    with_parts,
-)
+from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
 from tirelab.regressors.signature import Signature, law_signature, signatures_of
@@ -85,28 +75,6 @@ def test_no_set_within_reach_leaves_more_than_a_subset_of_it(ranking: Ranking) -
     for names, power in powers.items():
         for less, left in powers.items():
             assert not less < names or power <= 1.002 * left
-
-
-def test_the_largest_promise_is_that_of_what_is_there(
-    dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy
-) -> None:
-    nothing = fitted(dataset, [{}], noise, noise.highest, -np.inf)
-    found = dict(zip([s.name for s in signatures], predicted_gains(signatures, nothing, noise), strict=True))
-    assert max(found, key=found.__getitem__) == "viscous_damping"
-    # A law of the deflection follows nothing of a force of the rate, and may not gain by that.
-    assert found["recalibration"] < 0.1 * found["viscous_damping"]
-
-
-def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
-    dataset: Dataset, signatures: tuple[Signature, ...]
-) -> None:
-    damper = next(s for s in signatures if s.name == "viscous_damping")
-    drawn = 3
-    missing = 2.0 * damper.sizes[drawn] * damper.curves[drawn]
-    first = additions(damper, missing, np.zeros((missing.size, 0)), 1.0, dataset)[0]
-    # Damping is linear: twice the response has twice the coefficient, and the same form beside it.
-    assert first.values[0] == pytest.approx(2.0 * damper.values[drawn][0], rel=1e-6)
-    assert first.values[1:] == pytest.approx(damper.values[drawn][1:])
 
 
 LATE = (0.005, 0.01, 0.0)

@@ -1,0 +1,125 @@
+"""From recordings in blocks to the sets of effects that are fitted first.
+
+The noise of the misfit is estimated from the residual of the saturated model, which has the signatures of all effects
+at once. The sets that the signatures find likely are fitted, and what the blocks leave out of the likeliest one is
+subtracted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from radialtire import TireModel
+
+from ..preprocessing.noise import noise_of
+from ..preprocessing.samples import Recorded
+from ..regressors.dataset import Dataset, Samples, dataset_of
+from ..regressors.signature import (
+    LAW,
+    Signature,
+    candidates,
+    in_other_noise,
+    law_signature,
+    signatures_of,
+    size_of,
+)
+from ..selection.search import (
+    LIKE_NOISE,
+    NormalEquations,
+    discrepancy_of,
+    normal_equations,
+    parts_of,
+    search,
+    usual_form_error,
+)
+from .ranking import (
+    BEGUN,
+    FittedSets,
+    HeldOutRecordings,
+    begun,
+)
+
+
+def with_signatures(
+    dataset: Dataset, recordings: Sequence[Recorded], shown: Sequence[str], catalogue: Sequence[str]
+) -> tuple[Dataset, tuple[Signature, ...], Dataset]:
+    """Return the dataset in blocks at least as long as the noise is correlated, its signatures, and the dataset in
+    units of the noise that the saturated model leaves.
+    """
+    raw = _raw(dataset, shown, catalogue)
+    quiet = _in_saturated_noise(dataset, raw)
+    if any(e.reading.memory > e.size for e in quiet.experiments):
+        dataset = dataset_of(recordings, dataset.tire, [e.reading for e in quiet.experiments])
+        raw = _raw(dataset, shown, catalogue)
+        quiet = _in_saturated_noise(dataset, raw)
+    return dataset, raw, quiet
+
+
+@dataclass(frozen=True)
+class FirstSets:
+    """What sets are fitted to: the dataset in blocks and its signatures, as first read; the samples of the blocks; the
+    held-out recordings.
+    """
+
+    dataset: Dataset
+    signatures: tuple[Signature, ...]
+    samples: Samples
+    held_out: HeldOutRecordings | None
+
+    def begun(self, quiet: Dataset) -> FittedSets:
+        """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
+        signatures = tuple(in_other_noise(s, self.dataset, quiet) for s in self.signatures)
+        rough = discrepancy_of(quiet.misfit, usual_form_error())
+        equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
+        likely = search(equations, rough).starts(BEGUN)
+        starts = [(e.variance, parts_of(e, equations, rough)) for e in likely]
+        return begun(quiet, signatures, rough, starts, self.held_out)
+
+    def less_distorted(self, sets: FittedSets, tire: TireModel) -> FittedSets:
+        """Return the sets begun anew without what blocks leave out of a tire's response; the same ones where that is
+        no more than noise.
+
+        It passed for noise, or for something that another effect is.
+        """
+        left_out = self.samples.left_out(sets.dataset, tire)
+        more = [new - e.left_out for new, e in zip(left_out, sets.dataset.experiments, strict=True)]
+        if size_of(sets.dataset.stacked(more)) <= LIKE_NOISE:
+            return sets
+        return self.begun(_in_saturated_noise(self.dataset.corrected(left_out), self.signatures))
+
+
+def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
+    return (*((law_signature(dataset),) if LAW in catalogue else ()), *signatures_of(shown, dataset))
+
+
+def in_quiet_units(dataset: Dataset) -> Dataset:
+    """Return a dataset in units of the noise that the saturated model leaves."""
+    raw = (law_signature(dataset), *signatures_of(candidates(), dataset))
+    return _in_saturated_noise(dataset, raw)
+
+
+def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
+    """Return the dataset with the noise of the blocks that the saturated model leaves.
+
+    By how much that is more than the noise of the readings is no noise but what the recordings contradict each other,
+    or what no effect explains: it counts alike in all of them, or the one that is fitted best would count most.
+    """
+    equations = normal_equations(signatures, dataset.misfit)
+    left = dataset.apart(dataset.misfit - _saturated(equations))
+    found = []
+    for e, own in zip(dataset.experiments, left, strict=True):
+        noise = noise_of(own, e.interval, *(v[e.counts] for v in (e.deflection, e.rate, e.acceleration)))
+        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
+    read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
+    more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
+    shared = np.sqrt(np.minimum(levels, read) ** 2 + more)
+    return dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
+
+
+def _saturated(equations: NormalEquations) -> np.ndarray:
+    """Return the misfit predicted by the saturated model: all columns, each with a weak prior of the misfit's size."""
+    size = equations.power / equations.columns.shape[0]
+    gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
+    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))

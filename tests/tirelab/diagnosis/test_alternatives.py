@@ -1,0 +1,174 @@
+"""Alternatives hold the promised probability, and their reasons say what to record."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from drives import damped, flat_force, read, triangle
+from radialtire import TireModel
+from tirelab.diagnosis.alternatives import CREDIBLE, alternatives_of, insufficient_excitation, reason_of
+from tirelab.estimation.findings import Evidence
+from tirelab.planning.waveforms import Limits
+from tirelab.preprocessing.samples import RawDataset, raw_dataset_of
+
+RIDE = raw_dataset_of([damped(1, samples=2000)], TireModel())
+LOOP, DAMPING = ("rate_independent_hysteresis",), ("viscous_damping",)
+
+
+def explained_by_sets(*sets: tuple[str, float, float], **more: Any) -> Any:
+    """Return an explanation by hand of sets (names, log evidence, probability), the first the verdict if not said."""
+    evidence = tuple(Evidence(tuple(n.split()), log, 1.0, (), p) for n, log, p in sets)
+    names = tuple(more.get("verdict", sets[0][0]).split())
+    return SimpleNamespace(
+        evidence=evidence,
+        probability=next(e.probability for e in evidence if e.names == names),
+        model=SimpleNamespace(names=names, baseline=more.get("baseline", TireModel())),
+        confounded=more.get("confounded", ()),
+        hidden=more.get("hidden", ()),
+        within_law=more.get("within_law", ()),
+        excitation=SimpleNamespace(timed=True, one_speed=more.get("one_speed", False)),
+    )
+
+
+def listed(explanation: Any, confidence: float, dataset: RawDataset = RIDE) -> list[tuple[str, ...]]:
+    return [a.names for a in alternatives_of(explanation, dataset, confidence)]
+
+
+SETS = (("inertia", 0.0, 0.6), ("force_lag", -1.4, 0.3), ("saturation", -4.0, 0.08), ("", -7.0, 0.02))
+
+
+def test_verdict_and_alternatives_hold_the_promised_probability_and_no_more_sets_are_listed() -> None:
+    explanation = explained_by_sets(*SETS)
+    found = alternatives_of(explanation, RIDE, 0.6)
+    assert [a.names for a in found] == [
+        ("force_lag",),
+        ("saturation",),
+    ]  # of 0.4, what the evidence gives them
+    assert 0.6 + sum(a.probability for a in found) >= CREDIBLE
+
+
+def test_what_the_confidence_leaves_is_shared_by_the_others_as_their_evidence_is() -> None:
+    """The ranking gives the others 0.3, 0.08 and 0.02; a confidence of 0.8 leaves them half as much."""
+    found = alternatives_of(explained_by_sets(*SETS), RIDE, 0.8)
+    assert [a.probability for a in found] == pytest.approx([0.15, 0.04])
+
+
+def test_no_set_is_told_as_likelier_beside_the_verdict_than_its_evidence_is() -> None:
+    """The next set has half of the verdict's evidence; what is left of a doubted verdict belongs to none of them."""
+    found = alternatives_of(explained_by_sets(*SETS), RIDE, 0.2)
+    assert [a.probability for a in found] == pytest.approx([0.1, 0.2 * 0.08 / 0.6, 0.2 * 0.02 / 0.6])
+
+
+def test_a_sure_verdict_has_no_alternatives() -> None:
+    assert listed(explained_by_sets(("inertia", 0.0, 0.999), ("force_lag", -14.0, 0.001)), 0.98) == []
+
+
+def test_an_effect_that_the_motion_cannot_tell_apart_comes_first_however_unlikely_it_is() -> None:
+    explanation = explained_by_sets(
+        ("viscous_damping", 0.0, 0.9),
+        ("inertia", -4.0, 0.099),
+        ("rate_independent_hysteresis", -13.0, 0.001),
+        confounded=(LOOP,),
+        one_speed=True,
+    )
+    assert listed(explanation, 0.9) == [LOOP, ("inertia",)]
+
+
+def test_an_effect_that_the_excitation_cannot_show_stands_beside_the_verdict_with_the_reason() -> None:
+    why = "the recording has no time"
+    (found,) = alternatives_of(
+        explained_by_sets(("inertia", 0.0, 1.0), hidden=(("warm_up", why),)), RIDE, 0.98
+    )
+    assert set(found.names) == {"inertia", "warm_up"}
+    assert found.reason == why
+
+
+def test_the_log_odds_are_those_of_the_verdict_that_is_delivered() -> None:
+    """The likeliest set was refused: e^3 to 1 against the verdict."""
+    explanation = explained_by_sets(
+        ("inertia", 0.0, 0.9), ("", -3.0, 0.05), ("force_lag", -3.5, 0.05), verdict=""
+    )
+    found = {a.names: a.log_odds for a in alternatives_of(explanation, RIDE, 0.05)}
+    assert found[("inertia",)] == pytest.approx(-3.0)
+    assert found[("force_lag",)] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "said"),
+    [
+        (("recalibration",), ("gas_compression",), "surface only: repeat at a second pressure"),
+        (("warm_up",), ("pressure_leak",), "repeat the first cycle after a rest"),
+        (LOOP, DAMPING, "one speed at each deflection only: repeat at "),
+    ],
+)
+def test_the_reason_is_what_to_record(one: tuple[str, ...], other: tuple[str, ...], said: str) -> None:
+    assert said in reason_of(one, other, explained_by_sets((" ".join(one), 0.0, 1.0), one_speed=True), RIDE)
+
+
+def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
+    time, deflection = triangle(samples=180)
+    press = raw_dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
+    said = "; ".join(insufficient_excitation(explained_by_sets(("inertia", 0.0, 1.0)), press))
+    for words in ("press on a second surface", "hold 10 s at 15 mm", "drive each cycle twice"):
+        assert words in said
+
+
+@pytest.mark.parametrize(("fastest", "faster"), [(10.0, True), (0.02, False)])
+def test_the_other_speed_is_one_that_the_rig_reaches(fastest: float, faster: bool) -> None:
+    """The press goes 23 mm in 2 s, 11.5 mm/s: ten times that where the rig reaches it, else a tenth."""
+    time, deflection = triangle(samples=180)
+    press = raw_dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
+    asked = explained_by_sets((" ".join(LOOP), 0.0, 1.0), one_speed=True)
+    said = reason_of(LOOP, DAMPING, asked, press, Limits(fastest=fastest))
+    speed = float(said.split("repeat at ")[1].split()[0])
+    assert speed == pytest.approx(115.0 if faster else 1.15, rel=0.1)
+
+
+def test_a_second_surface_is_asked_for_only_where_one_can_be_mounted() -> None:
+    asked = explained_by_sets(("inertia", 0.0, 1.0))
+    assert "press on a second surface" not in "; ".join(
+        insufficient_excitation(asked, RIDE, Limits(surfaces=(math.inf,)))
+    )
+    assert "press on a second surface" in "; ".join(
+        insufficient_excitation(asked, RIDE, Limits(surfaces=(math.inf, 0.254)))
+    )
+
+
+def test_no_second_pressure_is_asked_for_where_there_is_no_air() -> None:
+    part = explained_by_sets(("", 0.0, 1.0), baseline=TireModel(inflated=False))
+    said = reason_of(("recalibration",), ("gas_compression",), part, RIDE)
+    assert said == "they depend on the deflection only: no motion of this part tells them apart"
+
+
+@pytest.mark.parametrize(
+    ("pressures", "said"),
+    [
+        ((), "second pressure"),
+        ((2e5,), "second pressure"),
+        ((2e5, 3e5, 3.447e5), "pressure (2, 3 or 3.45 bar)"),
+    ],
+)
+def test_the_second_pressure_is_one_that_the_rig_holds(pressures: tuple[float, ...], said: str) -> None:
+    asked = explained_by_sets(("recalibration", 0.0, 1.0))
+    limits = Limits(pressures=pressures)
+    assert reason_of(("recalibration",), ("gas_compression",), asked, RIDE, limits).endswith(said)
+
+
+def test_what_leaves_no_trace_beside_the_refitted_law_is_told_once_with_the_reason() -> None:
+    explanation = explained_by_sets(
+        ("recalibration", 0.0, 0.9),
+        ("recalibration series_compliance", -4.0, 0.1),
+        verdict="recalibration",
+        within_law=("series_compliance", "deflection_offset"),
+    )
+    found = alternatives_of(explanation, RIDE, 0.8)
+    assert [set(a.names) for a in found] == [
+        {"recalibration", "series_compliance"},
+        {"recalibration", "deflection_offset"},
+    ]
+    assert not math.isnan(found[0].probability)
+    assert math.isnan(found[1].probability)
+    assert found[1].reason == "they depend on deflection and surface only: repeat at a second pressure"
