@@ -10,7 +10,7 @@ import pytest
 from drives import damped, flat_force, read, ride, triangle
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from rivals import rivals
-from tirelab.estimation import explanation
+from tirelab.estimation import first_sets
 from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
 from tirelab.names import REFITTED_LAW
 from tirelab.preprocessing.noise import Noise
@@ -195,7 +195,7 @@ def test_what_no_effect_explains_in_one_recording_weighs_alike_in_all(
 ) -> None:
     """Levels of what the saturated model leaves, over the noise of the readings."""
     left = itertools.cycle(levels)
-    monkeypatch.setattr(explanation, "noise_of", lambda *_: Noise(next(left), 1))
+    monkeypatch.setattr(first_sets, "noise_of", lambda *_: Noise(next(left), 1))
     found = explain_misfit(RIDES, TireModel(), ["viscous_damping"], lambda stage: None)
     read = [e.noise for e in dataset_of(RIDES, TireModel()).experiments]
     noises = [e.noise for e in found.model.fit.problem.dataset.experiments]
