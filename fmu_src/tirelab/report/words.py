@@ -155,8 +155,11 @@ def percent(share: float) -> str:
 
 
 def of_load(size: float | None, load: float | None) -> str:
-    """Return a force's size as a part of the load, both root mean squares [N]; empty where one is not known."""
-    if size is None or not load:
+    """Return a force's size as a part of the load, both root mean squares [N]; empty where one is not known.
+
+    More than the whole load is empty too: it says what a refitted law has given up, not how large an effect is.
+    """
+    if size is None or not load or size > load:
         return ""
     share = size / load
     return f"{100.0 * share:.1f} %" if 0.005 <= share < 0.0095 else percent(share)

@@ -193,3 +193,20 @@ def test_a_hold_is_told_as_rest_and_not_as_a_rate_and_an_acceleration_of_nothing
     assert words.foremost([still], 3) == [still]
     slow = held | {"from": -2.0e-6, "to": 0.0}
     assert words.where_phrase(slow) == "rate of deflection −0.00200 to 0 mm/s"
+
+
+@pytest.mark.parametrize(
+    ("size", "load", "shown"),
+    [
+        (12.0, 100.0, "12 %"),
+        (0.7, 100.0, "0.7 %"),
+        (0.1, 100.0, "< 1 %"),
+        (331.0, 100.0, ""),
+        (None, 100.0, ""),
+        (1.0, 0.0, ""),
+    ],
+)
+def test_a_size_is_a_part_of_the_load_and_none_that_is_more(
+    size: float | None, load: float, shown: str
+) -> None:
+    assert words.of_load(size, load) == shown
