@@ -4,7 +4,7 @@ An effect is a pure response at one stage of the signal path from the measured d
 
     place "deflection"  measured deflection  -> deflection of wheel and tire
     place "series"      deflection           -> deflection of the tire (springs in series)
-    place "scale"       factor               -> factor on A x^B, not on a part's preload (pressure, softening)
+    place "scale"       factor               -> factor on the elastic force (pressure, softening)
     place "parallel"    force                -> force with what acts beside the elastic law
     place "inertia"     force                -> force with what accelerates
     place "reading"     force                -> measured force (lag, zero, ceiling)
@@ -97,11 +97,11 @@ class Instant(NamedTuple):
     deflection: [m] at the places "deflection" and "series" the input of the place, after them that of the tire
     rate: [m/s] of that deflection; acceleration: [m/s^2] of the measured deflection
     coefficient, exponent: A [N/cm^B] and B [1] of the surface
-    elastic_force: [N] at the place "scale" A x^B, after it A x^B with its factor and the preload, before it 0
+    elastic_force: [N] at the place "scale" A x^B and the preload, after it with their factor, before it 0
     curvature: [1/m] of the surface, convex > 0
     pressure: [Pa], gauge, and temperature [K] of the tire, as measured or as inputs; else NOT_MEASURED
     two_sided: whether the part is held at both ends, so that a deflection below 0 is no lost contact
-    preload: [N] part of that elastic force after "scale" which is there without a deflection
+    preload: [N] after "scale" the force of a part that is there without a deflection, without the factor
     """
 
     time: float

@@ -6,7 +6,7 @@ translation to C has every effect of the catalogue and skips those whose switch 
 
     deflection reading -> deflection of the tire -> factor -> elastic law -> parallel forces -> inertia -> force reading
 
-The factor acts on A x^B. The preload of a part, which is there without a deflection, is added after it.
+The factor acts on A x^B and on the preload of a part, since both are the force of its air or its rubber.
 """
 
 from __future__ import annotations
@@ -144,15 +144,13 @@ def step(
             if p[TRACKED] != 0.0:
                 store(n, path.compression, tracking.begin(x))
 
-    bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
+    bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     at = Instant(
         time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held, 0.0
     )
-    elastic = through(path.scale, 1.0, at, p, s, n) * bare
-    preload = 0.0
-    if held:
-        preload = p[PRELOAD]
-        elastic = elastic + preload
+    factor = through(path.scale, 1.0, at, p, s, n)
+    elastic = factor * bare
+    preload = p[PRELOAD] if held else 0.0
     at = Instant(
         time - start,
         interval,

@@ -126,7 +126,7 @@ class TireModel:
     and can pull. A tire on the ground can do neither.
     inflated: whether air carries its load: without, nothing of a pressure is looked for
     preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring;
-    effects that multiply the law do not multiply it
+    effects that multiply the law multiply it too, as a pressure does
     curve: a force over the deflection that is added to the preload, None for a part that a power law follows
     remainder: a force without physics that is added to all others, None where nobody asked for one
     """

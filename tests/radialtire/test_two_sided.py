@@ -72,25 +72,37 @@ def test_the_preload_is_a_parameter_of_such_a_part_alone() -> None:
         TireModel(preload=5.0)
 
 
-def test_a_shape_of_the_law_leaves_the_preload_alone_and_the_force_continuous_at_no_deflection() -> None:
-    """F = F0 + A x exp(c2 l^2 + h1) with l = ln(x / xr), held below xr / 100; h is h1 below 0.4 xr."""
+def test_the_force_of_a_law_of_another_shape_is_continuous_at_no_deflection() -> None:
+    """F = (F0 + A x) exp(c2 l^2 + h1) with l = ln(x / xr), held below xr / 100; h is h1 below 0.4 xr."""
     values = values_of(CATALOGUE["elastic_shape"], bend=0.01, reference=2e-4, height_1=0.05)
     shaped = ((CATALOGUE["elastic_shape"], values),)
     tire = TireModel(PowerLaw(1000.0, 1.0), shaped, two_sided=True, preload=10.0)
     x = np.array([-1e-5, -1e-10, 0.0, 1e-10, 1e-5])
     log_ratio = np.log(np.maximum(np.abs(x) / 2e-4, 0.01))
-    expected = 10.0 + 1e5 * x * np.exp(0.01 * log_ratio**2 + 0.05)
+    expected = (10.0 + 1e5 * x) * np.exp(0.01 * log_ratio**2 + 0.05)
     assert drive(tire, np.arange(5.0), x) == pytest.approx(expected, rel=1e-12)
-    assert expected[2] == 10.0
 
 
-def test_softening_leaves_the_preload_alone() -> None:
-    """Far below the largest deflection the fraction D (1 - exp(-1 / r)) of the stiffness is lost."""
+def test_a_softened_part_is_soft_at_no_deflection_too() -> None:
+    """Far below the largest deflection the fraction D (1 - exp(-1 / r)) of the force is lost."""
     tire = part("mullins_softening", preload=40.0, share=0.3, ratio=0.1)
     force = drive(tire, [0.0, 1.0, 2.0, 3.0], [0.0, 0.02, 1e-9, 0.0])
-    assert force[[0, 3]] == pytest.approx(40.0, abs=1e-12)
-    law = 200.0 * 1e-7**1.3
-    assert force[2] - 40.0 == pytest.approx(law * (1.0 - 0.3 * (1.0 - np.exp(-10.0))), rel=1e-3, abs=1e-12)
+    kept = 1.0 - 0.3 * (1.0 - np.exp(-10.0))
+    assert force[0] == pytest.approx(40.0, abs=1e-12)
+    assert force[2:] == pytest.approx(40.0 * kept, rel=1e-3)
+
+
+def test_a_pressure_multiplies_the_preload_of_a_gas_spring() -> None:
+    """Gauge pressure over the reference one, where nothing but air carries."""
+    effect = CATALOGUE["inflation_pressure"]
+    values = (
+        values_of(effect, casing_share=0.0)
+        if "casing_share" in {p.name for p in effect.parameters}
+        else effect.nominal
+    )
+    tire = TireModel(PowerLaw(1e-6, 1.0), ((effect, values),), two_sided=True, preload=200.0)
+    single, double = (drive(tire, [0.0, 1.0], [0.0, 0.0], pressure=p)[-1] for p in (344.7e3, 689.4e3))
+    assert double > 1.5 * single
 
 
 def test_a_second_spring_that_sets_in_softly_has_begun_at_no_deflection() -> None:

@@ -23,11 +23,11 @@ def respond_loop(
     state: State,
     values: State,
     answer: FloatArray,
-    part: tuple[bool, float],
+    part: tuple[bool, FloatArray],
 ) -> None:
     """Fill `answer` with the effect's signal at every sample; `state` is its initial state.
 
-    part: whether it is held at both ends, and then its force without a deflection [N]
+    part: whether it is held at both ends, and its force without a deflection [N] at every sample
     history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
     of every sample
     """
@@ -60,7 +60,7 @@ def respond_loop(
                 pressure[i],
                 temperature[i],
                 part[0],
-                part[1],
+                part[1][i],
             ),
             state,
             values,

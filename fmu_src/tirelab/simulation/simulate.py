@@ -87,7 +87,8 @@ class History:
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
     coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]; channels: those of CHANNELS
-    two_sided: whether the part is held at both ends; preload: [N] part of the elastic force without a deflection
+    two_sided: whether the part is held at both ends; preload (n,) [N]: after "scale" its force without a
+    deflection
     """
 
     time: FloatArray
@@ -100,7 +101,7 @@ class History:
     curvature: FloatArray
     channels: tuple[FloatArray, ...]
     two_sided: bool
-    preload: float
+    preload: FloatArray
 
 
 def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -168,12 +169,12 @@ def elastic_stage(
             later, sooner = (upstream(tire, extrapolated(history, h)) for h in (AHEAD, -AHEAD))
             rate = (later - sooner) / (2.0 * AHEAD)
     bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
-    history = replace(history, deflection=x, rate=rate, elastic_force=bare)
-    factor = downstream(tire, history, np.ones_like(bare), ("scale",))
-    elastic = factor * bare
+    preload = preload_of(tire, x)
     if tire.two_sided:
-        elastic += preload_of(tire, x)
-    return replace(history, elastic_force=elastic), elastic
+        bare = preload + bare
+    history = replace(history, deflection=x, rate=rate, elastic_force=bare)
+    elastic = downstream(tire, history, np.ones_like(bare), ("scale",)) * bare
+    return replace(history, elastic_force=elastic, preload=preload), elastic
 
 
 def preload_of(tire: TireModel, deflection: FloatArray) -> FloatArray:
@@ -234,7 +235,7 @@ def history_of(tire: TireModel, recording: Sampled, kinematics: Kinematics | Non
         curvature,
         channels,
         tire.two_sided,
-        tire.preload,
+        np.zeros_like(deflection),
     )
 
 

@@ -24,7 +24,7 @@ def shifted(offset: float) -> float:
     effect = CATALOGUE["deflection_offset"]
     one, answer = np.full(1, 0.01), np.empty(1)
     compiled.loop("respond_loop", effect.name, effect.respond)(
-        one, (one,) * 10, (), (offset,), answer, (False, 0.0)
+        one, (one,) * 10, (), (offset,), answer, (False, np.zeros(answer.size))
     )
     return float(answer[0])
 
@@ -58,7 +58,7 @@ def test_two_effects_do_not_share_a_loop() -> None:
     history = (np.array([0.0, 2.0]), *(np.zeros(2) for _ in range(9)))
     answers = [np.empty(2), np.empty(2)]
     for loop, answer, values in zip(loops, answers, ((5.0,), (5.0, 0.0)), strict=True):
-        loop(np.full(2, 100.0), history, (), values, answer, (False, 0.0))
+        loop(np.full(2, 100.0), history, (), values, answer, (False, np.zeros(answer.size)))
     # F + F0, and F + d t with t = 0 s and 2 s
     assert answers[0].tolist() == [105.0, 105.0]
     assert answers[1].tolist() == [100.0, 110.0]

@@ -70,7 +70,7 @@ def test_the_compiled_loop_responds_as_the_effect_does(effect: Effect) -> None:
     signal = {"deflection": known[1], "series": known[1], "scale": np.ones(COUNT)}.get(effect.place, known[6])
     expected, answer = by_hand(effect, signal, known), np.empty(COUNT)
     loop("respond_loop", effect.name, effect.respond)(
-        signal, known, effect.initial_state, effect.nominal, answer, (False, 0.0)
+        signal, known, effect.initial_state, effect.nominal, answer, (False, np.zeros(answer.size))
     )
     # the same operations: what differs is the rounding of a power or an exponential
     assert answer == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.max(np.abs(expected)))
@@ -80,7 +80,7 @@ def test_the_loop_as_it_stands_shifts_the_deflection() -> None:
     # uncompiled the kernel's `respond` is that of a shifted zero: x = x_read + x0
     known = history(2)
     answer = np.empty(COUNT)
-    kernel.respond_loop(known[1], known, (), (1e-3,), answer, (False, 0.0))
+    kernel.respond_loop(known[1], known, (), (1e-3,), answer, (False, np.zeros(answer.size)))
     assert answer == pytest.approx(known[1] + 1e-3, rel=1e-15)
 
 

@@ -1481,15 +1481,12 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
             }
         }
     }
-    double bare = held ? power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
+    double bare = held ? p[5] + power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
     Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure,
         temperature, held, 0.0};
-    double elastic = through_scale(1.0, at, p, s, n) * bare;
-    double preload = 0.0;
-    if (held) {
-        preload = p[5];
-        elastic = elastic + preload;
-    }
+    double factor = through_scale(1.0, at, p, s, n);
+    double elastic = factor * bare;
+    double preload = held ? p[5] : 0.0;
     at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature,
         held, preload};
     double force = through_parallel(elastic, at, p, s, n);
