@@ -102,7 +102,6 @@ def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) ->
 
 def given(
     held_out: Sequence[Recorded],
-    recordings: Sequence[Recorded],
     dataset: RawDataset,
     before: Sequence[FloatArray],
     explanation: Explanation,
@@ -112,15 +111,12 @@ def given(
     Samples at which a gauge does not follow count nowhere.
     """
     corrected, baseline = explanation.model.tire, explanation.model.baseline
-    fitted = zip(
-        dataset.experiments, recordings, before, explanation.residuals, explanation.compared, strict=True
-    )
+    own = explanation.residuals, explanation.noise_free, explanation.compared
+    fitted = zip(dataset.experiments, before, *own, strict=True)
     others = zip(raw_dataset_of(held_out, baseline).experiments, held_out, compared(held_out), strict=True)
     return HeldOut(
         "recordings given",
-        tuple(
-            Part(e, b, a, noise_free_residual(corrected, r, e.motion), seen) for e, r, b, a, seen in fitted
-        ),
+        tuple(Part(*part) for part in fitted),
         tuple(
             Part(
                 e,
@@ -350,5 +346,5 @@ def validation_on(
     before [N]: residuals of the baseline in each recording
     """
     if held_out:
-        return lambda chosen: given(held_out, recordings, dataset, before, chosen)
+        return lambda chosen: given(held_out, dataset, before, chosen)
     return lambda chosen: split(recordings, dataset, before, chosen)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,30 +19,27 @@ from .problem import law_start, with_readings
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Addition:
-    """A candidate to be added to a fit, with the values of its parameters to start from."""
+def _beside(slopes: FloatArray, variance: float) -> Callable[[FloatArray], FloatArray]:
+    """Return the function that takes out of columns (m,) or (m, n) what refitted parameters follow of them.
 
-    name: str
-    values: tuple[float, ...]
+    slopes (m, k): of these parameters; variance: V
+    """
+    factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
+    across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
+    return lambda columns: np.asarray(columns - across.T @ (across @ columns))
 
 
 def additions(
     signature: Signature, missing: FloatArray, slopes: FloatArray, variance: float, dataset: Dataset
-) -> list[Addition]:
-    """Return the drawn responses of a candidate that follow the residual `missing` (m,) best, at most two, best first.
+) -> list[tuple[float, ...]]:
+    """Return values to start from: of the drawn responses that follow the residual `missing` (m,) best, at most two.
 
     The second one is of the other kind than the first: without or with optional parameters.
     slopes (m, k): of the parameters already fitted, which are refitted linearly; variance: V
     """
-    factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
-    across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
-
-    def beside(columns: FloatArray) -> FloatArray:
-        return np.asarray(columns - across.T @ (across @ columns))
-
     if signature.name == LAW:
-        return [Addition(LAW, law_start(dataset))]
+        return [law_start(dataset)]
+    beside = _beside(slopes, variance)
     target = beside(missing)
     curves = signature.curves.T
     power = np.maximum(np.einsum("ij,ij->j", curves, beside(curves)), 1e-12 * curves.shape[0])
@@ -52,7 +48,7 @@ def additions(
         size = np.maximum(size, 0.0)
     gains = 0.5 * size**2 * power / variance
     effect = CATALOGUE[signature.name]
-    found: list[Addition] = []
+    found: list[tuple[float, ...]] = []
     kinds: set[bool] = set()
     for k in np.argsort(-gains):
         values = signature.values[k]
@@ -65,7 +61,7 @@ def additions(
         kinds.add(optional)
         factor_on = float(size[k] / signature.sizes[k]) if gains[k] > 0.0 else 0.02
         scaled = strengthened(effect, values, factor_on)
-        found.append(Addition(signature.name, with_readings(signature.name, scaled, dataset)))
+        found.append(with_readings(signature.name, scaled, dataset))
         if len(kinds) == 2:
             break
     return found
@@ -77,13 +73,11 @@ def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Dis
     It is the marginal likelihood linearised about the fit, whose parameters are refitted, at the best of a few sizes.
     """
     before, variance = discrepancy.profile(base.beyond_forms)
-    slopes = base.slopes
-    factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
-    across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
+    beside = _beside(base.slopes, variance)
     left = float(np.sqrt(base.beyond_forms / base.residual.size))
     found = []
     for signature in signatures:
-        columns = signature.columns - across.T @ (across @ signature.columns)
+        columns = beside(signature.columns)
         gram, moment = columns.T @ columns, columns.T @ base.residual
         values, vectors = np.linalg.eigh(gram)
         values, turned = np.maximum(values, 0.0), vectors.T @ moment

@@ -28,7 +28,7 @@ from ..selection.search import (
     usual_form_error,
 )
 from ..simulation.simulate import SmoothedMotion, simulate
-from .additions import Addition, additions, predicted_gains
+from .additions import additions, predicted_gains
 from .fit import LEAST_GAIN, Fit, fitted
 from .problem import Values
 
@@ -210,13 +210,10 @@ class FittedSets:
         """Fit a set with one more candidate, from the optimum of the smaller one."""
         if self.times[frozenset({*base.names, name})] >= REPEATS:
             return
-        self.fit([{**base.values, name: a.values} for a in self._additions(base, name)], base.variance)
+        self.fit([{**base.values, name: values} for values in self.additions(base, name)], base.variance)
 
-    def addition(self, base: Fit, name: str) -> Addition:
-        """Return the drawn response of a candidate that follows the residual of a fitted set best."""
-        return self._additions(base, name)[0]
-
-    def _additions(self, base: Fit, name: str) -> list[Addition]:
+    def additions(self, base: Fit, name: str) -> list[tuple[float, ...]]:
+        """Return the values from which a candidate is added to a fitted set, the best first."""
         signature = self.beside(base)[name]
         return additions(signature, base.residual, base.slopes, base.variance, self.dataset)
 
@@ -246,7 +243,7 @@ def begun(
     for variance, parts in starts:
         if parts and len(parts) <= MOST_EFFECTS:
             first = {
-                name: additions(sets.signatures[name], part, nothing_fitted, 1.0, dataset)[0].values
+                name: additions(sets.signatures[name], part, nothing_fitted, 1.0, dataset)[0]
                 for name, part in parts.items()
             }
             sets.fit([first], variance)
@@ -371,5 +368,5 @@ def _refit_below_subsets(sets: FittedSets) -> None:
             fit = sets.fits[subset]
             leaves_less = subset < names and fit.power < 0.999 * sets.fits[names].power
             if leaves_less and sets.posterior(names) >= sets.posterior(sets.best()) - REACH:
-                added = {n: sets.addition(fit, n).values for n in sorted(names - subset)}
+                added = {n: sets.additions(fit, n)[0] for n in sorted(names - subset)}
                 sets.fit([{**fit.values, **added}], fit.variance)

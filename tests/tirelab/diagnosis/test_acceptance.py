@@ -231,7 +231,7 @@ class Made:
     names: tuple[str, ...]
     left: float
     tire: TireModel
-    noise_free: float = field(default=0.0, kw_only=True)
+    left_noise_free: float = field(default=0.0, kw_only=True)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -258,7 +258,11 @@ class Made:
 
     @property
     def error_left(self) -> float:
-        return self.noise_free
+        return self.left_noise_free
+
+    @property
+    def noise_free(self) -> tuple[Any, ...]:
+        return (np.full(FITTED.time.size, self.left_noise_free),)
 
 
 @dataclass(frozen=True)
@@ -321,8 +325,8 @@ def test_the_noise_of_the_reading_refutes_no_effect_that_magnifies_it(
     with_damping: float, names: tuple[str, ...]
 ) -> None:
     """Inertia leaves 6 N where it is given the acceleration of a noisy reading, and 4 N without that noise."""
-    inertia = replace(made("inertia", 6.0, 500.0), noise_free=4.0)
-    damping = replace(made("viscous_damping", 5.0, 500.0), noise_free=with_damping)
+    inertia = replace(made("inertia", 6.0, 500.0), left_noise_free=4.0)
+    damping = replace(made("viscous_damping", 5.0, 500.0), left_noise_free=with_damping)
     chosen, _ = delivered(inertia, damping, made("", 15.0))
     assert chosen.names == names
 

@@ -4,30 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from drives import damped
-from radialtire import TireModel
 from tirelab.estimation.additions import additions, predicted_gains
 from tirelab.estimation.fit import fitted
-from tirelab.regressors.dataset import Dataset, dataset_of
-from tirelab.regressors.signature import Signature, law_signature, signatures_of
-from tirelab.selection.search import Discrepancy, discrepancy_of
-
-NAMES = ("viscous_damping", "rate_independent_hysteresis", "inertia")
-
-
-@pytest.fixture(scope="module")
-def dataset() -> Dataset:
-    return dataset_of([damped(1, samples=2000)], TireModel())
-
-
-@pytest.fixture(scope="module")
-def signatures(dataset: Dataset) -> tuple[Signature, ...]:
-    return (law_signature(dataset), *signatures_of(NAMES, dataset))
-
-
-@pytest.fixture(scope="module")
-def noise(dataset: Dataset) -> Discrepancy:
-    return discrepancy_of(dataset.misfit, 0.0)
+from tirelab.regressors.dataset import Dataset
+from tirelab.regressors.signature import Signature
+from tirelab.selection.search import Discrepancy
 
 
 def test_the_largest_promise_is_that_of_what_is_there(
@@ -48,5 +29,5 @@ def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
     missing = 2.0 * damper.sizes[drawn] * damper.curves[drawn]
     first = additions(damper, missing, np.zeros((missing.size, 0)), 1.0, dataset)[0]
     # Damping is linear: twice the response has twice the coefficient, and the same form beside it.
-    assert first.values[0] == pytest.approx(2.0 * damper.values[drawn][0], rel=1e-6)
-    assert first.values[1:] == pytest.approx(damper.values[drawn][1:])
+    assert first[0] == pytest.approx(2.0 * damper.values[drawn][0], rel=1e-6)
+    assert first[1:] == pytest.approx(damper.values[drawn][1:])

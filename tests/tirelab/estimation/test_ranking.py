@@ -8,32 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drives import damped, flat_force
+from drives import flat_force
 from radialtire import TireModel
 from tirelab.estimation.fit import fitted
 from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
-from tirelab.regressors.signature import Signature, law_signature, signatures_of
+from tirelab.regressors.signature import Signature, signatures_of
 from tirelab.selection.search import Discrepancy, discrepancy_of
 from tirelab.simulation.simulate import simulate
-
-NAMES = ("viscous_damping", "rate_independent_hysteresis", "inertia")
-
-
-@pytest.fixture(scope="module")
-def dataset() -> Dataset:
-    return dataset_of([damped(1, samples=2000)], TireModel())
-
-
-@pytest.fixture(scope="module")
-def signatures(dataset: Dataset) -> tuple[Signature, ...]:
-    return (law_signature(dataset), *signatures_of(NAMES, dataset))
-
-
-@pytest.fixture(scope="module")
-def noise(dataset: Dataset) -> Discrepancy:
-    return discrepancy_of(dataset.misfit, 0.0)
 
 
 @pytest.fixture(scope="module")
