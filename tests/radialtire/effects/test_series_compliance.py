@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from published import hull1996 as article
 from radialtire import Instant, PowerLaw, TireModel, power_law
-from radialtire.effects.series_compliance import SERIES_COMPLIANCE
+from radialtire.effects.series_compliance import SERIES_COMPLIANCE, stiffening
 from scipy.optimize import brentq
 
 
@@ -124,3 +124,7 @@ def test_a_tire_that_gets_less_than_a_rounding_of_the_deflection_is_no_division_
 def test_a_deflection_that_has_died_away_leaves_nothing_to_the_tire(x: float) -> None:
     # What a lag leaves of a deflection after minutes at rest: below it all smaller numbers are 0.
     assert stiffening_part(x, 4.83, 0.2, 6.1e-4, 513.0) == pytest.approx(0.0, abs=x)
+
+
+def test_the_search_of_the_parts_ends_whatever_it_is_given() -> None:
+    assert math.isnan(stiffening(math.nan, 1e-6, 10.0, 1000.0, 1.0, 0.01))

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from driving import LINEAR, STIFFNESS, drive, loop_area, only, sine
+from driving import LINEAR, STIFFNESS, drive, loop_area, only, sine, values_of
+from radialtire import Instant
+from radialtire.effects.viscous_damping import RELEASED, VISCOUS_DAMPING, carried, flow
 
 
 @pytest.mark.parametrize("frequency", [0.05, 0.5, 5.0])
@@ -113,3 +115,66 @@ def test_within_its_play_it_has_no_force() -> None:
     turned = np.flatnonzero(np.diff(np.sign(rate)) != 0)[0]
     again = turned + np.argmax(moving[turned + 5 :]) + 5
     assert abs(x[4000:][again] - x[4000:][turned]) == pytest.approx(0.005, rel=0.02)
+
+
+def moment(
+    x: float, rate: float, interval: float, *, first: bool = False, two_sided: bool = False
+) -> Instant:
+    return Instant(0.0, interval, first, x, rate, 0.0, 1000.0, 1.0, 0.0, 0.0, two_sided=two_sided)
+
+
+@pytest.mark.parametrize(
+    "mount", [{"compliance": E}, {"play": 0.004}, {"compliance": E, "play": 0.004}], ids="+".join
+)
+def test_a_solver_finds_the_force_of_given_steps(mount: dict[str, float]) -> None:
+    """Its rates, added up in steps of 1/8000 of a cycle: either way errs by the order of a step."""
+    time, x = sine(0.5, 0.008, 0.012, 2.0, 8000)
+    form = {"damping": C, "rebound": 2.0, **mount}
+    given = drive(only("viscous_damping", law=LINEAR, **form), time, x) - STIFFNESS * x
+    values, state, added, h = values_of(VISCOUS_DAMPING, **form), (0.0,), np.empty(time.size), time[1]
+    for i in range(time.size):
+        rate = (x[i] - x[i - 1]) / h if i else 0.0
+        instant = moment(float(x[i]), float(rate), h, first=i == 0)
+        force, rates = flow(0.0, instant, state, values)
+        added[i] = force
+        state = rates if i == 0 else (state[0] + h * rates[0],)
+    # Each meets the end of the play a step or two apart: at the start and after four reversals. Nowhere else.
+    off = np.abs(added - given)[1:] > 0.01 * np.max(np.abs(given))
+    assert np.max(np.abs(given)) > 50.0
+    assert np.count_nonzero(off) <= 2 * 5
+
+
+def test_for_a_solver_what_gave_way_springs_back_where_nothing_holds_it() -> None:
+    """In the air, and where the dashpot has no force at all: to the end of the play, with the time RELEASED."""
+    values = values_of(VISCOUS_DAMPING, damping=C, compliance=E, play=0.002)
+    assert flow(5.0, moment(-0.01, 0.1, 1e-3), (0.003,), values) == (5.0, (-0.003 / RELEASED,))
+    assert flow(5.0, moment(-0.01, 0.1, 1e-3, first=True), (0.0,), values) == (5.0, (0.0,))
+    no_patch = values_of(VISCOUS_DAMPING, damping=C, deflection_exponent=1.0, compliance=E, play=0.002)
+    signal, rates = flow(5.0, moment(0.0, 0.1, 1e-3, two_sided=True), (-0.003,), no_patch)
+    assert (signal, rates[0]) == (5.0, pytest.approx(0.1 + 0.002 / RELEASED))
+    left, state = VISCOUS_DAMPING.respond(5.0, moment(0.0, -3.0, 1e-3, two_sided=True), (0.0,), no_patch)
+    assert (left, state) == (5.0, (-0.001,))
+
+
+def test_for_a_solver_it_begins_at_the_force_of_a_constant_rate() -> None:
+    values = values_of(VISCOUS_DAMPING, damping=C, compliance=E, play=0.002)
+    force, state = flow(0.0, moment(0.01, -0.02, 0.0, first=True), (0.0,), values)
+    assert (force, state[0]) == (pytest.approx(-100.0), pytest.approx(-0.001 - 100.0 * E))
+    # And at a constant rate it stays there.
+    again, rates = flow(0.0, moment(0.01, -0.02, 1e-3), state, values)
+    assert (again, rates[0]) == (pytest.approx(-100.0), pytest.approx(0.0, abs=1e-12))
+
+
+def test_a_step_without_time_is_taken_by_the_compliance() -> None:
+    """A jump of 1 mm: half of the play first, then the spring; without one nothing can be said, and nothing is."""
+    sprung = values_of(VISCOUS_DAMPING, damping=C, compliance=E, play=0.001)
+    jump = Instant(0.0, 0.0, False, 0.01, 0.0, 0.0, 1000.0, 1.0, 0.0, 0.0)
+    assert VISCOUS_DAMPING.respond(0.0, jump, (0.0015,), sprung) == (pytest.approx(0.001 / E), (0.0015,))
+    rigid = values_of(VISCOUS_DAMPING, damping=C, play=0.001)
+    assert VISCOUS_DAMPING.respond(0.0, jump, (0.0015,), rigid) == (0.0, (0.0015,))
+
+
+def test_the_search_of_its_force_ends_whatever_it_is_given() -> None:
+    assert math.isnan(carried(math.nan, 1e-3, 0.0, E, (C, 1.0, 0.0)))
+    # The force is less than the smallest number.
+    assert carried(1e-300, 1.0, 0.0, E, (1e-30, 1.0, 0.0)) == 0.0
