@@ -28,9 +28,10 @@ from .acceptance import (
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of
 from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
+from .contradiction import contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
-from .residual_model import contradiction_of, residual_models, unexplained_by
+from .residual_model import residual_models, unexplained_by
 from .summary import summarise
 from .verdict import FitErrors, Verdict
 
@@ -71,7 +72,13 @@ def diagnose(
     refuse_far_zeros(fitted)
     check_recordings(fitted, two_sided=baseline.two_sided)
     data = _Data(fitted, raw_dataset_of(fitted, baseline), [r.force - simulate(baseline, r) for r in fitted])
-    candidates = explain_misfit(fitted, baseline, allowed, report, timed=data.timed, held_out=kept)
+
+    def explain(
+        several: Sequence[Recorded], say: Callable[[str], None] = lambda sentence: None
+    ) -> Explanation:
+        return explain_misfit(several, baseline, allowed, say, timed=data.timed, held_out=kept)
+
+    candidates = explain(fitted, report)
     levels = [floor.level for floor in candidates.floors]
     with_simulation = any(getattr(r, "believed_force", None) is not None for r in fitted)
     check_signal(data.samples, [r.name for r in fitted], levels, beside=with_simulation)
@@ -95,14 +102,15 @@ def diagnose(
     noise = None if unexplained else explanation.residuals
     where = data.shown(localize(fitted, data.samples, located, levels, noise))
 
-    contradiction = contradiction_of(explanation, fitted)
-    missing = not_compared(fitted)
-
+    report("looking for a recording that contradicts the others")
+    motions = [e.motion for e in data.samples.experiments]
+    contradiction = contradiction_of(explanation, fitted, motions, data.before, explain)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
-    sentences = [summarise(accepted.effects, alternatives, models, confidence, fit, test)]
+    missing = not_compared(fitted)
+    sentences = [] if contradiction is None else [contradiction.sentences]
+    sentences.append(summarise(accepted.effects, alternatives, models, confidence, fit, test))
     sentences += [QUICK] if unexplained and remainder.uncompared > 0.5 else []
-    sentences += [] if contradiction is None else [contradiction.sentence]
     return Verdict(
         effects=accepted.effects,
         doubted=accepted.doubted,
@@ -114,6 +122,7 @@ def diagnose(
         residual_models=models,
         summary=" ".join([*sentences, *missing]),
         not_compared=missing,
+        contradiction=contradiction,
         where=where,
         fit=fit,
         tire=_renamed(explanation.model.tire, baseline, fitted),

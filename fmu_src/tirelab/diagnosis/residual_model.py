@@ -1,10 +1,4 @@
-"""The unexplained remainder: its regression over one coordinate, and recordings that contradict each other.
-
-A regression gives the force over one coordinate, and by cross-validation whether it repeats. Where something stays
-unexplained, the verdict's set and a refitted law are also fitted without each recording in turn. A recording
-contradicts the others if they are explained without it and their fit does not explain it; it may be of another tire,
-pressure or zero.
-"""
+"""The unexplained remainder: its regression over one coordinate, and by cross-validation whether it repeats."""
 
 from __future__ import annotations
 
@@ -13,11 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..estimation.explanation import Explanation
 from ..estimation.findings import UNEXPLAINED_SHARE, UNEXPLAINED_SIZE, Remainder
-from ..names import REFITTED_LAW
 from ..preprocessing.motion import FloatArray
-from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
+from ..preprocessing.samples import RawDataset, RawExperiment
 from .acceptance import HeldOut, rmse
 from .localization import Span
 
@@ -155,68 +147,3 @@ def _curve(at: FloatArray, force: FloatArray, knots: FloatArray, wanted: FloatAr
     bend = np.diff(np.eye(knots.size), 2, axis=0)
     gram += 1e-3 * at.size / knots.size * (bend.T @ bend) + 1e-9 * at.size * np.eye(knots.size)
     return np.asarray(np.interp(wanted, knots, np.linalg.solve(gram, moment)))
-
-
-EXPLAINED = 0.5
-"""A recording contradicts the others only if their error without it is less than this part of that with it."""
-
-
-@dataclass(frozen=True)
-class Contradiction:
-    """A recording that contradicts the others.
-
-    names: its name, or both names where there are two recordings; without [N]: error on the others if only they are
-    fitted; together [N]: if all are fitted; own [N]: error on the recording itself if only the others are fitted
-    """
-
-    names: tuple[str, ...]
-    without: float
-    together: float
-    own: float
-
-    @property
-    def sentence(self) -> str:
-        """The message about it."""
-        if len(self.names) > 1:
-            whose = f"Recordings {' and '.join(self.names)} contradict each other"
-            each = f"each alone is explained to {self.without:.3g} N, both together to {self.together:.3g} N"
-        else:
-            whose = f"Recording {self.names[0]} contradicts the others"
-            each = (
-                f"they are explained to {self.without:.3g} N without it, and it is {self.own:.3g} N off them"
-            )
-        return f"{whose}: {each}; check tire, pressure and zero of each, or diagnose them apart."
-
-
-def contradiction_of(explanation: Explanation, recordings: Sequence[Recorded]) -> Contradiction | None:
-    """Return the recording that contradicts the others, None where there is none or all are explained together."""
-    if len(recordings) < 2 or not explanation.remainder.unexplained:
-        return None
-    found = []
-    for chosen in _with_law(explanation):
-        for number, recording in enumerate(recordings):
-            kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
-            residuals = chosen.refitted(kept).residuals
-            without, together = (_others(r, number) for r in (residuals, chosen.residuals))
-            own, level = rmse([residuals[number]]), chosen.floors[number].level
-            if without < EXPLAINED * together and own > max(rmse([chosen.residuals[number]]), 3.0 * level):
-                found.append(Contradiction((recording.name,), without, together, own))
-    if not found:
-        return None
-    if len(recordings) == 2 and len({c.names for c in found}) == 2:
-        both = tuple(r.name for r in recordings)
-        whole = rmse(explanation.residuals)
-        return Contradiction(both, max(c.without for c in found), whole, max(c.own for c in found))
-    return min(found, key=lambda c: c.without)
-
-
-def _with_law(explanation: Explanation) -> list[Explanation]:
-    """Return the verdict's set, and the refitted law alone where it was fitted and the set has none."""
-    names = {e.name for e in explanation.effects}
-    if REFITTED_LAW in names or (REFITTED_LAW,) not in {e.names for e in explanation.evidence}:
-        return [explanation]
-    return [explanation, explanation.of((REFITTED_LAW,))]
-
-
-def _others(residuals: Sequence[FloatArray], number: int) -> float:
-    return rmse([r for i, r in enumerate(residuals) if i != number])

@@ -22,6 +22,7 @@ from ..report.titles import headline, more_than_noise
 from ..simulation.channels import measured_of
 from ..simulation.simulate import simulate
 from .alternatives import Alternative
+from .contradiction import Contradiction
 from .discriminating_test import DiscriminatingTest
 from .effect_figures import LawChange, effect_size, law_changes, load_of, sketch_of
 from .localization import Span, law_corrected
@@ -68,7 +69,8 @@ class Verdict:
     and therefore not named; confidence: probability of the verdict, 0 to 1; grounds: the numbers on which it rests
     alternatives: other sets, likeliest first; remainder: what the corrected tire leaves beyond the noise
     unexplained_by: coordinates on which an unexplained remainder depends; residual_models: its regressions over them
-    summary: sentences for a reader; not_compared: those of them about samples that were left out
+    summary: sentences for a reader; not_compared: those of them about samples that were left out; contradiction: the
+    recording that contradicts the others, None where none does
     where: places of the misfit before the correction, or of the residual of the refitted law where other effects are
     missing too; fit: errors before and after; tire: the corrected one
     evidence: all fitted sets; test: the one that separates an alternative from the verdict, None where no motion within
@@ -94,6 +96,7 @@ class Verdict:
     test: DiscriminatingTest | None
     compared: int
     evaluations: int
+    contradiction: Contradiction | None = None
     recordings: tuple[Recorded, ...] = field(default=(), repr=False, compare=False)
     held_out: tuple[Recorded, ...] = field(default=(), repr=False, compare=False)
     baseline: TireModel = field(default=TireModel(), repr=False, compare=False)
@@ -148,6 +151,7 @@ class Verdict:
                     "remainder": self.remainder.to_dict(),
                     "summary": self.summary,
                     "not_compared": list(self.not_compared),
+                    "contradiction": None if self.contradiction is None else self.contradiction.to_dict(),
                     "separating_test": None if self.test is None else self.test.to_dict(),
                     **regressed,
                 },

@@ -63,6 +63,8 @@ def undecided(verdict: Mapping[str, Any]) -> bool:
 
 def sureness(verdict: Mapping[str, Any]) -> str:
     """Return how sure the verdict is, in words and as a number."""
+    if verdict.get("contradiction"):
+        return f"That one explanation holds for all of them: {words.percent(verdict['confidence'])}"
     word = words.confidence_word(verdict["confidence"])
     return f"{word[0].upper()}{word[1:]}: {words.percent(verdict['confidence'])}"
 
@@ -70,6 +72,8 @@ def sureness(verdict: Mapping[str, Any]) -> str:
 def lead(diagnosis: Mapping[str, Any]) -> str:
     """Return one sentence on what is missing, after the headline."""
     verdict = diagnosis["verdict"]
+    if verdict.get("contradiction"):
+        return str(verdict["contradiction"]["finding"])
     names = [effect["name"] for effect in _by_size(verdict["effects"])]
     physics = [words.sentence(CATALOGUE[name].statement) for name in names if name in CATALOGUE]
     if undecided(verdict):
@@ -121,6 +125,10 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     reasons: of each alternative what the recordings lack, as "lack: action"
     """
     verdict, fit, given = diagnosis["verdict"], diagnosis["fit"], delivered_of(diagnosis)
+    if verdict.get("contradiction"):
+        return NextStep(
+            verdict["contradiction"]["action"], "What is said here of all of them is no more than a guess."
+        )
     test = verdict["separating_test"]
     errors = [
         e for e in (_beside_reading(fit, "after"), _beside_reading(fit, "held_out_after")) if e is not None
@@ -178,6 +186,10 @@ def actions(reasons: Sequence[str]) -> list[str]:
 def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
     """Yield headlines from the fullest to the shortest."""
     verdict = diagnosis["verdict"]
+    if verdict.get("contradiction"):
+        yield verdict["contradiction"]["headline"]
+        yield "The recordings contradict each other"
+        return
     if undecided(verdict):
         yield from _undecided(verdict)
         return

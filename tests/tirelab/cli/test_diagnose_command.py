@@ -75,6 +75,7 @@ def check_contract(content: Any) -> None:
         "grounds",
         "alternative_details",
         "not_compared",
+        "contradiction",
     }
     assert all(map(math.isfinite, verdict["grounds"].values()))
     assert len(verdict["alternative_details"]) == len(verdict["alternatives"])

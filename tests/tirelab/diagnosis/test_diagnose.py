@@ -136,6 +136,7 @@ def test_a_verdict_is_json(alike_verdict):
         "remainder",
         "summary",
         "not_compared",
+        "contradiction",
         "separating_test",
     }
     assert set(content["fit"]) == {

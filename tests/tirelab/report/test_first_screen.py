@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from radialtire import CATALOGUE
+from tirelab.diagnosis.contradiction import Contradiction
 from tirelab.report import first_screen
 
 
@@ -265,6 +266,17 @@ def test_a_recording_that_would_make_a_sure_verdict_surer_is_named() -> None:
     )
     step = first_screen.next_step(given)
     assert (step.action, step.why) == ("Nothing: use this tire.", "To be surer still, drive drive.csv.")
+
+
+@pytest.mark.parametrize("name", ["b", "x" * 80])
+def test_a_contradiction_comes_before_everything_else(name: str) -> None:
+    given = diagnosis({"inertia": 9.0}, 0.97)
+    one = Contradiction((name,), (), 2.0, 118.7)
+    given["verdict"]["contradiction"] = one.to_dict()
+    expected = "Recording b contradicts the others" if name == "b" else "The recordings contradict each other"
+    assert first_screen.headline(given) == expected
+    assert first_screen.lead(given) == one.finding
+    assert first_screen.next_step(given).action == one.action
 
 
 def test_samples_that_were_not_compared_are_told() -> None:

@@ -1,0 +1,182 @@
+"""A recording that contradicts the others: driven as they are, it has a force that no set of effects makes of theirs.
+
+A recording is suspected where its misfit differs from that of the others at the same kinds of driving. The others are
+then explained anew without it. It contradicts them if they are explained much better alone, and if their tire is far
+off it where it is driven as they are. It may be of another tire, pressure or zero, or have another past.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from radialtire import TireModel
+from scipy.optimize import minimize_scalar
+
+from ..estimation.explanation import Explanation
+from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
+from ..preprocessing.samples import Recorded
+from ..report.titles import newtons, set_title
+from ..simulation.simulate import simulate, smoothed_motion
+from .acceptance import kinds_of_driving, rmse
+
+EXPLAINED = 0.5
+"""A recording contradicts the others only if what explains them leaves less than this part of what all recordings
+together are left with, and less than this part of what it leaves of that recording."""
+
+BEYOND_NOISE = 3.0
+"""Least error of that tire on the recording, over its noise floor."""
+
+SUSPECTED = 2
+"""Budget: most recordings without which the others are explained anew, the one furthest apart first."""
+
+Explain = Callable[[Sequence[Recorded]], Explanation]
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A recording that contradicts the others.
+
+    names: its name, or both names where there are two recordings; effects: what explains the others; without [N]: error
+    that this leaves of them; own [N]: error that it leaves of the recording, where it is driven as they are
+    as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
+    """
+
+    names: tuple[str, ...]
+    effects: tuple[str, ...]
+    without: float
+    own: float
+    as_if: str = ""
+
+    @property
+    def headline(self) -> str:
+        """The message about it without figures."""
+        if len(self.names) > 1:
+            return f"Recordings {' and '.join(self.names)} contradict each other"
+        return f"Recording {self.names[0]} contradicts the others"
+
+    @property
+    def finding(self) -> str:
+        """What shows it, in sentences."""
+        explained = set_title(self.effects) if self.effects else "the baseline"
+        left, own = newtons(self.without), newtons(self.own)
+        if len(self.names) > 1:
+            whom, missed, where = "one", "the other", "they are driven alike"
+        else:
+            whom, missed, where = "the others", self.names[0], "it is driven as they are"
+        found = f"{explained} explains {whom} to {left} and misses {missed} by {own} where {where}."
+        return " ".join(filter(None, (f"{found[0].upper()}{found[1:]}", self.as_if)))
+
+    @property
+    def action(self) -> str:
+        """What to do about it, as a sentence."""
+        apart = "them" if len(self.names) > 1 else self.names[0]
+        return (
+            f"Check tire, pressure and zero of each, and what it had been through, or diagnose {apart} apart."
+        )
+
+    @property
+    def sentences(self) -> str:
+        """The whole message about it."""
+        return f"{self.headline}. {self.finding} {self.action}"
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the entry `contradiction` of diagnosis.json."""
+        return {
+            "recordings": list(self.names),
+            "effects_of_the_others": list(self.effects),
+            "others_after": self.without,
+            "own_after": self.own,
+            "headline": self.headline,
+            "finding": self.finding,
+            "action": self.action,
+        }
+
+
+def contradiction_of(
+    explanation: Explanation,
+    recordings: Sequence[Recorded],
+    motions: Sequence[Motion],
+    before: Sequence[FloatArray],
+    explain: Explain,
+) -> Contradiction | None:
+    """Return the recording that contradicts the others, None where there is none or all are explained together.
+
+    explanation: of all recordings; before [N]: misfit of the baseline in each; explain: returns what explains the
+    misfit of some of them
+    """
+    if len(recordings) < 2 or not explanation.remainder.unexplained:
+        return None
+    together = min(e.error for e in (explanation, *map(explanation.of, explanation.in_order(1))))
+    kinds = kinds_of_driving(recordings, motions)
+    apart = _apart(before, kinds)
+    found: list[tuple[float, Contradiction]] = []
+    for number in np.argsort(-apart)[:SUSPECTED].tolist():
+        if apart[number] < EXPLAINED * together:
+            break
+        recording, level = recordings[number], explanation.floors[number].level
+        others = explain([r for i, r in enumerate(recordings) if i != number])
+        alike = _as_others(kinds, number) & explanation.compared[number]
+        if others.error >= EXPLAINED * together or not alike.any():
+            continue
+        own = rmse([(recording.force - simulate(others.model.tire, recording))[alike]])
+        if own > max(others.error / EXPLAINED, BEYOND_NOISE * level):
+            names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
+            as_if = _as_if(recording, motions[number], others.model.tire, alike, own)
+            one = Contradiction(tuple(names), others.model.names, others.error, own, as_if)
+            found.append((others.error, one))
+        if not others.remainder.unexplained:
+            break
+    return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def _as_others(kinds: Sequence[IndexArray], number: int) -> np.ndarray:
+    """Return which samples of a recording are driven like some of another one."""
+    others = np.unique(np.concatenate([k for i, k in enumerate(kinds) if i != number]))
+    return np.isin(kinds[number], others)
+
+
+def _apart(misfits: Sequence[FloatArray], kinds: Sequence[IndexArray]) -> FloatArray:
+    """Return by how much the mean misfit of each recording differs from that of the others in the kinds of driving that
+    they share, root mean square [N] over their samples; 0 where they share none.
+    """
+    size = 1 + max(int(k.max()) for k in kinds)
+    counts = np.array([np.bincount(k, minlength=size) for k in kinds], dtype=float)
+    sums = np.array([np.bincount(k, m, size) for k, m in zip(kinds, misfits, strict=True)])
+    other_counts, other_sums = counts.sum(axis=0) - counts, sums.sum(axis=0) - sums
+    shared = np.where(other_counts > 0.0, counts, 0.0)
+    differences = sums / np.maximum(counts, 1.0) - other_sums / np.maximum(other_counts, 1.0)
+    powers = np.sum(shared * differences**2, axis=1) / np.maximum(shared.sum(axis=1), 1.0)
+    return np.asarray(np.sqrt(powers))
+
+
+def _as_if(recording: Recorded, motion: Motion, tire: TireModel, alike: BoolArray, own: float) -> str:
+    """Return the one change of a recording that makes it agree with the tire of the others; empty where none does.
+
+    It agrees if less than EXPLAINED is left of the error `own` [N].
+    """
+    moved = smoothed_motion(recording, motion)
+    force = simulate(tire, moved, moved)
+    missed = recording.force - force
+
+    def left_at(shift: float) -> float:
+        nearer = replace(moved, deflection=moved.deflection - shift)
+        return rmse([(recording.force - simulate(tire, nearer, nearer))[alike]])
+
+    reach = 0.5 * float(np.ptp(motion.deflection))
+    shift = minimize_scalar(left_at, bounds=(-reach, reach), method="bounded")
+    offset = float(missed[alike].mean())
+    factor = float(force[alike] @ missed[alike]) / max(float(force[alike] @ force[alike]), 1e-300)
+    whose, more = f"of {recording.name}", "more" if factor > 0.0 else "less"
+    percent = f"{100.0 * abs(factor):.2g} % {more}"
+    changes = (
+        (float(shift.fun), f"the zero of the deflection {whose} were {1e3 * abs(shift.x):#.3g} mm off"),
+        (rmse([missed[alike] - offset]), f"the zero of the force {whose} were {newtons(abs(offset))} off"),
+        (
+            rmse([(missed - factor * force)[alike]]),
+            f"the force {whose} were {percent}, by another pressure or tire",
+        ),
+    )
+    left, change = min(changes)
+    return f"It is as if {change}." if left < EXPLAINED * own else ""

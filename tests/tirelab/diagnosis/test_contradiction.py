@@ -1,0 +1,129 @@
+"""A recording of another tire, or with another zero, among others is named; what is only driven otherwise is not."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from radialtire import PowerLaw, TireModel
+from tirelab.diagnosis.contradiction import Contradiction
+from tirelab.diagnosis.diagnose import diagnose
+from tirelab.diagnosis.verdict import Verdict
+from tirelab.recordings.recording import Recording
+
+TIRE = TireModel(PowerLaw(550.0, 1.42), tested_range=None)
+
+FEW = ("recalibration", "viscous_damping")
+"""Recordings contradict each other whatever else is looked for."""
+
+NOISE = 4.0
+
+
+def pressed(
+    name: str, seed: int, A: float = 550.0, *, zero: float = 0.0, damping: float = 0.0, period: float = 20.0
+) -> Recording:
+    """Three cycles on the flat of a tire F = A x^1.42, A in N/cm^1.42, with NOISE.
+
+    zero [m]: of the deflection's gauge; damping [N s/m]; period [s]: of a cycle
+    """
+    time = np.linspace(0.0, 3.0 * period, 900)
+    phase = 2.0 * np.pi * time / period
+    x = 0.011 * (1.0 - np.cos(phase))
+    rate = 0.011 * 2.0 * np.pi / period * np.sin(phase)
+    force = A * (100.0 * np.maximum(x - zero, 0.0)) ** 1.42 + damping * rate
+    force += np.random.default_rng(seed).normal(0.0, NOISE, time.size)
+    return Recording(name, time, x, np.full(time.size, np.inf), force)
+
+
+def verdict_on(*several: Recording) -> Verdict:
+    return diagnose(several, TIRE, catalogue=FEW)
+
+
+def test_the_one_of_another_tire_is_named_first() -> None:
+    verdict = verdict_on(pressed("a", 1), pressed("b", 2), pressed("soft", 3, 440.0))
+    assert verdict.summary.startswith(
+        "Recording soft contradicts the others. The baseline explains the others to"
+    )
+    found = verdict.contradiction
+    assert found is not None
+    assert (found.names, found.effects) == (("soft",), ())
+    # A fifth of 550 x^1.42 with x = 1.1 cm (1 - cos): the mean of (1 - cos)^p is 2^p gamma(p + 1/2) / sqrt(pi) p!.
+    p = 2.0 * 1.42
+    mean = 2.0**p * math.gamma(p + 0.5) / (math.sqrt(math.pi) * math.gamma(p + 1.0))
+    assert found.own == pytest.approx(110.0 * 1.1**1.42 * math.sqrt(mean), rel=0.02)
+    assert found.without == pytest.approx(NOISE, rel=0.1)
+    assert found.as_if == "It is as if the force of soft were 20 % less, by another pressure or tire."
+
+
+def test_of_two_nobody_can_tell_which() -> None:
+    verdict = verdict_on(pressed("a", 1), pressed("soft", 3, 440.0))
+    assert verdict.summary.startswith("Recordings a and soft contradict each other.")
+
+
+def test_a_force_with_another_zero_is_told() -> None:
+    r = pressed("b", 2)
+    shifted = Recording("b", r.time, r.deflection, r.surface_radius, r.force + 60.0)
+    found = verdict_on(pressed("a", 1), shifted, pressed("c", 3)).contradiction
+    assert found is not None
+    # 60 N, known to 4 N / sqrt(900)
+    assert found.as_if.startswith(
+        ("It is as if the zero of the force of b were 59.", "It is as if the zero of the force of b were 60.")
+    )
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e4])
+def test_the_one_with_another_zero_is_named_and_what_explains_the_others(damping: float) -> None:
+    """None of the sets that explain all of them need explain the others: the baseline does, or damping alone."""
+    own = {"damping": damping}
+    verdict = verdict_on(
+        pressed("a", 1, **own), pressed("b", 2, zero=0.001, **own), pressed("c", 3, period=35.0, **own)
+    )
+    found = verdict.contradiction
+    assert found is not None
+    assert found.names == ("b",)
+    assert found.effects == (("viscous_damping",) if damping else ())
+    # A tire that is not in contact for the first of 22 mm is not one that is shifted by it: 1 mm within a percent.
+    assert "as if the zero of the deflection of b were 1.0" in found.as_if
+
+
+@pytest.mark.parametrize("coefficient", [550.0, 440.0])
+def test_recordings_of_one_tire_do_not_contradict_each_other(coefficient: float) -> None:
+    assert verdict_on(pressed("a", 1, coefficient), pressed("b", 2, coefficient)).contradiction is None
+
+
+def test_what_no_effect_explains_in_all_of_them_is_no_contradiction() -> None:
+    several = []
+    for name, seed in (("a", 1), ("b", 2), ("c", 3)):
+        r = pressed(name, seed)
+        ripple = 30.0 * np.sin(2.0 * np.pi * r.deflection / 0.003)
+        several.append(Recording(name, r.time, r.deflection, r.surface_radius, r.force + ripple))
+    verdict = verdict_on(*several)
+    assert verdict.unexplained
+    assert verdict.contradiction is None
+
+
+def test_a_recording_that_is_driven_otherwise_contradicts_nothing() -> None:
+    """Something that no effect of the catalogue explains may show at another speed alone."""
+    quick = pressed("quick", 3, period=2.0)
+    force = quick.force + 150.0 * np.sin(2.0 * np.pi * quick.time / 0.37)
+    quick = Recording("quick", quick.time, quick.deflection, quick.surface_radius, force)
+    verdict = verdict_on(pressed("a", 1), pressed("b", 2), quick)
+    assert verdict.unexplained
+    assert verdict.contradiction is None
+
+
+def test_its_message_says_what_to_do() -> None:
+    one = Contradiction(("b",), ("viscous_damping",), 2.0, 118.7)
+    assert one.sentences == (
+        "Recording b contradicts the others. Viscous damping explains the others to 2.00 N and misses b by 119 N where "
+        "it is driven as they are. Check tire, pressure and zero of each, and what it had been through, or diagnose b "
+        "apart."
+    )
+    two = Contradiction(("a", "b"), (), 2.0, 118.7)
+    assert two.sentences == (
+        "Recordings a and b contradict each other. The baseline explains one to 2.00 N and misses the other by 119 N "
+        "where they are driven alike. Check tire, pressure and zero of each, and what it had been through, or diagnose "
+        "them apart."
+    )
+    assert two.to_dict()["recordings"] == ["a", "b"]
