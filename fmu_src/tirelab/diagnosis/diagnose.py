@@ -102,7 +102,6 @@ def diagnose(
     noise = None if unexplained else explanation.residuals
     where = data.shown(localize(fitted, data.samples, located, levels, noise))
 
-    report("looking for a recording that contradicts the others")
     motions = [e.motion for e in data.samples.experiments]
     contradiction = contradiction_of(explanation, fitted, motions, data.before, explain)
     report("searching for a test that separates the alternatives")
