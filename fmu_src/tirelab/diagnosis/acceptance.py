@@ -138,7 +138,7 @@ def split(
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
     motions = [e.motion for e in dataset.experiments]
-    kept, by = _parts(recordings, before, explanation.residuals, kinds_of_driving(recordings, motions))
+    kept, by = _parts(recordings, before, explanation.residuals, _ways(recordings, motions))
     refitted = explanation.refitted(kept)
     noise_free = [
         noise_free_residual(refitted.tire, r, e.motion)
@@ -151,7 +151,7 @@ def split(
     return HeldOut(by, *(tuple(p for p in side if p.chosen.any()) for side in (fitted, others)))
 
 
-def kinds_of_driving(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
+def _ways(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
     """Return a number for the kind of driving at each sample: the same on one surface, at depths and speeds within one
     factor of two and, at rest, after rests within one factor of two.
     """

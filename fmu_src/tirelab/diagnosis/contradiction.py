@@ -1,8 +1,10 @@
 """A recording that contradicts the others: driven as they are, it has a force that no set of effects makes of theirs.
 
-A recording is suspected where its misfit differs from that of the others at the same kinds of driving. The others are
-then explained anew without it. It contradicts them if they are explained much better alone, and if their tire is far
-off it where it is driven as they are. It may be of another tire, pressure or zero, or have another past.
+A recording is suspected where its misfit differs from that of the others in the same states of motion: surface,
+direction, deflection and speed. The others are then explained anew without it. It contradicts them if they are
+explained much better alone, and if their tire is far off it where it is driven as they are. It may be of another tire,
+pressure or zero, or have another past: another zero of a gauge or a factor on its force is named where that alone makes
+it agree.
 """
 
 from __future__ import annotations
@@ -16,10 +18,11 @@ from scipy.optimize import minimize_scalar
 
 from ..estimation.explanation import Explanation
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
-from ..preprocessing.samples import Recorded
+from ..preprocessing.noise import NEGLIGIBLE, STILL
+from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import newtons, set_title
 from ..simulation.simulate import simulate, smoothed_motion
-from .acceptance import kinds_of_driving, rmse
+from .acceptance import rmse
 
 EXPLAINED = 0.5
 """A recording contradicts the others only if what explains them leaves less than this part of what all recordings
@@ -109,16 +112,16 @@ def contradiction_of(
     if len(recordings) < 2 or not explanation.remainder.unexplained:
         return None
     together = min(e.error for e in (explanation, *map(explanation.of, explanation.in_order(1))))
-    kinds = kinds_of_driving(recordings, motions)
-    apart = _apart(before, kinds)
+    states = _states(recordings, motions)
+    apart = _apart(before, states)
     found: list[tuple[float, Contradiction]] = []
     for number in np.argsort(-apart)[:SUSPECTED].tolist():
         if apart[number] < EXPLAINED * together:
             break
         recording, level = recordings[number], explanation.floors[number].level
         others = explain([r for i, r in enumerate(recordings) if i != number])
-        alike = _as_others(kinds, number) & explanation.compared[number]
-        if others.error >= EXPLAINED * together or not alike.any():
+        alike = _as_others(states, number) & explanation.compared[number]
+        if others.error >= EXPLAINED * together or alike.mean() < NEGLIGIBLE:
             continue
         own = rmse([(recording.force - simulate(others.model.tire, recording))[alike]])
         if own > max(others.error / EXPLAINED, BEYOND_NOISE * level):
@@ -131,19 +134,53 @@ def contradiction_of(
     return min(found, key=lambda one: one[0])[1] if found else None
 
 
-def _as_others(kinds: Sequence[IndexArray], number: int) -> np.ndarray:
-    """Return which samples of a recording are driven like some of another one."""
-    others = np.unique(np.concatenate([k for i, k in enumerate(kinds) if i != number]))
-    return np.isin(kinds[number], others)
+DEPTHS = 24
+"""Number of parts of the deflection's span in which samples are in one state; half of them are within a fiftieth."""
+
+SPEEDS_PER_OCTAVE = 4
+"""Number of parts of a factor of two of the speed; two speeds of one part differ by a tenth on average."""
 
 
-def _apart(misfits: Sequence[FloatArray], kinds: Sequence[IndexArray]) -> FloatArray:
-    """Return by how much the mean misfit of each recording differs from that of the others in the kinds of driving that
-    they share, root mean square [N] over their samples; 0 where they share none.
+def _states(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
+    """Return the number of the state of motion of each sample: of surface, direction, deflection and, where the times
+    are known, speed; below STILL of the largest speed the tire rests.
     """
-    size = 1 + max(int(k.max()) for k in kinds)
-    counts = np.array([np.bincount(k, minlength=size) for k in kinds], dtype=float)
-    sums = np.array([np.bincount(k, m, size) for k, m in zip(kinds, misfits, strict=True)])
+    low = min(float(m.deflection.min()) for m in motions)
+    span = max(max(float(m.deflection.max()) for m in motions) - low, 1e-300)
+    fastest = max(float(np.abs(m.rate).max()) for m in motions)
+    radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
+    slowest = float(np.log2(STILL))
+    classes = 2 + int(-SPEEDS_PER_OCTAVE * slowest)
+    found = []
+    for recording, motion in zip(recordings, motions, strict=True):
+        depth = np.minimum((DEPTHS * (motion.deflection - low) / span).astype(int), DEPTHS - 1)
+        state = (
+            np.searchsorted(radii, recording.surface_radius) * 2 + (motion.direction > 0.0)
+        ) * DEPTHS + depth
+        if is_timed(recordings):
+            speed = np.log2(np.maximum(np.abs(motion.rate) / max(fastest, 1e-300), 0.5 * STILL))
+            state = state * classes + np.where(
+                speed < slowest, 0, 1 + (SPEEDS_PER_OCTAVE * (speed - slowest)).astype(int)
+            )
+        found.append(state)
+    return found
+
+
+def _as_others(states: Sequence[IndexArray], number: int) -> BoolArray:
+    """Return which samples of a recording are in a state that another one has too."""
+    others = np.unique(np.concatenate([s for i, s in enumerate(states) if i != number]))
+    return np.asarray(np.isin(states[number], others))
+
+
+def _apart(misfits: Sequence[FloatArray], states: Sequence[IndexArray]) -> FloatArray:
+    """Return by how much the mean misfit of each recording differs from that of the others in the states that they
+    share, root mean square [N] over their samples; 0 where they share none.
+    """
+    numbers = np.unique(np.concatenate(states), return_inverse=True)[1]
+    own = np.split(numbers, np.cumsum([s.size for s in states])[:-1])
+    size = int(numbers.max()) + 1
+    counts = np.array([np.bincount(k, minlength=size) for k in own], dtype=float)
+    sums = np.array([np.bincount(k, m, size) for k, m in zip(own, misfits, strict=True)])
     other_counts, other_sums = counts.sum(axis=0) - counts, sums.sum(axis=0) - sums
     shared = np.where(other_counts > 0.0, counts, 0.0)
     differences = sums / np.maximum(counts, 1.0) - other_sums / np.maximum(other_counts, 1.0)

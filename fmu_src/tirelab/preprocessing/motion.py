@@ -23,14 +23,16 @@ it comes from the deflection, which is read there as well as elsewhere, or from 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
+from scipy.linalg import solveh_banded
 from scipy.ndimage import gaussian_filter1d
 
 from .gauge import deflection_noise
-from .noise import NEGLIGIBLE
+from .noise import NEGLIGIBLE, STANDS_OUT
 from .spread import TRIMMED
 
 FloatArray = NDArray[np.float64]
@@ -166,10 +168,23 @@ WEIGHT_ROUNDS = 6
 """Number of expectation-maximisation steps in which the weights of the splines are found."""
 
 PADDING = 400
-"""Most samples that are reflected at each end, so that value and slope continue there."""
+"""Most samples that are reflected at each end."""
 
 LEVERAGE = 0.97
 """Upper bound of a spline's leverage: the shortest one would leave no residual to compute log p from."""
+
+UNUSED = 1e-6
+"""Weight up to which a spline is left out of the mean: it changes nothing that is read to six digits."""
+
+ARC = 5.0
+"""Reach of an arc at an end, times a spline's cut-off: the spline follows what is longer without loss."""
+
+FADED = 7.0
+"""Reaches of an arc after which it is nothing: exp(-24)."""
+
+FORGOTTEN = 20.0
+"""Number of samples, times a spline's cut-off, after which it has forgotten its end: its impulse response falls by exp
+of half the product, 5e-5."""
 
 
 def smoothed(values: FloatArray, step: float, noise: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -177,32 +192,140 @@ def smoothed(values: FloatArray, step: float, noise: float) -> tuple[FloatArray,
 
     values (n,) with n >= 3; step: between samples [s]; noise: standard deviation of the reading, in the values' unit
     """
-    count = values.size
-    pad = min(count - 1, PADDING)
-    line = np.linspace(values[0], values[-1], count)
-    level = values - line
-    reflected = np.concatenate([-level[pad:0:-1], level, -level[-2 : -pad - 2 : -1]])
-    whole = next_fast_len(reflected.size, real=True)
-    # The samples that fill up to a quick length are detrended too: both ends are zero.
-    filled = np.concatenate([reflected, np.linspace(reflected[-1], reflected[0], whole - reflected.size)])
-    slope = (values[-1] - values[0]) / (count - 1)
-    angle = 2.0 * np.pi * rfftfreq(whole)
-    spectrum = rfft(filled)
-    inside = slice(pad, pad + count)
-    splines = [1.0 / (1.0 + (angle / cutoff) ** 6) for cutoff in CUTOFFS]
-    leverages = [min(float(np.mean(passed)), LEVERAGE) for passed in splines]
-    scores = np.empty((len(splines), count), dtype=np.float32)
-    for i, (passed, leverage) in enumerate(zip(splines, leverages, strict=True)):
-        left = (level - irfft(spectrum * passed, whole)[inside]) / noise
-        score = 0.5 * (np.log(1.0 - leverage) - left**2 / (1.0 - leverage))
+    frame = _frame_of(values.size)
+    scores = np.empty((CUTOFFS.size, values.size), dtype=np.float32)
+    for i, cutoff in enumerate(CUTOFFS.tolist()):
+        spline = _spline(values, cutoff, noise, frame)
+        left = (values - spline.derivative(0)) / noise
+        score = 0.5 * (np.log(1.0 - spline.leverage) - left**2 / (1.0 - spline.leverage))
         scores[i] = gaussian_filter1d(score, WINDOW, mode="nearest") * np.sqrt(4.0 * np.pi) * WINDOW
-    sums = np.zeros((3, count))
-    for passed, weight in zip(splines, _weights(scores), strict=True):
-        kept = spectrum * passed
-        sums[0] += weight * irfft(kept, whole)[inside]
-        sums[1] += weight * (irfft(1j * angle * kept, whole)[inside] + slope)
-        sums[2] -= weight * irfft(angle**2 * kept, whole)[inside]
-    return sums[0] + line, sums[1] / step, sums[2] / step**2
+    sums = np.zeros((3, values.size))
+    for cutoff, weight in zip(CUTOFFS.tolist(), _weights(scores), strict=True):
+        if weight.max() > UNUSED:
+            spline = _spline(values, cutoff, noise, frame)
+            for order in range(3):
+                sums[order] += weight * spline.derivative(order)
+    return sums[0], sums[1] / step, sums[2] / step**2
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """Even samples, `count` of them, reflected about both ends, so many of them `before` the first, `whole` together.
+
+    angle: angular frequencies [1/sample] of their spectrum
+    """
+
+    count: int
+    before: int
+    whole: int
+    angle: FloatArray
+
+
+def _frame_of(count: int) -> _Frame:
+    before = min(count - 1, PADDING)
+    whole = next_fast_len(count + 2 * before, real=True)
+    return _Frame(count, before, whole, 2.0 * np.pi * rfftfreq(whole))
+
+
+Ends = tuple[tuple[float, float], tuple[float, float]]
+"""Value and curvature at the first and at the last sample."""
+
+
+@dataclass(frozen=True)
+class _Spline:
+    """A smoothing spline: the line through its ends, an arc at each end, which reaches so far [samples], and what is
+    filtered, by its spectrum.
+    """
+
+    frame: _Frame
+    ends: Ends
+    reach: float
+    spectrum: NDArray[np.complex128]
+    leverage: float
+
+    def derivative(self, order: int) -> FloatArray:
+        """Return the derivative (n,) by samples, of this order up to 2."""
+        frame = self.frame
+        factor = (1.0, 1j * frame.angle, -(frame.angle**2))[order]
+        inner = irfft(factor * self.spectrum, frame.whole)[frame.before : frame.before + frame.count]
+        return np.asarray(inner + _ends(self.ends, self.reach, frame.count, order))
+
+
+def _spline(values: FloatArray, cutoff: float, noise: float, frame: _Frame) -> _Spline:
+    """Return the smoothing spline of `values` with this cut-off [1/sample]; noise: of a sample.
+
+    A reflected end has no curvature, so an arc with that of the spline is taken off at each end before. A motion that
+    is recorded from its midst on would else begin with no acceleration.
+    """
+    ends = _end(values, cutoff, noise), _end(values[::-1], cutoff, noise)
+    reach = min(ARC / cutoff, (values.size - 1) / 4.0)
+    level = values - _ends(ends, reach, values.size, 0)
+    pad = frame.before
+    reflected = np.concatenate([-level[pad:0:-1], level, -level[-2 : -pad - 2 : -1]])
+    # The samples that fill up to a quick length are detrended too: both ends are near zero.
+    filled = np.concatenate(
+        [reflected, np.linspace(reflected[-1], reflected[0], frame.whole - reflected.size)]
+    )
+    passed = 1.0 / (1.0 + (frame.angle / cutoff) ** 6)
+    return _Spline(frame, ends, reach, rfft(filled) * passed, min(float(np.mean(passed)), LEVERAGE))
+
+
+def _ends(ends: Ends, reach: float, count: int, order: int) -> FloatArray:
+    """Return a derivative (n,) of the line and the arcs of `_Spline`.
+
+    An arc is b/2 k^2 exp(-k^2 / 2 reach^2), k samples from an end with the curvature b.
+    """
+    (first, begin), (last, end) = ends
+    slope = (last - first) / (count - 1)
+    start, rise = ((first, slope), (slope, 0.0), (0.0, 0.0))[order]
+    found = start + rise * np.arange(count, dtype=float)
+    if begin or end:
+        place = np.arange(min(count, int(FADED * reach) + 1), dtype=float)
+        far = (place / reach) ** 2
+        arc = (0.5 * place**2, place * (1.0 - 0.5 * far), 1.0 - 2.5 * far + 0.5 * far**2)[order]
+        arc *= np.exp(-0.5 * far)
+        found[: arc.size] += begin * arc
+        found[count - arc.size :] += (-1.0) ** order * end * arc[::-1]
+    return np.asarray(found)
+
+
+def _end(values: FloatArray, cutoff: float, noise: float) -> tuple[float, float]:
+    """Return value and curvature at the first sample of the spline with this cut-off and a free end; no curvature
+    that does not stand out of the noise.
+    """
+    own = values[: SHORTEST + int(FORGOTTEN / cutoff)]
+    if own.size < 4:
+        return float(own[0]), 0.0
+    weights = _weights_of_end(own.size, cutoff)
+    level, bend = weights @ (own - own[0])
+    found = float(bend) if abs(bend) > STANDS_OUT * noise * float(np.linalg.norm(weights[1])) else 0.0
+    return float(own[0] + level), found
+
+
+@cache
+def _weights_of_end(count: int, cutoff: float) -> FloatArray:
+    """Return the weights (2, n) of n samples in value and curvature at the first one of a spline with a free end.
+
+    The spline minimises the sum of (values - f)^2 + (third differences of f)^2 / cutoff^6: E. T. Whittaker, Proc.
+    Edinburgh Math. Soc. 41 (1923) 63. At a free end the third difference is zero.
+    """
+    matrix = _third_differences_squared(count) * cutoff**-6
+    matrix[-1] += 1.0
+    wanted = np.zeros((count, 2))
+    wanted[0, 0] = 1.0
+    wanted[:3, 1] = 1.0, -2.0, 1.0
+    return np.asarray(solveh_banded(matrix, wanted, check_finite=False).T)
+
+
+@cache
+def _third_differences_squared(count: int) -> FloatArray:
+    """Return the upper bands (4, n) of D^T D, D being the matrix of third differences of n values."""
+    weights = (-1.0, 3.0, -3.0, 1.0)
+    bands = np.zeros((4, count))
+    for i, one in enumerate(weights):
+        for j in range(i, 4):
+            bands[3 - (j - i), j : j + count - 3] += one * weights[j]
+    return bands
 
 
 def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
