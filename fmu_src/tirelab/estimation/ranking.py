@@ -78,7 +78,7 @@ REACH = TEMPERATURE * LOST
 """The neighbours of a set this far behind the best in log posterior are not fitted; as LOST of the search, tempered."""
 
 MOST_FITS = 40
-"""Budget: number of fits of one diagnosis."""
+"""Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
 
 REPEATS = 2
 """Budget: number of fits of one set, each from the optimum of another set."""
@@ -155,11 +155,17 @@ class FittedSets:
     count: int = 0
     usual: float = 0.0
     assessed_at: int = 0
+    gained_at: int = 0
 
     @property
     def best_fit(self) -> Fit:
         """The likeliest so far."""
         return self.fits[self.best()]
+
+    @property
+    def spent(self) -> bool:
+        """Whether as many sets as the budget allows were fitted without a decisive gain."""
+        return self.count - self.gained_at >= MOST_FITS
 
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one; return whether that has changed.
@@ -189,6 +195,8 @@ class FittedSets:
         found = _predicted(self.held_out, found)
         self.count += 1
         self.times[key] += 1
+        if best is not None and found.log_posterior > best.log_posterior + LOST:
+            self.gained_at = self.count
         if key not in self.fits or found.log_likelihood > self.fits[key].log_likelihood:
             self.fits[key] = found
         return found
@@ -200,7 +208,7 @@ class FittedSets:
             self.others.clear()  # one set of them at a time: they are large
             to = Beside(base.tire, self.dataset.misfit - base.residual, base.residual)
             self.others[names] = {
-                n: drawn_beside(s, self.dataset, to) if names and acts_on_signal(n) else s
+                n: drawn_beside(s, self.dataset, to) if _depends(n, base.names) else s
                 for n, s in self.signatures.items()
                 if n not in names
             }
@@ -258,7 +266,7 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
     them in its place
     """
     followed: set[frozenset[str]] = set()
-    while sets.count < MOST_FITS:
+    while not sets.spent:
         best = sets.posterior(sets.best())
         open_sets = [n for n in sets.fits if n not in followed and sets.posterior(n) > best - REACH]
         if not open_sets:
@@ -278,6 +286,14 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
             if not sets.beside(less)[other].silent:
                 sets.add(less, other)
     return Ranking(_in_order(sets.fits.values()), sets.discrepancy, sets.held_out)
+
+
+def _depends(name: str, beside: Sequence[str]) -> bool:
+    """Whether a candidate's response depends on the effects beside it: it acts on their signal, or one of them on its.
+
+    The law's is that of the baseline: what a ceiling or a lag makes of it is left to the fit.
+    """
+    return bool(beside) and name != LAW and any(map(acts_on_signal, (name, *beside)))
 
 
 def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:
@@ -357,7 +373,7 @@ def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[st
     # A fit may gain far more than was predicted, so a prediction is compared with that of the effect it would replace.
     wanted = min([best + PRIOR_ODDS - sets.posterior(names), *gains[len(others) :]])
     for gain, name in sorted(zip(gains, others, strict=False), reverse=True)[:most]:
-        if gain > wanted - GAIN_ERROR and sets.count < MOST_FITS:
+        if gain > wanted - GAIN_ERROR and not sets.spent:
             sets.add(base, name)
 
 

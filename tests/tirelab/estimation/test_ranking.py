@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drives import flat_force
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 from tirelab.estimation.fit import fitted
 from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
 from tirelab.recordings.recording import Recording
@@ -167,3 +168,29 @@ def test_every_set_without_one_of_the_effects_is_fitted(ranking: Ranking, datase
     assert expected is not None
     assert without.power == pytest.approx(expected.power, rel=1e-3)
     assert with_parts(found, whole) is found
+
+
+def test_a_candidate_is_drawn_beside_the_ceiling_that_hides_a_part_of_it(dataset: Dataset) -> None:
+    """Beside a ceiling a dashpot's force shows below it only; beside a dashpot it is what it was."""
+    own = signatures_of(("viscous_damping", "viscoelastic_relaxation"), dataset)
+    sets = begun(
+        dataset,
+        signatures_of(("saturation", *(s.name for s in own)), dataset),
+        discrepancy_of(dataset.misfit, 0.1),
+        [],
+    )
+    peak = max(float(e.baseline.max()) for e in dataset.experiments)
+    damped = (500.0, *[p.start for p in CATALOGUE["viscous_damping"].parameters[1:]])
+
+    def beside(name: str, values: tuple[float, ...]) -> Mapping[str, Signature]:
+        tire = arranged(dataset.tire, [(name, values)])
+        left: Any = SimpleNamespace(
+            names=(name,), tire=tire, residual=dataset.misfit - dataset.response(tire)
+        )
+        return sets.beside(left)
+
+    above = dataset.gathered([e.baseline for e in dataset.experiments]) > 0.8 * peak
+    hidden = beside("saturation", (0.5 * peak, 0.0))["viscous_damping"]
+    assert np.abs(hidden.curves[:, above]).max() < 1e-6 < np.abs(own[0].curves[:, above]).max()
+    still = beside("viscous_damping", damped)["viscoelastic_relaxation"]
+    assert still is sets.signatures["viscoelastic_relaxation"]
