@@ -60,6 +60,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     """The rows with a value in every required channel; an optional channel with many blanks is left out.
 
     Of equal rows with one time the first is kept, with a note: some machines write the end of a step of a test twice.
+    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them.
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
     """
     values = dict(zip(headers, columns.values, strict=True))
@@ -79,6 +80,12 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
         )
         kept = np.delete(whole, repeated)
         values = {name: np.delete(column, repeated) for name, column in values.items()}
+    waiting = _before_the_clock(values)
+    if waiting:
+        whole = np.arange(samples) if kept is None else kept
+        notes.append(f"skipped as before the clock runs: {_places(columns, whole[:waiting])}")
+        kept = whole[waiting:]
+        values = {name: column[waiting:] for name, column in values.items()}
     left = samples if kept is None else len(kept)
     if left < 2:
         raise RecordingError(
@@ -130,6 +137,18 @@ def _repeated(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
     found = np.flatnonzero(time[1:] == time[:-1]) + 1
     same = [column[found] == column[found - 1] for column in values.values()]
     return found[np.logical_and.reduce(same)] if len(found) else found
+
+
+def _before_the_clock(values: Mapping[str, FloatArray]) -> int:
+    """Return how many rows at the beginning have the time of the row after them; 0 where other rows repeat one too.
+
+    A machine may write what it reads while it waits for the start of the test.
+    """
+    time = values.get("time")
+    if time is None or len(time) < 2 or not time[0] < time[-1]:
+        return 0
+    still = np.flatnonzero(time[1:] == time[:-1])
+    return len(still) if np.array_equal(still, np.arange(len(still))) else 0
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

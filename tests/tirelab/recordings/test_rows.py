@@ -99,3 +99,14 @@ def test_a_row_written_twice_is_kept_once_and_named() -> None:
     assert other.kept is None
     # without a clock nothing says that equal readings are one
     assert rows_of(force=[5.0, 5.0, 6.0]).kept is None
+
+
+def test_rows_before_the_clock_runs_are_skipped_and_named() -> None:
+    rows = rows_of(time=[0.0, 0.0, 0.0, 0.1, 0.2], force=[5.0, 5.5, 6.0, 7.0, 8.0])
+    assert rows.notes == ("skipped as before the clock runs: row 2, row 3",)
+    np.testing.assert_array_equal(rows.values["time"], [0.0, 0.1, 0.2])
+    np.testing.assert_array_equal(rows.values["force"], [6.0, 7.0, 8.0])
+    assert rows.place(0) == "row 4"
+    # a clock that is coarser than the samples, and one that never runs
+    assert rows_of(time=[0.0, 0.0, 1.0, 1.0, 2.0], force=[5.0, 5.5, 6.0, 7.0, 8.0]).kept is None
+    assert rows_of(time=[0.0, 0.0, 0.0], force=[5.0, 5.5, 6.0]).kept is None
