@@ -153,7 +153,7 @@ def _noise_at_plateau(levels: _Levels, deflection: FloatArray) -> Noise | None:
         return Noise(white_level(levels.residual), 1)
     if levels.oscillates(found):
         return Noise(min(levels.values), 1)
-    visits = _seen_visits(deflection, found.memory, levels.slow)
+    visits = _seen_visits(deflection, found.memory, levels.lags[-1], levels.slow)
     between = ([_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits)
     return min(
         (found, *(_noise_of_level(own, _plateau(own)) for own in between)), key=lambda noise: noise.level
@@ -175,21 +175,28 @@ def _noise_at_whole_variation(
         rises = any(_rises(levels.values)[last:])
         if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
             continue
-        visits = _seen_visits(signals[0], found.memory, slow)
+        visits = _seen_visits(signals[0], found.memory, lag, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
         if least * STAYS >= most and not any(_may_follow(signal, lag, slow, visits) for signal in signals):
             return Noise(least, found.memory)
     return None
 
 
-def _seen_visits(deflection: FloatArray, memory: int, seen: BoolArray) -> list[tuple[IntArray, IntArray]]:
-    """Return the pairs of each kind of visit (`_visits`) with both samples `seen`; no kind with too few of them."""
+def _seen_visits(
+    deflection: FloatArray, memory: int, lag: int, seen: BoolArray
+) -> list[tuple[IntArray, IntArray]]:
+    """Return the pairs of each kind of visit (`_visits`) with both samples `seen`.
+
+    No kind with too few of them, nor one whose pairs are all so near the ends that no difference over the lag is known.
+    """
+    inner = np.zeros_like(seen)
+    _inner(inner, lag)[:] = True
     pairs = [
         (one[both], other[both])
         for one, other in _visits(deflection, memory)
         for both in [seen[one] & seen[other]]
     ]
-    return [p for p in pairs if p[0].size >= FEWEST_LAGS * memory]
+    return [p for p in pairs if p[0].size >= FEWEST_LAGS * memory and np.any(inner[p[0]] & inner[p[1]])]
 
 
 def _may_follow(

@@ -57,6 +57,16 @@ def noise_beside(residual: FloatArray, motion: FloatArray) -> Noise:
     return noise_of(residual, 1.0, motion, rate, np.gradient(rate))
 
 
+def test_a_place_that_comes_again_at_the_very_end_says_nothing_of_long_lags() -> None:
+    """Differences over a lag are known up to one and a half lags before the end."""
+    rise, again = 1e-6 * np.arange(1300), 2e-4 + 1e-6 * np.arange(90)
+    motion = np.concatenate([rise, np.linspace(rise[-1], again[0], 20, endpoint=False), again])
+    filtered = (WHITE[1:] + WHITE[:-1])[: motion.size] / 2.0
+    noise = noise_beside(filtered, motion)
+    assert noise.level == pytest.approx(np.sqrt(0.5), rel=0.1)
+    assert noise.memory == 2
+
+
 def test_white_noise_has_no_memory() -> None:
     found = noise_beside(WHITE + SLOW, MOTION)
     assert found.level == pytest.approx(1.0, rel=0.05)
