@@ -138,8 +138,11 @@ def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fi
     n, k = residual.size, values.size
     squares = float(residual @ residual)
     variance = squares / max(n - k, 1)
-    covariance = variance * np.linalg.pinv(derivatives.T @ derivatives)
-    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    # In units of their own: a coefficient of 1e5 beside an exponent would be cut off as if it were not seen at all.
+    sizes = np.maximum(np.linalg.norm(derivatives, axis=0), 1e-300)
+    seen = derivatives / sizes
+    covariance = variance * np.linalg.pinv(seen.T @ seen)
+    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / sizes
     constants = tuple(
         (symbol, float(value * factor), float(abs(factor) * deviation), unit)
         for (symbol, factor, unit), value, deviation in zip(symbols, values, spread, strict=True)

@@ -91,6 +91,27 @@ def test_the_law_that_made_the_readings_is_found(name: str) -> None:
         assert spread < 0.1 * abs(value) + 1.0
 
 
+def test_the_uncertainties_of_a_stiff_short_part_are_those_of_its_noise() -> None:
+    """A stroke of 1 mm: A is 1e4 times the exponent, and a change of 1 N/cm^B of it is next to nothing.
+
+    Expected is the bound of Cramér and Rao at the true constants, which are of one size: A in 1e4 N/cm^B, x0 in mm.
+    """
+    x, noise = np.linspace(0.0, 9e-4, 800), 0.5
+    true = np.array([2.7, 2.57, 0.15])
+
+    def force(constants: np.ndarray) -> np.ndarray:
+        return np.asarray(
+            1e4 * constants[0] * np.maximum(100.0 * x - 0.1 * constants[2], 0.0) ** constants[1]
+        )
+
+    steps = 1e-6 * np.eye(3)
+    slopes = np.stack([(force(true + step) - force(true - step)) / 2e-6 for step in steps], axis=1)
+    bound = noise * np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
+    (fit,) = [fit for fit in fit_laws([recording(x, force(true), noise)]) if fit.name == "power_gap"]
+    stated = np.array([deviation for _, _, deviation, _ in fit.constants]) / np.array([1e4, 1.0, 1.0])
+    np.testing.assert_allclose(stated, bound, rtol=0.2)
+
+
 def test_preload_is_a_gap_below_zero() -> None:
     force = 80e3 * (X + 0.002)
     fits = {fit.name: fit for fit in fit_laws([recording(X, force)])}
