@@ -25,6 +25,7 @@ from .units import (
     Conversion,
     UnitError,
     conversion,
+    given_conversion,
     measures,
     parse_interval,
     parse_quantity,
@@ -371,7 +372,8 @@ def _conversions(
             without.append(name)
             continue
         try:
-            found[name] = conversion(unit, UNIT_OF[name])
+            read = given_conversion if units.get(name) else conversion
+            found[name] = read(unit, UNIT_OF[name])
             if name == "pressure" and not found[name].absolute_pressure and says_absolute(header):
                 found[name] = conversion(f"{unit} abs", UNIT_OF[name])
         except UnitError as error:

@@ -3,7 +3,7 @@
 import difflib
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -166,6 +166,8 @@ def conversion(unit: str, si: str) -> Conversion:
         )
         advice = becomes if measured and of_specimen else _advice(text, si, known=True)
         advice = _of_torsion(text, si, torque=known == registry.Unit("N*m").dimensionality) or advice
+        if known == registry.Unit("V").dimensionality:
+            advice = f"write the {quantity} of 1 {text}, the calibration, as its unit: 250 {_COMMON[si][0]}"
         what = f"{unit[:40]!r} is not a unit of {quantity}; {advice}"
         raise UnitError(what, _likely(text, si, known=True))
     zero, one = registry.Quantity(0.0, parsed), registry.Quantity(1.0, parsed)
@@ -175,6 +177,24 @@ def conversion(unit: str, si: str) -> Conversion:
         divisor = 1
     offset = -STANDARD_ATMOSPHERE if absolute else float(zero.to(si).magnitude)
     return Conversion(unit, si, 1.0 if divisor > 1 else factor, float(divisor), offset, absolute)
+
+
+@cache
+def given_conversion(text: str, si: str) -> Conversion:
+    """Return the conversion from a unit that is given, or from so many of one, the calibration of a column: 500 mN.
+
+    A header says how much a load cell bears in this form (`Load (500 N)`), so its unit is read by `conversion`.
+    Errors: as `conversion`; UnitError for a calibration that is not positive, or in a unit with a zero of its own.
+    """
+    found = _MAGNITUDE.match(text.strip())
+    if found is None or not found["unit"].strip():
+        return conversion(text, si)
+    one, value = conversion(found["unit"].strip(), si), float(found["value"])
+    if not 0.0 < value < math.inf or one.offset != 0.0:
+        raise UnitError(
+            f"{text[:40]!r} is no calibration; write one as 12.5 N, and the sign before the column"
+        )
+    return replace(one, unit=text, multiply=value * one.multiply)
 
 
 def _of_torsion(unit: str, si: str, *, torque: bool) -> str:

@@ -3,7 +3,9 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from house_form import loading, write_rows
+from tirelab.recordings.formats import RecordingError
 from tirelab.recordings.recording import read_recording
 
 HEADER = "time [s],deflection [cm],force [N]"
@@ -33,3 +35,24 @@ def test_a_clock_without_a_date_passes_midnight(tmp_path: Path) -> None:
     np.testing.assert_allclose(recording.time, time, atol=1e-9)
     # 10 s of 5 Hz before midnight: rows 2 to 51
     assert "the clock passes midnight at row 52: a day added from there on" in recording.notes
+
+
+def test_a_column_in_volts_is_read_by_its_calibration_and_settings_keep_it(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    path = write_rows(
+        tmp_path / "a.csv", "time [s],deflection [cm],force [V]", time, deflection, force / 250.0
+    )
+    recording = read_recording(path, radius="flat", units={"force": "250 N"})
+    np.testing.assert_allclose(recording.force, force, rtol=1e-5, atol=1e-3)
+    assert "force read in 250 N as given, not in V" in recording.notes
+    (tmp_path / "recording.toml").write_text('radius = "flat"\n[units]\nforce = "250 N"\n', encoding="utf-8")
+    np.testing.assert_array_equal(read_recording(path).force, recording.force)
+
+
+def test_what_a_load_cell_bears_is_no_calibration(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],force (500 N)", time, deflection, force)
+    recording = read_recording(path, radius="flat", units={"force": "N"})
+    np.testing.assert_allclose(recording.force, force, rtol=1e-5, atol=1e-3)
+    with pytest.raises(RecordingError, match="unknown unit '500 N' of force"):
+        read_recording(path, radius="flat")

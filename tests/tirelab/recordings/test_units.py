@@ -12,6 +12,7 @@ from tirelab.recordings.units import (
     STANDARD_ATMOSPHERE,
     UnitError,
     conversion,
+    given_conversion,
     measures,
     parse_radius,
     split_header,
@@ -87,7 +88,8 @@ def test_an_absolute_pressure_loses_the_standard_atmosphere(value: float, unit: 
         ("PSI", "Pa", "psi"),
         ("MM", "m", "mm"),
         ("wibble", "m", "write m, cm, mm, in or ft"),
-        ("V", "Pa", "write Pa"),
+        ("V", "Pa", "write the pressure of 1 V, the calibration, as its unit: 250 Pa"),
+        ("A", "Pa", "write Pa"),
         ("9**9**9", "m", "unknown"),
         ("", "s", "unknown"),
         ("%", "N", "not a unit of force"),
@@ -188,3 +190,19 @@ def test_what_is_measured_of_a_specimen_is_told_how_to_become_a_length_or_a_forc
 def test_a_test_of_torsion_is_told_what_stands_for_what(unit: str, si: str, how: str) -> None:
     with pytest.raises(UnitError, match=re.escape(how)):
         conversion(unit, si)
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "newtons"),
+    [("500mN", 3.0, 1.5), ("12.5 N", 2.0, 25.0), ("0.1kgf", 10.0, 9.80665), ("kN", 2.0, 2000.0)],
+)
+def test_a_unit_that_is_given_may_be_a_calibration(text: str, value: float, newtons: float) -> None:
+    found = given_conversion(text, "N")
+    assert float(found.to_si(np.array([value]))[0]) == pytest.approx(newtons, rel=1e-15)
+    assert found.unit == text
+
+
+@pytest.mark.parametrize(("text", "si"), [("-5 N", "N"), ("0 N", "N"), ("2 bar abs", "Pa"), ("2 degC", "K")])
+def test_what_is_no_calibration_is_refused(text: str, si: str) -> None:
+    with pytest.raises(UnitError, match="is no calibration"):
+        given_conversion(text, si)
