@@ -34,7 +34,7 @@ def delivered_of(diagnosis: Mapping[str, Any]) -> Delivered:
         # one that holds no air is no tire, also where it is loose before a gap and so has one side
         kind = "part" if baseline.get("two_sided") or baseline.get("inflated") is False else "tire"
         return Delivered(
-            "the tire", kind, "Nothing: use this tire.", "Nothing: use the baseline tire.", files
+            f"the {kind}", kind, f"Nothing: use this {kind}.", f"Nothing: use the baseline {kind}.", files
         )
     name = found["simulation"] or "your simulation"
     if found["system"] is None:

@@ -12,8 +12,13 @@ from . import titles, words
 from .sketches import draw_correction, draw_sketch
 
 
-def effect_shown(effect: Mapping[str, Any], sketches: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an entry of the verdict's effects in words, each parameter with its sketch where there is one."""
+def effect_shown(
+    effect: Mapping[str, Any], sketches: Mapping[str, Any], kind: str = "tire"
+) -> dict[str, Any]:
+    """Return an entry of the verdict's effects in words, each parameter with its sketch where there is one.
+
+    kind: what is tested, "tire" or "part"
+    """
     name = effect["name"]
     known = CATALOGUE.get(name)
     sketch = sketches.get(name)
@@ -25,7 +30,7 @@ def effect_shown(effect: Mapping[str, Any], sketches: Mapping[str, Any]) -> dict
         "imitators": titles.listed([titles.short_title(n) for n in known.imitators]) if known else "",
         "source": known.source if known else "",
         "share": effect["share"],
-        "law": [words.law_row(row) for row in effect.get("law", [])],
+        "law": [words.law_row(row, kind) for row in effect.get("law", [])],
         "sketched": sketch is not None,
         "parameters": [
             (

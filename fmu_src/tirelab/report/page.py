@@ -128,7 +128,9 @@ def render(diagnosis: Mapping[str, Any], fitted: Sequence[Case], held_out: Seque
         diagnosis=diagnosis,
         delivered=delivered_of(diagnosis),
         verdict=verdict,
-        effects=[effect_shown(effect, sketches) for effect in verdict["effects"]],
+        effects=[
+            effect_shown(effect, sketches, delivered_of(diagnosis).kind) for effect in verdict["effects"]
+        ],
         alternatives=alternatives(verdict),
         unseen=any(d["probability"] is None for d in verdict.get("alternative_details") or ()),
         law_curves=draw_law_changes(diagnosis["law_changes"], "law") if diagnosis["law_changes"] else None,

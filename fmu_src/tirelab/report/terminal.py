@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from . import first_screen, titles, words
+from .delivered import delivered_of
 
 MOST_PLACES = 6
 """Rows of the table of places."""
@@ -28,7 +29,8 @@ def print_diagnosis(console: Console, diagnosis: Mapping[str, Any], out: Path) -
     sections: list[Sequence[Table | Text]] = [[_errors(diagnosis)]]
     if diagnosis["where"]:
         sections.append([_places(diagnosis)])
-    sections += [_effect(effect, diagnosis["report"]) for effect in verdict["effects"]]
+    kind = delivered_of(diagnosis).kind
+    sections += [_effect(effect, diagnosis["report"], kind) for effect in verdict["effects"]]
     if verdict.get("corrections"):
         sections.append([_regressions(verdict["corrections"])])
     if verdict.get("alternative_details"):
@@ -64,8 +66,11 @@ def _places(diagnosis: Mapping[str, Any]) -> Table:
     return places
 
 
-def _effect(effect: Mapping[str, Any], report: str) -> list[Table | Text]:
-    """Return an effect with its parameters, or with A and B of each surface; report: file with the rest of the law."""
+def _effect(effect: Mapping[str, Any], report: str, kind: str) -> list[Table | Text]:
+    """Return an effect with its parameters, or with A and B of each surface.
+
+    report: file with the rest of the law; kind: what is tested, "tire" or "part"
+    """
     name = effect["name"]
     title = f"{titles.full_title(name)}, without it {words.percent(effect['share'])} of the error comes back"
     lines: list[Table | Text] = [Text(title, style="dim")]
@@ -77,7 +82,7 @@ def _effect(effect: Mapping[str, Any], report: str) -> list[Table | Text]:
             parameters.add_row(titles.effect_title(parameter), value, words.meaning(name, parameter))
         return [*lines, parameters]
     surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
-    for row in map(words.law_row, effect["law"]):
+    for row in (words.law_row(entry, kind) for entry in effect["law"]):
         surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
     lines.append(surfaces)
     others = {p: e for p, e in effect["parameters"].items() if not words.is_of_a_surface(p)}

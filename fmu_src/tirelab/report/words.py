@@ -130,13 +130,13 @@ def is_of_a_surface(parameter: str) -> bool:
     return parameter.partition(",")[0] in _OF_THE_LAW
 
 
-def law_row(row: Mapping[str, Any]) -> dict[str, str]:
-    """Return an entry of `law` in words: surface, and A and B before and after."""
+def law_row(row: Mapping[str, Any], kind: str = "tire") -> dict[str, str]:
+    """Return an entry of `law` in words: surface, and A and B before and after; kind: "tire" or "part"."""
 
     def after(entry: Mapping[str, Any]) -> str:
         return estimate(entry["after"], entry["std"], "1")
 
-    told = {"surface": surface(row["radius"])}
+    told = {"surface": "the part" if kind == "part" else surface(row["radius"])}
     for key in ("A", "B"):
         told |= {f"{key}_before": number(row[key]["before"], 4), f"{key}_after": after(row[key])}
     return told

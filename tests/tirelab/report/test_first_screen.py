@@ -379,3 +379,5 @@ def test_beside_a_simulation_it_is_told_what_to_do_with_that(
 def test_a_part_is_no_tire_whether_it_is_held_at_both_ends_or_loose(baseline: dict[str, bool]) -> None:
     unknown = diagnosis({}, 0.95, unexplained=True) | {"baseline_tire": baseline}
     assert first_screen.next_step(unknown).action == "Repeat one recording with another part."
+    found = diagnosis({"inertia": 9.0}) | {"baseline_tire": baseline}
+    assert first_screen.next_step(found).action == "Nothing: use this part."

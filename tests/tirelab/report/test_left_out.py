@@ -42,6 +42,7 @@ def test_a_refitted_law_is_shown_by_a_and_b_and_not_by_their_logarithms() -> Non
     shown = effect_shown(given, {})
     assert [row[0] for row in shown["parameters"]] == ["bend"]
     assert shown["law"][0]["surface"] == "flat ground"
+    assert effect_shown(given, {}, "part")["law"][0]["surface"] == "the part"
     assert "not missing physics" in shown["statement"]
 
 

@@ -71,4 +71,9 @@ def test_alternatives_and_the_refitted_law_are_printed_as_people_know_them(kinds
     assert "viscous damping instead of friction loop 30 % repeat at 30 mm/s" in text
     text = printed(kinds["two"].diagnosis)
     assert "flat ground 550.9 600.0 ± 1.2 1.422 1.3800 ± 0.0040" in text
+    of_part = printed(kinds["two"].diagnosis | {"baseline_tire": {"inflated": False}})
+    assert "the part 550.9 600.0 ± 1.2 1.422 1.3800 ± 0.0040" in of_part
+    assert (
+        "ground" not in of_part[of_part.index("the part") :].split("Written")[0].split("What to do next")[0]
+    )
     assert "log factor on A" not in text
