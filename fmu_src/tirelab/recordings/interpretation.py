@@ -30,6 +30,7 @@ from .units import (
     parse_interval,
     parse_quantity,
     parse_radius,
+    sampling_said,
 )
 
 FloatArray = NDArray[np.float64]
@@ -147,9 +148,11 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         raise asked(origin, looked_at, of_test, wanted, settings)
     if no_time:
         interval = 1.0
+        rate = sampling_said(getattr(table, "provenance", ()))
+        known = "the lines above the table state the sampling" if rate else "if the sampling is known"
         notes.append(
             "time was not measured: one second from sample to sample is made up, and nothing of rate, time or "
-            f"acceleration can be told (if the sampling is known: {origin.sampling('10Hz')})"
+            f"acceleration can be told ({known}: {origin.sampling(rate or '10Hz')})"
         )
     constants, told = _constants(matches, settings)
     told += _others_alike(table.headers, found.columns, settings) if found.trials == 1 else []

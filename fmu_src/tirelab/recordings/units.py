@@ -3,6 +3,7 @@
 import difflib
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
@@ -75,6 +76,10 @@ _GAUGE = re.compile(
 _MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
+_RATE = re.compile(
+    r"\bsampl\w*[ _](?:frequency|rate)\b\W*(?:(?P<unit>k?Hz)\W+)?(?P<value>\d+(?:\.\d+)?)\W*(?P<behind>k?Hz\b)?",
+    re.I,
+)
 _LIKELY = {
     **{("N", word): "lbf" for word in ("lb", "lbs", "pound", "pounds")},
     **{("N", word): "kgf" for word in ("kg", "kgs", "kilogram", "kilograms")},
@@ -307,6 +312,18 @@ def parse_interval(text: str | float) -> float:
             f"sampling {str(text)[:40]!r} is not positive; write a rate or an interval: 10Hz, 0.1s"
         )
     return interval
+
+
+def sampling_said(lines: Iterable[str]) -> str:
+    """Return the rate that some lines of text state, as "Sample Frequency (Hz): 100": 100Hz; "" where none does.
+
+    A number without a unit is none.
+    """
+    for found in filter(None, map(_RATE.search, lines)):
+        unit = found["unit"] or found["behind"]
+        if unit:
+            return f"{found['value']}{'kHz' if unit.lower() == 'khz' else 'Hz'}"
+    return ""
 
 
 def _likely(unit: str, si: str, known: bool = False) -> str:

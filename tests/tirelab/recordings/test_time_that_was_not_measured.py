@@ -52,6 +52,14 @@ def test_without_one_it_is_made_up_and_said(timeless: Path) -> None:
     assert "time not measured" in repr(recording)
 
 
+def test_a_rate_in_the_lines_above_the_table_is_proposed(timeless: Path) -> None:
+    """Not taken: what these lines state may be of another channel."""
+    text = timeless.read_text(encoding="utf-8")
+    timeless.write_text(f"Sample Frequency (Hz): 250\n\n{text}", encoding="utf-8")
+    (note,) = [n for n in read_recording(timeless, radius="flat").notes if "was not measured" in n]
+    assert note.endswith("(the lines above the table state the sampling: --sampling 250Hz)")
+
+
 def test_a_skipped_row_leaves_its_gap(timeless: Path) -> None:
     lines = timeless.read_text(encoding="utf-8").splitlines()
     lines[11] = ","

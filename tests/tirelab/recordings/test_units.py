@@ -15,6 +15,7 @@ from tirelab.recordings.units import (
     given_conversion,
     measures,
     parse_radius,
+    sampling_said,
     split_header,
 )
 
@@ -206,3 +207,18 @@ def test_a_unit_that_is_given_may_be_a_calibration(text: str, value: float, newt
 def test_what_is_no_calibration_is_refused(text: str, si: str) -> None:
     with pytest.raises(UnitError, match="is no calibration"):
         given_conversion(text, si)
+
+
+@pytest.mark.parametrize(
+    ("line", "rate"),
+    [
+        ("Sample Frequency (Hz): 10000", "10000Hz"),
+        ("Sampling rate: 2.5 kHz", "2.5kHz"),
+        ("sample_rate;50;Hz", "50Hz"),
+        ("Sample rate: 100", ""),
+        ("Resampled at 5 Hz", ""),
+        ("Sample height (mm): 20", ""),
+    ],
+)
+def test_a_line_may_state_the_sampling(line: str, rate: str) -> None:
+    assert sampling_said(("Operator: A", line)) == rate
