@@ -383,10 +383,11 @@ def _conversions(
             if error.likely and name not in units:
                 wrong[name] = (f"{place}: {error}", error.likely)
                 continue
-            giving = origin.units(**{name: "UNIT"})
             kept = origin.kept_in("units", name)
             said = f", unit in {kept}" if kept else ""
-            raise RecordingError(f"{place}{said}: {error} (or give it: {giving})") from None
+            given = bool(units.get(name)) and not kept
+            giving = "" if given else f" (or give it: {origin.units(**{name: 'UNIT'})})"
+            raise RecordingError(f"{place}{said}: {error}{giving}") from None
     return found, tuple(without), wrong
 
 

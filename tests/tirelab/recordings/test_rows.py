@@ -107,6 +107,7 @@ def test_rows_before_the_clock_runs_are_skipped_and_named() -> None:
     np.testing.assert_array_equal(rows.values["time"], [0.0, 0.1, 0.2])
     np.testing.assert_array_equal(rows.values["force"], [6.0, 7.0, 8.0])
     assert rows.place(0) == "row 4"
-    # a clock that is coarser than the samples, and one that never runs
+    # one row alone, a clock that is coarser than the samples, and one that never runs
+    assert rows_of(time=[0.0, 0.0, 0.1], force=[5.0, 5.5, 6.0]).kept is None
     assert rows_of(time=[0.0, 0.0, 1.0, 1.0, 2.0], force=[5.0, 5.5, 6.0, 7.0, 8.0]).kept is None
     assert rows_of(time=[0.0, 0.0, 0.0], force=[5.0, 5.5, 6.0]).kept is None
