@@ -213,6 +213,21 @@ def test_held_out_recordings_are_told_apart(kinds: dict[str, Any], tmp_path: Pat
     assert "No data was held out" in text
 
 
+def test_a_part_is_no_tire_on_its_page(kinds: dict[str, Any], tmp_path: Path) -> None:
+    made = kinds["one"]
+    of_part = made.diagnosis | {"baseline_tire": {"two_sided": True}}
+    write_report(tmp_path / "r.html", of_part, made.recordings, made.before, made.after)
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    for said in (
+        "Baseline part: ",
+        "the force that the baseline part does not explain",
+        "<dt>Corrected part</dt>",
+    ):
+        assert said in page
+    assert "baseline tire" not in page
+    assert "Corrected tire" not in page
+
+
 def test_names_notes_and_files_cannot_become_markup(kinds: dict[str, Any], tmp_path: Path) -> None:
     made = kinds["unknown"]
     named = [
