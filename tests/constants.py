@@ -93,7 +93,6 @@ DERIVED = (
     "selection/search.GRID",
     "selection/search.LIKE_NOISE",
     "estimation/findings.DETERMINED",
-    "estimation/findings.SHAPE_INDICES",
     "estimation/findings.SENSITIVITY_STEP",
     "estimation/minimise.DAMPING",
     "estimation/fit.FORM_SCALES",

@@ -26,9 +26,6 @@ from .problem import COMMON, law_surfaces, tire_of
 FloatArray = NDArray[np.float64]
 
 
-SHAPE_INDICES = range(2, COMMON)
-"""Indices of the parameters of the shape among those of a refitted law."""
-
 DETERMINED = 0.5
 """A parameter counts as determined by the recordings if its standard deviation is below this part of the prior's."""
 
@@ -48,7 +45,7 @@ class FittedParameter:
 
 
 def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
-    """Return all fitted parameters; of a refitted law the changes of A and B on each surface.
+    """Return all fitted parameters; of a refitted law the changes of A and B on each surface, its shape and preload.
 
     Their covariance is that of Laplace's approximation, with the variance V of noise and discrepancy and with the form
     errors as further coefficients.
@@ -61,7 +58,7 @@ def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
     spread = np.sqrt(np.diag(covariance))[: slopes.shape[1]]
     found = []
     for p, position, own in zip(fit.problem.parameters, fit.positions, spread, strict=True):
-        if p.owner == LAW and p.index not in SHAPE_INDICES:
+        if p.owner == LAW and (p.index < 2 or p.index in _of_surfaces(fit)):
             continue
         value = p.value(float(position))
         slope = p.spread * (value if p.logarithm else 1.0)
@@ -79,6 +76,12 @@ def _covariance(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(ways.T @ (ways / (1.0 + sizes**2)[:, None]))
 
 
+def _of_surfaces(fit: Fit) -> range:
+    """Return the indices of the law's parameters that are of one surface: with one alone it has none of its own."""
+    surfaces = law_surfaces(fit.problem.dataset)
+    return range(COMMON, COMMON + 2 * surfaces if surfaces > 1 else COMMON)
+
+
 def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[FittedParameter]:
     """Return the changes of A and B on each surface, each the sum of the common change and that of the surface."""
     at = {p.index: i for i, p in enumerate(fit.problem.parameters) if p.owner == LAW}
@@ -91,7 +94,8 @@ def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[FittedParame
         where = "flat" if np.isinf(radius) else f"{100.0 * radius:.4g} cm"
         where = where if surfaces == len(dataset.radii) else "all surfaces"
         for first, name in ((0, "log factor on A"), (1, "change of B")):
-            parts = [i for i in (at.get(first), at.get(COMMON + 2 * number + first)) if i is not None]
+            own = COMMON + 2 * number + first
+            parts = [at[i] for i in (first, own) if i in at and (i == first or i in _of_surfaces(fit))]
             weights = np.array([fit.problem.parameters[i].spread for i in parts])
             value = float(weights @ fit.positions[parts])
             deviation = float(np.sqrt(weights @ covariance[np.ix_(parts, parts)] @ weights))

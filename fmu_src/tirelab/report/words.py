@@ -39,11 +39,14 @@ _COORDINATES = {
 }
 
 
-_OF_THE_LAW = {
+_OF_A_SURFACE = {
     "log factor on A": "natural logarithm of the factor on the coefficient A of F = A x^B",
     "change of B": "added to the exponent B of F = A x^B",
 }
-"""Parameters of a refitted law, each on one surface."""
+"""Parameters of a refitted law on each surface."""
+
+_OF_THE_LAW = {**_OF_A_SURFACE, "preload": "added to the force of the part without a deflection"}
+"""The same, and the preload of a part."""
 
 
 def meaning(effect: str, parameter: str) -> str:
@@ -127,7 +130,7 @@ def interval(
 
 def is_of_a_surface(parameter: str) -> bool:
     """Return whether a parameter of a refitted law belongs to one surface."""
-    return parameter.partition(",")[0] in _OF_THE_LAW
+    return parameter.partition(",")[0] in _OF_A_SURFACE
 
 
 def law_row(row: Mapping[str, Any], kind: str = "tire") -> dict[str, str]:

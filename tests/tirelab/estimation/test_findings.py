@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 from drives import damped
-from radialtire import TireModel
+from radialtire import PowerLaw, TireModel
+from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.findings import Remainder, _covariance, of_the_written_tire, remainder_of
+from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import dataset_of
 
 
@@ -135,3 +137,20 @@ def test_single_samples_that_stand_out_are_no_remainder() -> None:
     after = WHITE[:2000] / np.std(WHITE[:2000])
     after[100::200] = 100.0
     assert of_the_written_tire(COMPARED, [after], [after], 1.0) == COMPARED
+
+
+def test_the_preload_of_a_part_is_no_factor_of_its_law() -> None:
+    """F = 100 N + 10 N/mm x, where 10 N/mm x is believed: the mean of 1000 samples of 1 N is known to 0.03 N."""
+    time = 0.02 * np.arange(1000)
+    x = 0.01 * np.sin(0.4 * np.pi * time)
+    force = 100.0 + 1e4 * x + np.random.default_rng(0).standard_normal(time.size)
+    part = TireModel(PowerLaw(100.0, 1.0), two_sided=True, inflated=False)
+    one = Recording("part", time, x, np.full(time.size, np.inf), force)
+    (law,) = diagnose(one, part, catalogue=("recalibration",)).effects
+    assert law.parameters["preload"].value == pytest.approx(100.0, abs=1.0)
+    assert law.parameters["preload"].unit == "N"
+    assert 0.03 < law.parameters["preload"].std < 1.0
+    factor = law.parameters["log factor on A, flat"]
+    # The force of the spring is 71 N root mean square: the slope is known to 1 / 71 / 1000 ** 0.5.
+    assert factor.value == pytest.approx(0.0, abs=0.005)
+    assert factor.std < 0.01
