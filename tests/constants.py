@@ -54,6 +54,7 @@ KINDS: dict[str, str] = {
 
 DERIVED = (
     "preprocessing/data_checks.BY_CHANCE",
+    "preprocessing/data_checks.FEWEST_BESIDE",
     "preprocessing/data_checks.FEWEST_SAMPLES",
     "preprocessing/data_checks.FEWEST_STEPS",
     "preprocessing/data_checks.FOLLOWED",

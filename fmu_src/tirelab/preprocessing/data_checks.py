@@ -23,11 +23,14 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 
-FEWEST_SAMPLES = 100
-"""Fewest samples of a recording: fewer cannot distinguish the effects from each other and from the noise."""
-
 FEWEST_STEPS = 8
 """Fewest distinct deflections of a recording: with fewer, a cycle has no shape."""
+
+FEWEST_SAMPLES = 100
+"""Fewest samples of all recordings: fewer cannot distinguish the effects from each other and from the noise."""
+
+FEWEST_BESIDE = 3 * FEWEST_STEPS
+"""Fewest samples of one recording beside others: those of a cycle, and as many again for its noise."""
 
 RELATED = 0.2
 """Least multiple correlation of the force with deflection, rate and acceleration; below it the force has another
@@ -45,10 +48,12 @@ def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False)
     """
     if not recordings:
         raise PoorRecording("no recording was given; name at least one to diagnose")
+    together = sum(r.time.size for r in recordings)
     for r in recordings:
         where = f"recording {r.name}"
-        if r.time.size < FEWEST_SAMPLES:
-            raise PoorRecording(f"{where} has {r.time.size} samples; at least {FEWEST_SAMPLES} are needed")
+        fewest = FEWEST_BESIDE if together >= FEWEST_SAMPLES else FEWEST_SAMPLES
+        if r.time.size < fewest:
+            raise PoorRecording(f"{where} has {r.time.size} samples; at least {fewest} are needed")
         if np.ptp(r.deflection) <= 0.0:
             raise PoorRecording(f"{where} has one constant deflection; record at least one full cycle")
         if np.ptp(r.force) <= 0.0:

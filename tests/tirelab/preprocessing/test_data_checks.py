@@ -13,6 +13,7 @@ import pytest
 from numpy.typing import NDArray
 from radialtire import TireModel
 from tirelab.preprocessing.data_checks import (
+    FEWEST_BESIDE,
     FEWEST_SAMPLES,
     FEWEST_STEPS,
     SETTLING,
@@ -58,8 +59,14 @@ def first(samples: int) -> dict[str, np.ndarray]:
 
 
 def test_a_good_recording_passes() -> None:
-    check_recordings([recording(), recording(**first(FEWEST_SAMPLES))])
+    check_recordings([recording(**first(FEWEST_SAMPLES))])
+    check_recordings([recording(), recording(**first(FEWEST_BESIDE))])
     checked()
+
+
+def test_a_few_samples_are_enough_beside_others_only() -> None:
+    assert "has 99 samples; at least 100" in refused(recording(**first(FEWEST_SAMPLES - 1)))
+    assert "has 23 samples; at least 24" in refused(recording(), recording(**first(FEWEST_BESIDE - 1)))
 
 
 def test_nothing_is_refused() -> None:
@@ -69,7 +76,6 @@ def test_nothing_is_refused() -> None:
 @pytest.mark.parametrize(
     ("channels", "reason"),
     [
-        (first(FEWEST_SAMPLES - 1), "has 99 samples; at least 100"),
         ({"deflection": np.full(2000, 0.01)}, "has one constant deflection"),
         ({"force": np.full(2000, 10.0)}, "has one constant force"),
         ({"deflection": DEFLECTION - 0.03}, "never loads the tire"),
