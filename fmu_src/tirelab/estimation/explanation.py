@@ -60,7 +60,7 @@ BoolArray = NDArray[np.bool_]
 
 Progress = Callable[[str], None]
 
-LIKE_LAW = "it depends on the deflection only in this motion: unload as well, and load at another speed"
+LIKE_LAW = "it depends on the deflection only in this motion: load and unload to two depths, at two speeds"
 """Why an effect cannot be shown that no law depends on elsewhere."""
 
 LIKE_PRELOAD = "it is one force in this motion: the preload of a refitted law is the same"
