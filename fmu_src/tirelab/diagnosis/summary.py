@@ -47,7 +47,7 @@ def summarise(
     )
     likeliest = "no explanation is likely" if alternative_is_likelier else "this is the likeliest explanation"
     said = [f"Undecided; {likeliest}."] if undecided else []
-    said.append(headline(names, bool(regressions), doubted, left))
+    said.append(headline(names, bool(regressions), doubted, left, [e.name for e in effects if e.in_baseline]))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit, alternatives)
     if regressions:

@@ -114,7 +114,8 @@ class Verdict:
     def __repr__(self) -> str:
         fit = self.fit
         left = more_than_noise(fit.left, fit.noise)
-        said = headline([e.name for e in self.effects], self.unexplained, False, left).removesuffix(".")
+        names, changed = [e.name for e in self.effects], [e.name for e in self.effects if e.in_baseline]
+        said = headline(names, self.unexplained, False, left, changed).removesuffix(".")
         alternatives = f", {len(self.alternatives)} alternative" if self.alternatives else ""
         return (
             f"Verdict({said!r}, {100.0 * self.confidence:.0f} % sure, {fit.before:.3g} -> {fit.after:.3g} N, "
@@ -187,6 +188,7 @@ class Verdict:
             "share": effect.share,
             "probability": effect.probability,
             "grounds": dict(effect.grounds),
+            "in_baseline": effect.in_baseline,
             "size": effect_size(effect.name, self.tire, self.baseline, self.recordings),
         }
         if effect.name == REFITTED_LAW:

@@ -250,6 +250,7 @@ def _explanation(
     pairs = [(ranking.fits[i], weights[i]) for i in order]
     own = ranking.posteriors[order[0]]
     included = ranking.inclusion()
+    held = {effect.name for effect, _ in chosen.problem.dataset.tire.effects}
     effects = [
         NamedEffect(
             name,
@@ -260,6 +261,7 @@ def _explanation(
             },
             _share(ranking, chosen, name),
             min(included[name], 1.0),
+            in_baseline=name in held,
         )
         for name in chosen.names
     ]

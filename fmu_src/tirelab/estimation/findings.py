@@ -268,11 +268,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class NamedEffect:
-    """An effect that the baseline lacks.
+    """An effect that the baseline lacks, or has with other values.
 
     parameters: its fitted parameters by their names; share: part of the misfit's power beyond the noise that comes back
     where it alone is removed; probability: that it is present; grounds: the numbers on which a calibrated probability
-    rests, empty where the probability is that of the ranking
+    rests, empty where the probability is that of the ranking; in_baseline: whether the baseline has it, with other
+    values
     """
 
     name: str
@@ -280,6 +281,7 @@ class NamedEffect:
     share: float
     probability: float
     grounds: Mapping[str, float] = field(default_factory=dict)
+    in_baseline: bool = False
 
 
 @dataclass(frozen=True)

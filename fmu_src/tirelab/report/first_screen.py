@@ -83,7 +83,9 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
         return "These recordings cannot decide between the explanations; the likeliest one is shown."
     if physics:
         both = " ".join(physics[:2])
-        return both if len(both) <= LONGEST_LEAD else physics[0]
+        said = both if len(both) <= LONGEST_LEAD else physics[0]
+        changed = all(e.get("in_baseline") for e in verdict["effects"] if e["name"] in CATALOGUE)
+        return f"{said} The simulation has it, with other values." if changed else said
     if verdict["unexplained"]:
         return "No known effect explains the difference."
     if names and _left_over(diagnosis):
@@ -196,8 +198,7 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
     physics = [e for e in verdict["effects"] if e["name"] != REFITTED_LAW]
     refitted = len(physics) < len(verdict["effects"])
     parts = [
-        (titles.short_title(e["name"]), words.of_load(e.get("size"), diagnosis["fit"].get("load")))
-        for e in _by_size(physics)
+        (_short(e), words.of_load(e.get("size"), diagnosis["fit"].get("load"))) for e in _by_size(physics)
     ]
     if verdict["unexplained"]:
         rms = verdict.get("remainder", {}).get("rms")
@@ -220,6 +221,12 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
         others = len(parts) - shown
         more = f"{others} more effect{'s' if others > 1 else ''}"
         yield _capital(f"{titles.listed([*(name for name, _ in parts[:shown]), more])}{law}")
+
+
+def _short(effect: Mapping[str, Any]) -> str:
+    """Return the short title of an effect, with a remark where the baseline has it too."""
+    title = titles.short_title(effect["name"])
+    return f"{title} (other values)" if effect.get("in_baseline") else title
 
 
 def _left_over(diagnosis: Mapping[str, Any]) -> bool:

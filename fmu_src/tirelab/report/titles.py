@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from radialtire import CATALOGUE
 
@@ -120,11 +120,18 @@ def more_than_noise(error: float, noise: float) -> bool:
     return error > AT_THE_FLOOR * max(noise, 1e-12)
 
 
-def headline(names: Sequence[str], unexplained: bool, alternatives: bool, left: bool = False) -> str:
+def headline(
+    names: Sequence[str],
+    unexplained: bool,
+    alternatives: bool,
+    left: bool = False,
+    changed: Collection[str] = (),
+) -> str:
     """Return the verdict in one line.
 
     names: of its effects; unexplained: whether something unknown acts; alternatives: whether there are any; left:
-    whether the correction leaves more than the noise
+    whether the correction leaves more than the noise; changed: those of the effects that the baseline has too, with
+    other values
     """
     physics = [name for name in names if name != REFITTED_LAW]
     if names and left and not physics and not unexplained:
@@ -136,10 +143,16 @@ def headline(names: Sequence[str], unexplained: bool, alternatives: bool, left: 
     elif not names:
         text = "Something is missing that no known effect explains"
     else:
-        parts = [full_title(name) for name in physics]
+        parts = [full_title(name) for name in physics if name not in changed]
         if unexplained:
             parts.append("something that no known effect explains")
-        text = f"Left out: {listed(parts)}"
+        said = [f"Left out: {listed(parts)}"] if parts else []
+        if others := [full_title(name) for name in physics if name in changed]:
+            said.append(
+                f"{listed(others)} {'has' if len(others) == 1 else 'have'} other values than simulated"
+            )
+        text = "; ".join(said)
+        text = f"{text[0].upper()}{text[1:]}"
         if REFITTED_LAW in names:
             text += ", and the elastic law has other coefficients"
     if alternatives:

@@ -81,7 +81,8 @@ def check_contract(content: Any) -> None:
     assert len(verdict["alternative_details"]) == len(verdict["alternatives"])
     assert ("corrections" in verdict) == verdict["unexplained"]
     for effect in verdict["effects"]:
-        assert effect.keys() - {"law"} == {"name", "parameters", "share", "probability", "grounds", "size"}
+        own = {"name", "parameters", "share", "probability", "grounds", "in_baseline", "size"}
+        assert effect.keys() - {"law"} == own
         assert all(map(math.isfinite, effect["grounds"].values()))
         assert 0.0 < effect["size"] < content["fit"]["load"]
         assert 0.0 <= effect["probability"] <= 1.0

@@ -268,6 +268,13 @@ def test_a_recording_that_would_make_a_sure_verdict_surer_is_named() -> None:
     assert (step.action, step.why) == ("Nothing: use this tire.", "To be surer still, drive drive.csv.")
 
 
+def test_an_effect_that_the_simulation_has_is_said_to_have_other_values() -> None:
+    given = diagnosis({"inertia": 9.0}, 0.97)
+    given["verdict"]["effects"][0]["in_baseline"] = True
+    assert first_screen.headline(given) == "Inertia (other values), 2 % of the load"
+    assert first_screen.lead(given).endswith(" The simulation has it, with other values.")
+
+
 @pytest.mark.parametrize("name", ["b", "x" * 80])
 def test_a_contradiction_comes_before_everything_else(name: str) -> None:
     given = diagnosis({"inertia": 9.0}, 0.97)

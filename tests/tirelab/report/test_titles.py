@@ -90,6 +90,19 @@ def test_first_sentences(
     assert titles.headline(names, unexplained, bool(alternatives)) == told
 
 
+def test_an_effect_that_the_baseline_has_is_not_left_out() -> None:
+    assert titles.headline(["inertia"], False, False, changed=["inertia"]) == (
+        "Inertia has other values than simulated."
+    )
+    several = titles.headline(
+        ["inertia", "force_lag", "saturation"], True, False, changed=["inertia", "saturation"]
+    )
+    assert several == (
+        "Left out: force lag and something that no known effect explains; inertia and saturation have other values "
+        "than simulated."
+    )
+
+
 def test_a_refitted_law_that_leaves_more_than_the_noise_does_not_say_that_nothing_is_missing() -> None:
     assert titles.headline(["recalibration"], False, False, left=True) == (
         "The elastic law has other coefficients, and more than the noise is left."
