@@ -40,6 +40,7 @@ from ..planning.waveforms import sample_times, slow_triangles
 from ..recordings.recording import Recording
 from .baseline import baseline_tire
 from .folders import read_json
+from .metrics import COVERAGE, RESAMPLES
 
 SPEED, SAMPLING, TIME = 0.2, 0.005, 120.0
 """Fastest motion [m/s], sampling step [s] and time [s] of the rig: a servo-hydraulic one for two minutes."""
@@ -195,11 +196,29 @@ def summary(found: Sequence[dict[str, Any]]) -> list[str]:
     planned, *others = ARMS
     for other in others:
         if missed[other]:
-            told = f"{missed[planned] / missed[other]:.2f} (wanted: at most 0.33)"
+            rows = [[row[arm][2] != "right" for row in found] for arm in (planned, other)]
+            low, high = ratio_interval(*rows)
+            told = (
+                f"{missed[planned] / missed[other]:.2f} (95 %: {low:.2f} to {high:.2f}; wanted: at most 0.33)"
+            )
         else:
             told = "none of the latter is wrong or undecided, more trials are needed"
         lines.append(f"wrong or undecided after the plan over {ARMS[other]}: {told}")
     return lines
+
+
+def ratio_interval(first: Sequence[bool], second: Sequence[bool]) -> tuple[float, float]:
+    """Return the 95 % interval of how many times as many trials are missed in the first way as in the second, by
+    resampling the trials: both ways are tried on each, so they share its luck.
+    """
+    missed = np.array([first, second], dtype=np.float64)
+    drawn = np.random.default_rng(1).integers(missed.shape[1], size=(RESAMPLES, missed.shape[1]))
+    one, other = missed[:, drawn].sum(axis=2)
+    ratios = np.full(RESAMPLES, math.inf)  # where nothing is missed in the second way
+    np.divide(one, other, out=ratios, where=other > 0.0)
+    tail = 50.0 * (1.0 - COVERAGE)
+    low, high = np.percentile(ratios, [tail, 100.0 - tail], method="inverted_cdf")
+    return float(low), float(high)
 
 
 @click.command()

@@ -8,7 +8,16 @@ import pytest
 from concealed.__main__ import trial_seed
 from tirelab.planning.menu import drive_of
 from tirelab.planning.rig import Rig
-from tirelab.validation.plans import TIME, outcome_of, rig_of, right_sets, slow_instead, slow_on_one, summary
+from tirelab.validation.plans import (
+    TIME,
+    outcome_of,
+    ratio_interval,
+    rig_of,
+    right_sets,
+    slow_instead,
+    slow_on_one,
+    summary,
+)
 
 
 def test_slow_triangles_take_the_same_time_on_the_same_surface() -> None:
@@ -65,6 +74,16 @@ def test_the_summary_counts() -> None:
     assert "1 right, 2 wrong, 1 undecided of 4 after slow triangles of its lengths" in triangles
     assert "0 right, 4 wrong, 0 undecided of 4" in alone
     assert [float(r.split(": ")[1].split()[0]) for r in ratios] == [0.33, 0.25]
+
+
+def test_the_interval_of_a_ratio_shares_the_trials() -> None:
+    """Missed together, the ratio is 1 however few the trials; by chance, it is as wide as the counts make it."""
+    both = [True] * 3 + [False] * 5
+    assert ratio_interval(both, both) == (1.0, 1.0)
+    assert ratio_interval([False] * 8, both)[0] == 0.0
+    # The logarithm of the ratio of two multinomial counts of 100 has the variance 2 / 100.
+    low, high = ratio_interval([True] * 100 + [False] * 900, [False] * 900 + [True] * 100)
+    assert np.log(high / low) == pytest.approx(2.0 * 1.96 * math.sqrt(2.0 / 100.0), rel=0.15)
 
 
 def test_a_verdict_beside_a_likely_alternative_is_undecided() -> None:
