@@ -150,9 +150,10 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
             for number, drive in enumerate(plan.drives, 1)
         ),
         f"{told} of {asked} pairs are told apart in 19 of 20 tests at {100.0 * plan.size:g} % of the peak force; "
-        f"the menu can tell {possible}",
+        f"{possible} can be within these limits",
         *_beside(plan),
         "",
+        "probability that an effect is named and nothing else, by its largest response over the peak force:",
     ]
     lines += _table(plan, [f"{100.0 * size:g} %" for size in SIZES])
     if plan.silent:
@@ -169,7 +170,11 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
             f"{_title(HELD.name)}: recordings at two pressures show it, give those that can be held: --pressures "
             "2bar,3bar"
         )
-    return [*lines, f"written: {out / PLAN}, {out / 'plan.png'} and the drive files"]
+    return [
+        *lines,
+        f"written: {out / PLAN}, {out / 'plan.png'} and the drive files",
+        "drive each file as a recording of its own, rest between them, and diagnose all of them together",
+    ]
 
 
 def _beside(plan: RecordingPlan) -> list[str]:
@@ -180,8 +185,7 @@ def _beside(plan: RecordingPlan) -> list[str]:
     if not asked:
         return []
     return [
-        f"{told} of {asked} are named beside another effect that is {LOUDER:g} times as large; the menu can tell "
-        f"{possible}"
+        f"{told} of {asked} are named beside another effect that is {LOUDER:g} times as large; {possible} can be"
     ]
 
 

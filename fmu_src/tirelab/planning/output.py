@@ -20,6 +20,7 @@ from .menu import Drive
 from .plan import RecordingPlan, file_name
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 PICTURE = "plan.png"
 
@@ -28,6 +29,9 @@ DRAWN = 4000
 
 READABLE = 0.75
 """Probability whose shade is dark enough for white figures."""
+
+BAR = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+"""Probabilities at the colour bar. Half is a guess between two."""
 
 _SHADES = LinearSegmentedColormap.from_list("told", ["#ffffff", PLAIN.after])
 
@@ -54,7 +58,7 @@ def write_plan(plan: RecordingPlan, folder: Path) -> None:
 def draw_plan(plan: RecordingPlan, path: Path) -> None:
     """Draw the drives over time, and beside them the probability that each effect is told from each other one."""
     count = max(len(plan.drives), 1)
-    table, truths, alternatives = _matrix(plan)
+    table, hopeless, truths, alternatives = _matrix(plan)
     height = max(1.15 * count + 0.8, 0.3 * len(truths) + 2.4)
     figure = Figure(figsize=(13.5, height), layout="constrained", facecolor="white")
     left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.25), squeeze=False)[0]
@@ -75,21 +79,24 @@ def draw_plan(plan: RecordingPlan, path: Path) -> None:
         axis.tick_params(labelsize=8)
         axis.spines[["top", "right"]].set_visible(False)
     axes[-1].set_xlabel("time [s]", fontsize=8)
-    _draw_matrix(right.subplots(), table, truths, alternatives, plan)
+    _draw_matrix(right.subplots(), table, hopeless, truths, alternatives, plan)
     figure.savefig(path, dpi=110)
 
 
-def _matrix(plan: RecordingPlan) -> tuple[FloatArray, list[str], list[str]]:
+def _matrix(plan: RecordingPlan) -> tuple[FloatArray, BoolArray, list[str], list[str]]:
+    """Return the probability of each pair, NaN where it was not asked for, whether nothing that is driven tells the two
+    apart, and the names of rows and columns.
+    """
     truths = list(dict.fromkeys(a.question.truth for a in plan.answers))
-    pairs = [
-        (a.question.truth, _alternative_name(a.question.alternative), a.probability) for a in plan.answers
-    ]
+    pairs = [(a.question.truth, _alternative_name(a.question.alternative), a) for a in plan.answers]
     order = [*truths, *(alternative for _, alternative, _ in pairs)]
     alternatives = list(dict.fromkeys(name for name in order if any(name == r for _, r, _ in pairs)))
     table = np.full((len(truths), len(alternatives)), math.nan)
-    for truth, alternative, probability in pairs:
-        table[truths.index(truth), alternatives.index(alternative)] = probability
-    return table, truths, alternatives
+    hopeless = np.zeros(table.shape, dtype=bool)
+    for truth, alternative, answer in pairs:
+        place = truths.index(truth), alternatives.index(alternative)
+        table[place], hopeless[place] = answer.probability, not answer.possible
+    return table, hopeless, truths, alternatives
 
 
 def _alternative_name(alternative: frozenset[str]) -> str:
@@ -99,9 +106,15 @@ def _alternative_name(alternative: frozenset[str]) -> str:
 
 
 def _draw_matrix(
-    axis: Axes, table: FloatArray, truths: list[str], alternatives: list[str], plan: RecordingPlan
+    axis: Axes,
+    table: FloatArray,
+    hopeless: BoolArray,
+    truths: list[str],
+    alternatives: list[str],
+    plan: RecordingPlan,
 ) -> None:
-    image = axis.imshow(table, cmap=_SHADES, vmin=0.5, vmax=1.0, aspect="auto")
+    axis.set_facecolor(PLAIN.band)  # shows through where nothing was asked
+    image = axis.imshow(table, cmap=_SHADES, vmin=BAR[0], vmax=BAR[-1], aspect="auto")
     axis.set_yticks(range(len(truths)), [short_title(n) for n in truths], fontsize=8)
     axis.set_xticks(
         range(len(alternatives)), [short_title(n) for n in alternatives], fontsize=8, rotation=60, ha="right"
@@ -109,13 +122,15 @@ def _draw_matrix(
     for (i, j), value in np.ndenumerate(table):
         if math.isfinite(value) and value < TOLD:
             colour = PLAIN.ink if value < READABLE else "white"
-            axis.text(j, i, f"{100.0 * value:.0f}", ha="center", va="center", fontsize=7, color=colour)
+            text = f"{100.0 * value:.0f}{'*' if hopeless[i, j] else ''}"
+            axis.text(j, i, text, ha="center", va="center", fontsize=7, color=colour)
     axis.set_ylabel("true")
     axis.set_xlabel("taken for")
     axis.set_title(
         f"probability [%] of the right answer at {100.0 * plan.size:.3g} % of {plan.peak:.0f} N\n"
-        f"(written where below {100.0 * TOLD:.0f} %)",
+        f"(written where below {100.0 * TOLD:.0f} %, *: whatever is driven; grey: not asked)",
         loc="left",
         fontsize=9,
     )
-    axis.get_figure().colorbar(image, ax=axis, shrink=0.6)  # type: ignore[union-attr]
+    bar = axis.get_figure().colorbar(image, ax=axis, shrink=0.6)  # type: ignore[union-attr]
+    bar.set_ticks(BAR, labels=["50 % or less", *(f"{100.0 * tick:.0f} %" for tick in BAR[1:])])

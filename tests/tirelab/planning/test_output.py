@@ -41,7 +41,8 @@ def test_the_picture_is_drawn(tmp_path: Path) -> None:
         Question("inertia", frozenset({LAW, "force_drift"}), 0.02, nested=False),
         Question(LAW, frozenset(), 0.02, nested=True),
     )
-    answers = tuple(Answer(q, p, True) for q, p in zip(questions, (0.99, 0.6, 0.97), strict=True))
+    found = ((0.99, True), (0.6, False), (0.97, True))
+    answers = tuple(Answer(q, *answer) for q, answer in zip(questions, found, strict=True))
     rows = (Row("inertia", (0.1, 0.5, 0.9), ("force_drift",), ()),)
     plan = RecordingPlan(RIG, "a tire", 0.02, (DRIVE,), rows, answers, (), 1500.0)
     draw_plan(plan, tmp_path / "plan.png")
