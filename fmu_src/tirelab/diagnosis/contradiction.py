@@ -29,7 +29,7 @@ EXPLAINED = 0.5
 together are left with, and less than this part of what it leaves of that recording."""
 
 BEYOND_NOISE = 3.0
-"""Least error of that tire on the recording, over its noise floor."""
+"""Least error of that tire on the recording, over its noise floor and the form errors of its effects together."""
 
 SUSPECTED = 2
 """Budget: most recordings without which the others are explained anew, the one furthest apart first."""
@@ -68,7 +68,8 @@ class Contradiction:
             whom, missed, where = "one", "the other", "they are driven alike"
         else:
             whom, missed, where = "the others", self.names[0], "it is driven as they are"
-        found = f"{explained} explains {whom} to {left} and misses {missed} by {own} where {where}."
+        verb, misses = ("explain", "miss") if len(self.effects) > 1 else ("explains", "misses")
+        found = f"{explained} {verb} {whom} to {left} and {misses} {missed} by {own} where {where}."
         return " ".join(filter(None, (f"{found[0].upper()}{found[1:]}", self.as_if)))
 
     @property
@@ -124,7 +125,8 @@ def contradiction_of(
         if others.error >= EXPLAINED * together or alike.mean() < NEGLIGIBLE:
             continue
         own = rmse([(recording.force - simulate(others.model.tire, recording))[alike]])
-        if own > max(others.error / EXPLAINED, BEYOND_NOISE * level):
+        forms = others.model.missed(smoothed_motion(recording, motions[number]))
+        if own > max(others.error / EXPLAINED, BEYOND_NOISE * float(np.hypot(level, forms))):
             names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
             as_if = _as_if(recording, motions[number], others.model.tire, alike, own)
             one = Contradiction(tuple(names), others.model.names, others.error, own, as_if)

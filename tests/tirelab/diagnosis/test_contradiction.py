@@ -120,6 +120,10 @@ def test_its_message_says_what_to_do() -> None:
         "it is driven as they are. Check tire, pressure and zero of each, and what it had been through, or diagnose b "
         "apart."
     )
+    several = Contradiction(("b",), ("viscous_damping", "inertia"), 2.0, 118.7)
+    assert several.finding.startswith(
+        "Viscous damping and inertia explain the others to 2.00 N and miss b by 119 N"
+    )
     two = Contradiction(("a", "b"), (), 2.0, 118.7)
     assert two.sentences == (
         "Recordings a and b contradict each other. The baseline explains one to 2.00 N and misses the other by 119 N "
