@@ -21,7 +21,7 @@ from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import newtons, set_title
-from ..simulation.simulate import simulate, smoothed_motion
+from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .acceptance import rmse
 
 EXPLAINED = 0.5
@@ -125,10 +125,11 @@ def contradiction_of(
         if others.error >= EXPLAINED * together or alike.mean() < NEGLIGIBLE:
             continue
         own = rmse([(recording.force - simulate(others.model.tire, recording))[alike]])
-        forms = others.model.missed(smoothed_motion(recording, motions[number]))
+        moved = smoothed_motion(recording, motions[number])
+        forms = others.model.missed(moved)
         if own > max(others.error / EXPLAINED, BEYOND_NOISE * float(np.hypot(level, forms))):
             names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
-            as_if = _as_if(recording, motions[number], others.model.tire, alike, own)
+            as_if = _as_if(recording, moved, others.model.tire, alike, own)
             one = Contradiction(tuple(names), others.model.names, others.error, own, as_if)
             found.append((others.error, one))
         if not others.remainder.unexplained:
@@ -190,12 +191,11 @@ def _apart(misfits: Sequence[FloatArray], states: Sequence[IndexArray]) -> Float
     return np.asarray(np.sqrt(powers))
 
 
-def _as_if(recording: Recorded, motion: Motion, tire: TireModel, alike: BoolArray, own: float) -> str:
+def _as_if(recording: Recorded, moved: SmoothedMotion, tire: TireModel, alike: BoolArray, own: float) -> str:
     """Return the one change of a recording that makes it agree with the tire of the others; empty where none does.
 
     It agrees if less than EXPLAINED is left of the error `own` [N].
     """
-    moved = smoothed_motion(recording, motion)
     force = simulate(tire, moved, moved)
     missed = recording.force - force
 
@@ -203,7 +203,7 @@ def _as_if(recording: Recorded, motion: Motion, tire: TireModel, alike: BoolArra
         nearer = replace(moved, deflection=moved.deflection - shift)
         return rmse([(recording.force - simulate(tire, nearer, nearer))[alike]])
 
-    reach = 0.5 * float(np.ptp(motion.deflection))
+    reach = 0.5 * float(np.ptp(moved.deflection))
     shift = minimize_scalar(left_at, bounds=(-reach, reach), method="bounded")
     offset = float(missed[alike].mean())
     factor = float(force[alike] @ missed[alike]) / max(float(force[alike] @ force[alike]), 1e-300)
