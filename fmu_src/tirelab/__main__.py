@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
 import sys
+import threading
 from typing import Any, NoReturn
+
+AGAIN = 0.01
+"""Seconds after which a lost interrupt is repeated: what lost it is soon over, and if it is not, it comes back."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -20,11 +25,22 @@ def interrupt(*_: Any) -> NoReturn:
     raise Interrupted
 
 
+def repeat(lost: Any) -> None:
+    """Interrupt once more where a callback or a `__del__` was interrupted, of which Python only prints the error."""
+    if lost.exc_type is Interrupted:
+        timer = threading.Timer(AGAIN, _thread.interrupt_main)
+        timer.daemon = True
+        timer.start()
+    else:
+        sys.__unraisablehook__(lost)
+
+
 def main() -> None:
     """Run the command on the command line; interrupted, also while modules are loaded, end with status 1."""
     try:
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, interrupt)
+            sys.unraisablehook = repeat
         from .cli import main as program
 
         try:

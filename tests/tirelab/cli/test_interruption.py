@@ -85,6 +85,30 @@ main()
 """
 """Is interrupted where Python ends by the signal, had it been a plain KeyboardInterrupt."""
 
+IN_CALLBACK = """
+import os, signal, time, weakref
+import tirelab.cli
+from tirelab.__main__ import main
+
+class Held: ...
+
+def press(_):
+    os.kill(os.getpid(), signal.SIGINT)
+    [None for _ in range(1000)]
+
+def program():
+    held = Held()
+    seen = weakref.ref(held, press)
+    del held
+    time.sleep(3)
+    print("never interrupted")
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+tirelab.cli.main = program
+main()
+"""
+"""Is interrupted in a callback, as one of the import system: Python prints such an error and goes on."""
+
 
 def run(program: str, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run a program of Python as a module, in whose code no interrupt is looked at."""
@@ -179,3 +203,20 @@ def test_no_moment_is_left_at_which_python_ends_by_the_signal(
     monkeypatch.chdir(repository)
     done = run(IN_MADE_CODE, tmp_path)
     assert (done.returncode, done.stderr) == (1, "\nAborted!\n")
+
+
+def test_an_interrupt_that_a_callback_swallows_comes_again(
+    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done = run(IN_CALLBACK, tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "\nAborted!\n")
+
+
+def test_other_errors_in_a_callback_are_told_as_ever(
+    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done = run(IN_CALLBACK.replace("    os.kill(os.getpid(), signal.SIGINT)\n", "    1 / 0\n"), tmp_path)
+    assert "ZeroDivisionError" in done.stderr
+    assert done.stdout == "never interrupted\n"
