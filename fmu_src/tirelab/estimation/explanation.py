@@ -25,6 +25,7 @@ from ..regressors.signature import (
     Signature,
     candidates,
     constant,
+    gap_of,
     single_valued,
     size_of,
 )
@@ -65,6 +66,9 @@ LIKE_LAW = "it depends on the deflection only in this motion: load and unload to
 
 LIKE_PRELOAD = "it is one force in this motion: the preload of a refitted law is the same"
 """The same of a part, whose law has a preload."""
+
+LIKE_GAP = "it is the same as another gap of the part, a constant of the refitted law"
+"""The same of a part, whose law begins beyond a gap."""
 
 NEAR = 4.0
 """Log posterior odds of a set over the median set, or over a part of it, up to which the latter is preferred."""
@@ -222,6 +226,8 @@ def explain_misfit(
     hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
     if baseline.two_sided and LAW in catalogue:
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
+    if (gap := gap_of(baseline)) and LAW in catalogue:
+        hidden |= {gap[0].name: LIKE_GAP}
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
     blocks = FirstSets(dataset, raw, samples_of(recordings, baseline), held_out_of(held_out, baseline))

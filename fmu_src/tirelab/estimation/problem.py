@@ -41,6 +41,8 @@ from ..regressors.signature import (
     SHAPE,
     TWIST,
     form_error,
+    gap_of,
+    gap_spread,
     preload_spread,
     size_of,
 )
@@ -111,11 +113,11 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
     )
 
 
-def parameters_of_law(surfaces: int, preload: float = 0.0) -> tuple[FreeParameter, ...]:
+def parameters_of_law(surfaces: int, preload: float = 0.0, gap: float = 0.0) -> tuple[FreeParameter, ...]:
     """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and heights of the
-    shape, with more than one surface a further factor and exponent for each, and for a part its preload.
+    shape, with more than one surface a further factor and exponent for each, and for a part its preload or its gap.
 
-    preload [N]: standard deviation of its change; 0: of a tire, which has none
+    preload [N], gap [m]: standard deviations of their changes; 0: of a tire, which has none
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
     spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[HEIGHT] * HEIGHTS]
@@ -142,24 +144,28 @@ def parameters_of_law(surfaces: int, preload: float = 0.0) -> tuple[FreeParamete
         )
         for i, (label, spread) in enumerate(zip(labels, spreads, strict=True))
     )
-    if preload <= 0.0:
-        return shape
-    far = 2.0 / PRELOAD
-    own = FreeParameter(
-        LAW,
-        len(shape),
-        "preload",
-        "N",
-        0.0,
-        preload,
-        False,
-        -far,
-        far,
-        -far * preload,
-        far * preload,
-        group=8,
+    constants = ("preload", "N", preload, 2.0 / PRELOAD, 8), ("gap", "m", gap, 2.0 / FACTOR, 9)
+    return (
+        *shape,
+        *(
+            FreeParameter(
+                LAW,
+                len(shape),
+                label,
+                unit,
+                0.0,
+                spread,
+                False,
+                -far,
+                far,
+                -far * spread,
+                far * spread,
+                group=group,
+            )
+            for label, unit, spread, far, group in constants
+            if spread > 0.0
+        ),
     )
-    return (*shape, own)
 
 
 def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
@@ -269,11 +275,7 @@ def problem_of(dataset: Dataset, values: Values, *, plain: bool) -> EstimationPr
     """
     free: list[FreeParameter] = []
     for name in values:
-        own = (
-            parameters_of_law(law_surfaces(dataset), preload_spread(dataset))
-            if name == LAW
-            else parameters_of_effect(name, dataset.scales)
-        )
+        own = _parameters_of_law(dataset) if name == LAW else parameters_of_effect(name, dataset.scales)
         free += [p for p in own if not (plain and p.optional and values[name][p.index] == p.plain)]
     return EstimationProblem(dataset, tuple(values), tuple(free), values)
 
@@ -285,7 +287,11 @@ def law_surfaces(dataset: Dataset) -> int:
 
 def law_start(dataset: Dataset) -> tuple[float, ...]:
     """Return the values at which a refitted law is that of the baseline."""
-    return (0.0,) * len(parameters_of_law(law_surfaces(dataset), preload_spread(dataset)))
+    return (0.0,) * len(_parameters_of_law(dataset))
+
+
+def _parameters_of_law(dataset: Dataset) -> tuple[FreeParameter, ...]:
+    return parameters_of_law(law_surfaces(dataset), preload_spread(dataset), gap_spread(dataset))
 
 
 def with_readings(name: str, values: Sequence[float], dataset: Dataset) -> tuple[float, ...]:
@@ -303,6 +309,9 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         own = values[LAW][COMMON:]
         if tire.two_sided:
             tire = replace(tire, preload=tire.preload + own[-1])
+            own = own[:-1]
+        if gap := gap_of(tire):
+            effects.append((gap[0].name, (gap[1][0] - own[-1],)))
             own = own[:-1]
         radii = dataset.radii[: law_surfaces(dataset)]
         pairs = [(own[2 * i], own[2 * i + 1]) if own else (0.0, 0.0) for i in range(len(radii))]

@@ -27,7 +27,7 @@ from radialtire import CATALOGUE, Effect, TireModel
 from ..names import REFITTED_LAW
 from ..simulation.simulate import UPSTREAM, preload_of
 from .dataset import Dataset, arranged
-from .draws import at_reading, drawn, strengthened
+from .draws import at_reading, centre_and_spread, drawn, strengthened
 
 FloatArray = NDArray[np.float64]
 
@@ -78,9 +78,27 @@ def preload_spread(dataset: Dataset) -> float:
     return PRELOAD * dataset.scales.force if dataset.tire.two_sided else 0.0
 
 
+def gap_of(tire: TireModel) -> tuple[Effect, tuple[float, ...]] | None:
+    """Return the effect that holds the gap of a part's law, and its values; None of a tire and of a part without a gap.
+
+    A part's law that begins beyond a gap has an offset of the deflection as one of its constants, as others have a
+    preload: no recording of the part tells a change of it from another zero of the gauge.
+    """
+    offsets = [
+        (e, v) for e, v in tire.effects if e.place == "deflection" and {"static", "reading"} <= set(e.traits)
+    ]
+    return offsets[0] if offsets and not tire.inflated and not tire.two_sided else None
+
+
+def gap_spread(dataset: Dataset) -> float:
+    """Return the standard deviation [m] of the change of a part's gap at the scale 1; 0 where it has none."""
+    gap = gap_of(dataset.tire)
+    return centre_and_spread(gap[0].parameters[0], dataset.scales)[1] if gap else 0.0
+
+
 def law_signature(dataset: Dataset) -> Signature:
-    """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload where that is
-    more.
+    """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload or gap where
+    that is more.
     """
     gather = dataset.gathered
     x = gather(
@@ -105,6 +123,11 @@ def law_signature(dataset: Dataset) -> Signature:
     if dataset.tire.two_sided:
         many = dataset.experiments
         columns.append(dataset.stacked([np.full(e.time.size, preload_spread(dataset)) for e in many]))
+        size = max(size, size_of(columns[-1]))
+    if gap := gap_of(tire):
+        far = gap_spread(dataset)
+        ways = [arranged(tire, [(gap[0].name, (gap[1][0] + step,))]) for step in (far, -far)]
+        columns.append(0.5 * (dataset.response(ways[0]) - dataset.response(ways[1])))
         size = max(size, size_of(columns[-1]))
     basis = np.column_stack(columns) / max(size, 1e-300)
     none = np.zeros((0, force.size))

@@ -86,8 +86,9 @@ def _effect(effect: Mapping[str, Any], report: str, kind: str) -> list[Table | T
         surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
     lines.append(surfaces)
     others = {p: e for p, e in effect["parameters"].items() if not words.is_of_a_surface(p)}
-    if (preload := others.pop("preload", None)) is not None:
-        lines.append(Text(f"preload changed by {words.estimate(preload['value'], preload['std'], 'N')}"))
+    for constant in words.OF_A_PART:
+        if (e := others.pop(constant, None)) is not None:
+            lines.append(Text(f"{constant} changed by {words.estimate(e['value'], e['std'], e['unit'])}"))
     if shape := len(others):
         lines.append(Text(f"and {shape} constants of its shape: the curve is in {report}"))
     return lines

@@ -45,8 +45,13 @@ _OF_A_SURFACE = {
 }
 """Parameters of a refitted law on each surface."""
 
-_OF_THE_LAW = {**_OF_A_SURFACE, "preload": "added to the force of the part without a deflection"}
-"""The same, and the preload of a part."""
+OF_A_PART = {
+    "preload": "added to the force of the part without a deflection",
+    "gap": "added to the deflection at which the force of the part begins",
+}
+"""Constants of a part's law."""
+
+_OF_THE_LAW = {**_OF_A_SURFACE, **OF_A_PART}
 
 
 def meaning(effect: str, parameter: str) -> str:

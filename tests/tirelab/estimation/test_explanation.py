@@ -223,3 +223,37 @@ def test_a_part_whose_preload_was_fitted_without_what_relaxes_has_another_preloa
     reasons = dict(found.hidden)
     assert "preload" in reasons["force_offset"]
     assert "preload" in reasons["deflection_offset"]
+
+
+def test_a_part_whose_gap_was_fitted_without_what_relaxes_has_another_gap() -> None:
+    """10 N/mm from 2 mm on, of which 2 N/mm relax within 3 s; the law through it all was taken to begin at 1.5 mm."""
+    time = np.arange(0.0, 80.0, 0.02)
+    x = np.interp(time, [0.0, 5.0, 30.0, 35.0, 40.0, 65.0, 80.0], [0.0, 0.02, 0.02, 0.0, 0.012, 0.012, 0.0])
+    silent = Recording("stop", time, x, np.full(time.size, np.inf), np.zeros(time.size))
+    relaxation = CATALOGUE["viscoelastic_relaxation"]
+    values = {p.name: p.start for p in relaxation.parameters} | {"share_1": 0.2, "relaxation_time_1": 3.0}
+    effects = (relaxation, tuple(values[p.name] for p in relaxation.parameters))
+    gap = CATALOGUE["deflection_offset"]
+    true = TireModel(
+        PowerLaw(100.0, 1.0), effects=((gap, (-0.002,)), effects), inflated=False, tested_range=None
+    )
+    force = simulate(true, silent) + 0.1 * np.random.default_rng(3).normal(size=time.size)
+    believed = replace(true, law=PowerLaw(90.0, 1.1), effects=((gap, (-0.0015,)),))
+    names = (REFITTED_LAW, "viscoelastic_relaxation", "deflection_offset")
+    found = explain_misfit([replace(silent, force=force)], believed, names, lambda stage: None)
+    assert set(found.model.names) == {REFITTED_LAW, "viscoelastic_relaxation"}
+    (law,) = [e for e in found.effects if e.name == REFITTED_LAW]
+    changed = law.parameters["gap"]
+    assert changed.value == pytest.approx(0.0005, abs=3.0 * changed.std)
+    assert changed.std < 1e-4
+    ((_, (offset,)),) = [(e, v) for e, v in found.model.tire.effects if e is gap]
+    assert offset == pytest.approx(-0.0015 - changed.value)
+    assert "gap" in dict(found.hidden)["deflection_offset"]
+
+
+def test_the_deflection_of_a_tire_may_have_another_zero_whatever_the_baseline_has() -> None:
+    believed = TireModel(effects=((CATALOGUE["deflection_offset"], (0.001,)),))
+    found = explain_misfit(
+        RIDES, believed, (REFITTED_LAW, "deflection_offset", "viscous_damping"), lambda stage: None
+    )
+    assert "deflection_offset" not in dict(found.hidden)

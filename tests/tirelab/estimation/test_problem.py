@@ -175,3 +175,21 @@ def test_the_law_of_a_part_has_its_preload_and_that_of_a_tire_has_none() -> None
     last = problem_of(dataset, {REFITTED_LAW: start}, plain=False).parameters[-1]
     assert (last.label, last.unit, last.group) == ("preload", "N", 8)
     assert last.value(last.position(-3.0)) == pytest.approx(-3.0)
+
+
+def test_the_law_of_a_part_that_begins_beyond_a_gap_has_its_gap() -> None:
+    """F = k (x - x0): another gap is as much another deflection, of k newtons each metre."""
+    offset = CATALOGUE["deflection_offset"]
+    part = TireModel(PowerLaw(50.0, 1.0), effects=((offset, (-0.001,)),), inflated=False, tested_range=None)
+    dataset = dataset_of([damped(4, samples=2000)], part)
+    start = law_start(dataset)
+    assert len(start) == len(law_start(DATASET)) + 1
+    moved = tire_of(dataset, {REFITTED_LAW: (*start[:-1], 0.0002)})
+    ((_, (x0,)),) = moved.effects
+    assert x0 == pytest.approx(-0.0012)
+    (e,) = dataset.experiments
+    loaded = (e.deflection > 0.0015)[e.counts]
+    np.testing.assert_allclose(dataset.response(moved)[loaded], -5000.0 * 0.0002 / e.noise, rtol=1e-6)
+    last = problem_of(dataset, {REFITTED_LAW: start}, plain=False).parameters[-1]
+    assert (last.label, last.unit) == ("gap", "m")
+    assert last.value(last.position(-0.0003)) == pytest.approx(-0.0003)
