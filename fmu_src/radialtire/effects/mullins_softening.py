@@ -1,20 +1,21 @@
 """Rubber softened by the largest deflection so far (Mullins): the first loading is stiffer than all that follow.
 
-    F = A x^B (1 - D g (1 - exp(-u^p))),   u = (m_max - m(x)) / (r m_max + m_w)   for m(x) < m_max
+    F = A x^B (1 - D g (1 - exp(-u - c u^2))),   u = (m_max - m(x)) / (r m_max + m_w)   for m(x) < m_max
     m(x) = x (A x^B)^e,   m_w = w (A_0 w^B_0)^e,   g = 1 - exp(-s / l)
 
 m measures the load history, m_max is its largest value so far: the deflection itself (e = 0), the stored energy F x /
 (1 + B) (e = 1), or a measure between and beyond these. On one surface all of them are powers of the deflection; from
 one surface to another they differ. D is the fraction lost far below m_max; r and w say how far below it softening sets
 in, in proportion and as a fixed part (rubber has no characteristic length: w stays 0 unless the recordings require it;
-with A_0 and B_0 of Hull's tire on flat ground it is the same on every surface); p = 1 sets in at once, p = 2 smoothly.
-Above m_max the tire is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the
-path length travelled below m_max: with l > 0 the softening builds up over the cycles, with l = 0 it is complete at once
-(g = 1). Motion within DEAD_ZONE adds no path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in
-ten seconds.
+with A_0 and B_0 of Hull's tire on flat ground it is the same on every surface). With c = 0 softening approaches D
+exponentially. With c = 0.62 it is the error function of Ogden & Roxburgh within 0.002 of D, and for u < 0.2 a straight
+line within 0.0002 of D. Far above, it is a Gaussian, which sets in smoothly. Above m_max the tire is as new. `history`
+is the largest deflection before the recording, 0 for a new tire. s is the path length travelled below m_max: with l > 0
+the softening builds up over the cycles, with l = 0 it is complete at once (g = 1). Motion within DEAD_ZONE adds no
+path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in ten seconds.
 
-Ogden & Roxburgh write the dependence in the energy, with an error function. No published Mullins
-fraction of bicycle tires was found: the bounds are wide.
+Ogden & Roxburgh write the dependence in the energy. No published Mullins fraction of bicycle tires was found: the
+bounds are wide.
 
 Reference: R. W. Ogden, D. G. Roxburgh, "A pseudo-elastic model for the Mullins effect in filled rubber", Proc. R. Soc.
 Lond. A 455 (1999) 2861-2877.
@@ -29,13 +30,16 @@ from ..hull1996 import FLAT_COEFFICIENT, FLAT_EXPONENT
 from ..parameter import Parameter
 from ..prior import Prior
 
+ERROR_FUNCTION = 0.62
+"""c with which 1 - exp(-u - c u^2) is nearest to erf(u / 1.1), within 0.002."""
+
 DEAD_ZONE = 1e-4
 """Distance [m] from the last counted position within which motion adds nothing to the path length."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Multiply the factor by the softening; the state: largest measure, last counted position [m], path length [m]."""
-    share, ratio, width, sharpness, history, gathering, load = values
+    share, ratio, width, gaussian, history, gathering, load = values
     x = abs(instant.deflection) if instant.two_sided else instant.deflection
     largest, counted, path = state
     power = 1.0 + load * instant.exponent
@@ -52,8 +56,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
         return signal, (largest, counted, path)
     fixed = FLAT_COEFFICIENT**load * (100.0 * width) ** (1.0 + load * FLAT_EXPONENT)
     below = (largest - measure) / (ratio * largest + fixed)
-    if sharpness != 1.0:
-        below = below**sharpness
+    below += gaussian * below * below
     if gathering > 0.0:
         share *= -math.expm1(-(path + uncounted) / gathering)
     return signal * (1.0 + share * math.expm1(-below)), (largest, counted, path)
@@ -95,18 +98,26 @@ MULLINS_SOFTENING = Effect(
             10.0,
             "fixed part of that range",
             optional=True,
-            prior=Prior("normal", 0, 0.05, "travel"),
+            prior=Prior(
+                "normal",
+                0,
+                0.3,
+                "travel",
+                "Ogden & Roxburgh 1999: their m is of the size of the stored energy",
+            ),
         ),
         Parameter(
-            "sharpness",
-            "p",
+            "gaussian",
+            "c",
             "1",
-            1.0,
-            0.5,
-            4.0,
-            "1: softens at once, 2: smoothly",
+            ERROR_FUNCTION,
+            0.0,
+            10.0,
+            "0: softens exponentially, 0.62: as an error function, far above: as a Gaussian",
             optional=True,
-            prior=Prior("log", 1.2, math.log(1.6)),
+            prior=Prior(
+                "normal", ERROR_FUNCTION, 0.4, "1", "0 exponential, 0.62 error function, 1 and more smoothly"
+            ),
         ),
         Parameter(
             "history",

@@ -30,7 +30,7 @@ LAW_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 PASSES = 2
 """Number of rounds in which the scales of the groups are found one after the other."""
 
-FORM_SCALES = (1.0, 3.0, 10.0, 30.0, 100.0)
+FORM_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 """Scales of the form errors that are tried (type II); the form error of an effect is at most the whole effect."""
 
 
@@ -86,8 +86,11 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
 
 
 def _cost_of_scales(scales: FloatArray) -> float:
-    """Return the log of the half-Cauchy prior density at 1 over that at each scale, summed."""
-    return float(np.sum(np.log1p(scales**2) - math.log(2.0)))
+    """Return the cost of all scales: the log of the half-Cauchy prior density at 1 over that at the scale.
+
+    Below 1 the density is taken as constant, so that a form as good as s or better has the probability s.
+    """
+    return float(np.sum(np.where(scales < 1.0, -np.log(scales), np.log1p(scales**2) - math.log(2.0))))
 
 
 def _parameter_evidence(

@@ -29,23 +29,35 @@ def test_unloading_and_the_second_loading_are_one_curve() -> None:
 
 
 def test_far_below_the_share_is_lost() -> None:
-    # 1 - D (1 - exp(-u)) with u = (20 - 2) mm / (0.05 * 20 mm)
+    # 1 - D (1 - exp(-u - c u^2)) with u = (20 - 2) mm / (0.05 * 20 mm)
     force = driven(share=0.3, ratio=0.05)
     i = 202 + 10
     assert UP[10] == pytest.approx(2e-3)
     assert force[i] / BARE[i] == pytest.approx(0.7, abs=0.3 * math.exp(-18.0) + 1e-12)
 
 
-def test_width_ratio_and_sharpness_shape_it_as_stated() -> None:
-    force = driven(share=0.2, width=2e-3, ratio=0.1, sharpness=2.0)
+def test_width_ratio_and_gaussian_shape_it_as_stated() -> None:
+    force = driven(share=0.2, width=2e-3, ratio=0.1, gaussian=3.0)
     i = 202 + 90  # 2 mm below 20 mm: u = 2 / (2 + 0.1 * 20) = 1/2
-    assert force[i] / BARE[i] == pytest.approx(1.0 - 0.2 * (1.0 - math.exp(-0.25)), rel=1e-12)
+    assert force[i] / BARE[i] == pytest.approx(1.0 - 0.2 * (1.0 - math.exp(-0.5 - 0.75)), rel=1e-12)
+
+
+def test_it_is_that_of_ogden_and_roxburgh() -> None:
+    """eta = 1 - D erf((W_m - W) / m) on one surface, in the stored energy W = F x / (1 + B)."""
+    x = np.linspace(0.0, 0.02, 201)[::-1]
+    work = 550.9 * (100.0 * x) ** 2.422
+    scale = 1.1 * 0.3 * work[0]  # u = z / 1.1 where the argument of the error function is z
+    force = drive(only("mullins_softening", share=0.2, ratio=0.3, load=1.0), np.arange(201.0), x)
+    eta = np.array([1.0 - 0.2 * math.erf((work[0] - w) / scale) for w in work[:-1]])
+    np.testing.assert_allclose(
+        force[:-1] / drive(TireModel(), np.arange(201.0), x)[:-1], eta, atol=0.2 * 0.003
+    )
 
 
 def test_measured_in_the_energy_it_depends_on_the_parts_of_the_energy() -> None:
     # Stored in x^2.422, half of the largest energy is left at 2^(-1/2.422) of the largest deflection: u = 1/2 / (1/4)
     half = 0.02 * 2.0 ** (-1.0 / 2.422)
-    tire = only("mullins_softening", share=0.2, ratio=0.25, load=1.0)
+    tire = only("mullins_softening", share=0.2, ratio=0.25, gaussian=0.0, load=1.0)
     force = drive(tire, np.arange(2.0), np.array([0.02, half]))
     bare = drive(TireModel(), np.arange(2.0), np.array([0.02, half]))
     assert force[1] / bare[1] == pytest.approx(1.0 + 0.2 * math.expm1(-2.0), rel=1e-12)
@@ -55,7 +67,7 @@ def test_measured_in_the_energy_it_depends_on_the_parts_of_the_energy() -> None:
 def test_from_one_surface_to_another_the_measure_goes_on(load: float) -> None:
     # At 15 mm the bump bears less force than the flat ground did: only the deflection is its largest so far.
     time, x, radius = np.arange(2.0), np.array([0.015, 0.015]), np.array([np.inf, 0.01905])
-    force = drive(only("mullins_softening", share=0.2, ratio=0.25, load=load), time, x, radius)
+    force = drive(only("mullins_softening", share=0.2, ratio=0.25, gaussian=0.0, load=load), time, x, radius)
     bare = drive(TireModel(), time, x, radius)
     u = load * (1.0 - bare[1] / bare[0]) / 0.25
     assert bare[1] < 0.9 * bare[0]
@@ -66,7 +78,7 @@ def test_what_is_fixed_is_the_same_on_every_surface() -> None:
     # Fixed at 12 mm on Hull's tire on flat ground: pressed there to 12 mm, and left, u = 1.
     x = np.array([0.012, 0.0, 1e-9])
     for radius in (np.inf, 0.01905):
-        tire = only("mullins_softening", share=0.2, ratio=5e-3, width=0.012, load=1.0)
+        tire = only("mullins_softening", share=0.2, ratio=5e-3, width=0.012, gaussian=0.0, load=1.0)
         force = drive(tire, np.arange(3.0), x, np.full(3, radius))
         bare = drive(TireModel(), np.arange(3.0), x, np.full(3, radius))
         work = bare[0] / (550.9 * 1.2**1.422)
@@ -101,7 +113,9 @@ def test_it_gathers_along_the_way_below() -> None:
     i = 202 + 10
     force = driven(share=0.3, ratio=0.05, gathering=0.011)
     gathered = -math.expm1(-2.0)
-    assert force[i] / BARE[i] == pytest.approx(1.0 - 0.3 * gathered * -math.expm1(-18.0), rel=1e-9)
+    assert force[i] / BARE[i] == pytest.approx(
+        1.0 - 0.3 * gathered * -math.expm1(-18.0 - 0.62 * 18.0**2), rel=1e-9
+    )
 
 
 def test_the_noise_of_a_gauge_at_rest_is_no_way() -> None:

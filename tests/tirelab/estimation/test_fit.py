@@ -41,6 +41,11 @@ FIXED = Discrepancy(ROWS, float(ROWS), 0.09, 0.0900001)
 """White noise of the variance 0.09 and nothing else."""
 
 
+def cost(scale: float) -> float:
+    """Half-Cauchy above 1, its density there over that at the scale; below 1 the chance of a form as good as that."""
+    return -math.log(scale) if scale < 1.0 else math.log((1.0 + scale**2) / 2.0)
+
+
 def density(covariance: np.ndarray) -> float:
     """Log density of the data, without the constant that the evidence leaves out."""
     return float(
@@ -58,7 +63,7 @@ def test_form_errors_are_one_more_covariance_under_a_half_cauchy_scale() -> None
     forms = 0.2 * np.random.default_rng(4).normal(size=(ROWS, 2))
     evidence = laplace_evidence(linearised(forms), FIXED)
     linear = 0.09 * np.eye(ROWS) + COLUMNS @ COLUMNS.T
-    expected = [density(linear + s**2 * forms @ forms.T) + np.log(2.0 / (1.0 + s**2)) for s in FORM_SCALES]
+    expected = [density(linear + s**2 * forms @ forms.T) - cost(s) for s in FORM_SCALES]
     assert evidence.log_likelihood == pytest.approx(max(expected), abs=1e-4)
     assert evidence.scales == pytest.approx([FORM_SCALES[int(np.argmax(expected))]])
 
@@ -141,13 +146,17 @@ def test_with_forms_it_is_the_gaussian_law_at_the_likeliest_scale(
 ) -> None:
     slopes, forms, misfit = drawn
     found = laplace_evidence(at_the_optimum(slopes, (forms,), misfit, variance), fixed(variance))
-    # Half-Cauchy over the scale: its density at s, over that at 1.
-    each = {
-        s: dense(misfit, np.hstack([slopes, s * forms]), variance) - math.log((1.0 + s**2) / 2.0)
-        for s in FORM_SCALES
-    }
+    each = {s: dense(misfit, np.hstack([slopes, s * forms]), variance) - cost(s) for s in FORM_SCALES}
     assert found.log_likelihood == pytest.approx(max(each.values()) + beside(variance), rel=1e-9)
     assert found.scales == pytest.approx([max(each, key=lambda s: each[s])])
+
+
+def test_a_form_that_misses_nothing_pays_for_that_chance_and_for_no_coefficients() -> None:
+    """Of coefficients of any size, 10 000 times the noise, none is seen: at the scale 1 they cost their determinant."""
+    forms = 1e4 * np.linalg.qr(np.random.default_rng(5).normal(size=(ROWS, 5)))[0]
+    exact = replace(linearised(forms), residual=0.01 * linearised(forms).residual)
+    found = laplace_evidence(exact, FIXED)
+    assert found.scales == pytest.approx([min(FORM_SCALES)])
 
 
 def test_each_form_finds_its_own_scale(drawn: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:

@@ -634,7 +634,7 @@ static inline Tuple8 gas_compression_respond(double signal, Instant instant, Not
    position [m], path length [m]. */
 static inline Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
 {
-    double share = values.v[0], ratio = values.v[1], width = values.v[2], sharpness = values.v[3], history =
+    double share = values.v[0], ratio = values.v[1], width = values.v[2], gaussian = values.v[3], history =
         values.v[4], gathering = values.v[5], load = values.v[6];
     double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
     double largest = state.v[0], counted = state.v[1], path = state.v[2];
@@ -660,9 +660,7 @@ static inline Tuple13 mullins_softening_respond(double signal, Instant instant, 
     }
     double fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
     double below = (largest - measure) / (ratio * largest + fixed);
-    if (sharpness != 1.0) {
-        below = pow(below, sharpness);
-    }
+    below += gaussian * below * below;
     if (gathering > 0.0) {
         share *= -expm1(-(path + uncounted) / gathering);
     }

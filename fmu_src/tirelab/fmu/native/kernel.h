@@ -2,7 +2,7 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "e52498750235dbbd" /* what stands where in p and s */
+#define LAYOUT "bcd9ffeddfe59e45" /* what stands where in p and s */
 enum {
     PARAMETERS = 98,
     STATES = 182,
