@@ -4,7 +4,7 @@
 
 l is held below x_ref / 100 and above 100 x_ref.
 
-h: straight lines between h_i at x = 0.4, 0.8, 1.2, 1.6 and 2 x_ref, constant beyond them; for laws with a knee.
+h: straight lines between h_1 to h_10 at x = 0.2, 0.4 ... 2 x_ref, constant beyond them; for laws of any shape.
 
 Where only this is needed no physics is missing: the law was fitted to another tire, or over another range. A contact
 patch gives such curvature: for a thin toroid the exponent is 3/2 at small loads and falls as the patch grows
@@ -20,9 +20,14 @@ from ..parameter import Parameter
 from ..prior import Prior
 
 
+def hat(place: float, number: float) -> float:
+    """Return 1 at the place of that number, 0 from the next ones on."""
+    return max(1.0 - abs(place - number), 0.0)
+
+
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x))."""
-    bend, twist, reference, first, second, third, fourth, fifth = values
+    bend, twist, reference, h1, h2, h3, h4, h5, h6, h7, h8, h9, h10 = values
     x = abs(instant.deflection) if instant.two_sided else instant.deflection
     if x <= 0.0 and not instant.two_sided:
         return signal, state
@@ -30,19 +35,10 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     if bend != 0.0 or twist != 0.0:
         log_ratio = math.log(min(max(x / reference, 0.01), 100.0))
         exponent = log_ratio * log_ratio * (bend + twist * log_ratio)
-    place = 2.5 * x / reference
-    if place <= 1.0:
-        exponent = exponent + first
-    elif place < 2.0:
-        exponent = exponent + first + (place - 1.0) * (second - first)
-    elif place < 3.0:
-        exponent = exponent + second + (place - 2.0) * (third - second)
-    elif place < 4.0:
-        exponent = exponent + third + (place - 3.0) * (fourth - third)
-    elif place < 5.0:
-        exponent = exponent + fourth + (place - 4.0) * (fifth - fourth)
-    else:
-        exponent = exponent + fifth
+    place = min(max(5.0 * x / reference, 1.0), 10.0)
+    exponent += h1 * hat(place, 1.0) + h2 * hat(place, 2.0) + h3 * hat(place, 3.0) + h4 * hat(place, 4.0)
+    exponent += h5 * hat(place, 5.0) + h6 * hat(place, 6.0) + h7 * hat(place, 7.0) + h8 * hat(place, 8.0)
+    exponent += h9 * hat(place, 9.0) + h10 * hat(place, 10.0)
     return signal * math.exp(exponent), state
 
 
@@ -54,7 +50,7 @@ def _height(number: int) -> Parameter:
         0.0,
         -2.0,
         2.0,
-        f"change of ln F at {0.4 * number:g} times the reference deflection",
+        f"change of ln F at {0.2 * number:g} times the reference deflection",
         neutral=0.0,
         optional=True,
         prior=Prior("normal", 0, 0.1, "1", "Hull, Wang & Moore 1996: errors of the law up to 13.5 %"),
@@ -102,11 +98,7 @@ ELASTIC_SHAPE = Effect(
             role="reading",
             prior=Prior("log", 0.5, math.log(2), "travel", "the middle of what was measured"),
         ),
-        _height(1),
-        _height(2),
-        _height(3),
-        _height(4),
-        _height(5),
+        *(_height(number) for number in range(1, 11)),
     ),
     initial_state=(),
     respond=respond,

@@ -161,5 +161,5 @@ MULLINS_SOFTENING = Effect(
     imitators=("rate_independent_hysteresis", "pressure_leak", "warm_up", "bottoming"),
     source="Ogden & Roxburgh 1999; no magnitude for bicycle tires was found, bounds wide",
     traits=("loop",),
-    form_error=0.044,
+    form_error=0.001,
 )

@@ -32,11 +32,11 @@ from ..regressors.signature import (
     BEND,
     EXPONENT,
     FACTOR,
-    HEIGHT,
-    HEIGHTS,
+    KINK,
     LAW,
     MOST_SURFACES,
     PRELOAD,
+    RAMPS,
     REFERENCE,
     SHAPE,
     TWIST,
@@ -54,7 +54,10 @@ START_OFFSET = 0.3
 """Distance, in standard deviations, from its bound at which the fit of an optional parameter starts: at the bound
 itself the slope of some is zero."""
 
-COMMON = 4 + HEIGHTS
+KINKS = RAMPS.shape[1]
+"""Number of kinks of a refitted law."""
+
+COMMON = 4 + KINKS
 """Number of parameters of the law that are common to all surfaces; they come first."""
 
 
@@ -114,18 +117,18 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
 
 
 def parameters_of_law(surfaces: int, preload: float = 0.0, gap: float = 0.0) -> tuple[FreeParameter, ...]:
-    """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and heights of the
+    """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and kinks of the
     shape, with more than one surface a further factor and exponent for each, and for a part its preload or its gap.
 
     preload [N], gap [m]: standard deviations of their changes; 0: of a tire, which has none
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
-    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[HEIGHT] * HEIGHTS]
+    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[KINK] * KINKS]
     spreads += [FACTOR * shared, EXPONENT * shared] * (surfaces if surfaces > 1 else 0)
     labels = ["log factor on A", "change of B", "bend", "twist"]
-    labels += [f"height {i + 1}" for i in range(HEIGHTS)]
+    labels += [f"kink {i + 1}" for i in range(KINKS)]
     labels += [f"{w}, surface {i}" for i in range(surfaces) for w in labels[:2]] if surfaces > 1 else []
-    groups = [1, 2, 3, 4, *[5] * HEIGHTS, *[6, 7] * surfaces]
+    groups = [1, 2, 3, 4, *[5] * KINKS, *[6, 7] * surfaces]
     shape = tuple(
         FreeParameter(
             LAW,
@@ -318,16 +321,17 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         rows = tuple((r, factor + a, exponent + b) for r, (a, b) in zip(radii, pairs, strict=True))
         tire = replace(tire, law=Recalibrated(tire.law, rows))
         if any(shape):
-            bend, twist, *heights = shape
+            bend, twist, *kinks = shape
+            heights = (RAMPS @ kinks).tolist()
             twist = min(max(twist, -1.0), 1.0)
             reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
             effects.append((SHAPE, (bend, twist, reference, *heights)))
     return arranged(tire, effects)
 
 
-DEFLECTION_HATS, SIGNED_HATS = HEIGHTS + 1, (HEIGHTS + 1) // 2
-"""Numbers of hat functions of the deflection (one more than the heights of a law's shape), and of those of the
-deflection times the sign of the direction and of the path since the last reversal."""
+DEFLECTION_HATS, SIGNED_HATS = 6, 3
+"""Numbers of hat functions of the deflection, and of those of the deflection times the sign of the direction and of the
+path since the last reversal."""
 
 
 def smooth_functions(dataset: Dataset) -> FloatArray:

@@ -10,9 +10,11 @@ The elastic law has a signature of its own: how a refitted law, or one of anothe
 
     dF / F = a + b l + c l^2 + d l^3 + h(x),   l = ln(x / x_ref)
 
-a and b: common to all surfaces, and further ones on each; h: straight lines between the heights of a law's shape. These
-are the derivatives of the law that is fitted and delivered, so that every law that can be fitted is considered. Their
-scale is not declared: it maximises the marginal likelihood (type II), like that of the effects.
+a and b: common to all surfaces, and further ones on each; h: straight lines between the heights of a law's shape, with
+a kink at each. Kinks with independent priors make a smooth law likelier than one that goes up and down, as smoothing
+splines do (P. H. C. Eilers, B. D. Marx, Statist. Sci. 11 (1996) 89). These are the derivatives of the law that is
+fitted and delivered, so that every law that can be fitted is considered. Their scale is not declared: it maximises the
+marginal likelihood (type II), like that of the effects.
 """
 
 from __future__ import annotations
@@ -38,15 +40,18 @@ LAW = REFITTED_LAW
 SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)
 """The effect in which a refitted law keeps bend and twist."""
 
-FACTOR, EXPONENT, BEND, TWIST, HEIGHT = 0.1, 0.07, 0.03, 0.01, 0.05
-"""Standard deviations of a, b, c, d and each height at the scale 1. Only their proportions matter, since the scale is
-found from the recordings."""
+FACTOR, EXPONENT, BEND, TWIST, KINK = 0.1, 0.07, 0.03, 0.01, 0.05
+"""Standard deviations of a, b, c, d and each kink at the scale 1, a kink by what it changes over the whole span. Only
+their proportions matter, since the scale is found from the recordings."""
 
 PRELOAD = 0.05
 """The same of a part's preload, over the largest force: that of a force's offset."""
 
 HEIGHTS = sum(p.name.startswith("height") for p in CATALOGUE[SHAPE].parameters)
 """Number of heights in the shape of a refitted law."""
+
+RAMPS = np.clip(np.subtract.outer(np.arange(HEIGHTS), np.arange(HEIGHTS - 1)), 0, None) / (HEIGHTS - 1.0)
+"""The heights (rows) that follow from a kink of size 1 at each height but the last (columns)."""
 
 REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
 """Index of the reference deflection among the parameters of the shape."""
@@ -110,9 +115,9 @@ def law_signature(dataset: Dataset) -> Signature:
     reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
     way = np.log(np.maximum(x / reference, LEAST_RATIO))
     places = 2.0 * reference * np.arange(1, HEIGHTS + 1) / HEIGHTS
-    heights = [HEIGHT * np.interp(x, places, row) for row in np.eye(HEIGHTS)]
+    kinks = [KINK * np.interp(x, places, heights) for heights in RAMPS.T]
     changes = [FACTOR + 0.0 * way, EXPONENT * way]
-    bends = [BEND * way**2, TWIST * way**3, *heights]
+    bends = [BEND * way**2, TWIST * way**3, *kinks]
     columns = [force * part for part in (*changes, *bends)]
     if len(dataset.radii) > 1:
         shapes = [np.sqrt(0.5) * force * part for part in changes]
@@ -191,8 +196,8 @@ def size_of(curve: FloatArray) -> float:
     return float(np.sqrt(np.mean(curve**2)))
 
 
-PARTS, BLOCKS_OF_PART = 10 * HEIGHTS, 8
-"""Most parts of the deflection's span, ten between two heights of a law, in which a function of the deflection is
+PARTS, BLOCKS_OF_PART = 5 * HEIGHTS, 8
+"""Most parts of the deflection's span, five between two heights of a law, in which a function of the deflection is
 straight; and the mean number of blocks of one at least, four for each number of a straight line."""
 
 

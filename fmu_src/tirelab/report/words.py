@@ -51,17 +51,22 @@ OF_A_PART = {
 }
 """Constants of a part's law."""
 
-_OF_THE_LAW = {**_OF_A_SURFACE, **OF_A_PART}
+_OF_THE_LAW = {**_OF_A_SURFACE, **OF_A_PART, "kink": "change of the slope of ln F at that tenth of the span"}
 
 
 def meaning(effect: str, parameter: str) -> str:
     """Return the meaning of a parameter from the catalogue; empty where the catalogue has none."""
-    if effect == REFITTED_LAW and (kind := parameter.partition(",")[0]) in _OF_THE_LAW:
+    if effect == REFITTED_LAW and (kind := _kind_of(parameter)) in _OF_THE_LAW:
         return _OF_THE_LAW[kind]
     owner = CATALOGUE.get(SHAPE if effect == REFITTED_LAW else effect)
     name = parameter.replace(" ", "_")
     found = [p.meaning for p in owner.parameters if p.name == name] if owner else []
     return found[0] if found else ""
+
+
+def _kind_of(parameter: str) -> str:
+    """Return a law's parameter without its surface or its number."""
+    return parameter.partition(",")[0].rstrip("0123456789 ")
 
 
 def scaled(unit: str) -> tuple[float, str]:

@@ -110,7 +110,7 @@ def test_the_laws_signature_is_what_a_refitted_law_can_do(dataset: Dataset) -> N
 def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) -> None:
     """What no change of A and B follows: heights of opposite signs."""
     shape = (0.0, 0.0, at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales))
-    waves = arranged(dataset.tire, [(SHAPE, (*shape, 0.02, -0.02, 0.02, -0.02, 0.02))])
+    waves = arranged(dataset.tire, [(SHAPE, (*shape, *[0.02, -0.02] * 5))])
     assert left_by(law_signature(dataset).columns, dataset.response(waves)) < 0.01
 
 

@@ -138,7 +138,7 @@ def test_every_parameter_of_a_refitted_law_has_a_meaning() -> None:
     assert "coefficient A" in words.meaning("recalibration", "log factor on A, flat")
     assert words.meaning("force_offset", "offset") == "added to the force"
     assert words.meaning("phlogiston", "mass") == ""
-    assert "0.4 times the reference deflection" in words.meaning("recalibration", "height 1")
+    assert "slope of ln F" in words.meaning("recalibration", "kink 9")
 
 
 def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
