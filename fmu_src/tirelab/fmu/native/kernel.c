@@ -54,19 +54,20 @@ typedef struct { double time; double interval; bool first; double deflection; do
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
-typedef struct { double v[8]; } Vector8;
+typedef struct { double v[13]; } Vector13;
 typedef struct { double v[5]; } Vector5;
 typedef struct { double a; Vector3 b; } Tuple13;
 typedef struct { double a; Vector1 b; } Tuple15;
-typedef struct { double a; Vector8 b; } Tuple16;
+typedef struct { double v[8]; } Vector8;
+typedef struct { double a; Vector8 b; } Tuple17;
 typedef struct { double v[6]; } Vector6;
-typedef struct { double a; Vector6 b; } Tuple18;
+typedef struct { double a; Vector6 b; } Tuple19;
 typedef struct { double v[12]; } Vector12;
 typedef struct { double v[16]; } Vector16;
 typedef struct { double v[32]; } Vector32;
-typedef struct { double a; Vector32 b; } Tuple22;
+typedef struct { double a; Vector32 b; } Tuple23;
 typedef struct { double v[35]; } Vector35;
-typedef struct { double a; Vector35 b; } Tuple24;
+typedef struct { double a; Vector35 b; } Tuple25;
 typedef struct { double v[10]; } Vector10;
 typedef struct { double v[18]; } Vector18;
 
@@ -562,12 +563,19 @@ static inline double power_law_two_sided(double deflection, double coefficient, 
     return tire_elastic(deflection, coefficient, exponent);
 }
 
+/* effects.elastic_shape.py: Return 1 at the place of that number, 0 from the next ones on. */
+static inline double elastic_shape_hat(double place, double number)
+{
+    return greater(1.0 - fabs(place - number), 0.0);
+}
+
 /* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x)). */
-static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector8 values)
+static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector13 values)
 {
     double log_ratio;
-    double bend = values.v[0], twist = values.v[1], reference = values.v[2], first = values.v[3], second =
-        values.v[4], third = values.v[5], fourth = values.v[6], fifth = values.v[7];
+    double bend = values.v[0], twist = values.v[1], reference = values.v[2], h1 = values.v[3], h2 = values.v[4], h3
+        = values.v[5], h4 = values.v[6], h5 = values.v[7], h6 = values.v[8], h7 = values.v[9], h8 = values.v[10], h9
+        = values.v[11], h10 = values.v[12];
     double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
     if (x <= 0.0 && !instant.two_sided) {
         return (Tuple8){signal, state};
@@ -577,20 +585,12 @@ static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothi
         log_ratio = log(lesser(greater(x / reference, 0.01), 100.0));
         exponent = log_ratio * log_ratio * (bend + twist * log_ratio);
     }
-    double place = 2.5 * x / reference;
-    if (place <= 1.0) {
-        exponent = exponent + first;
-    } else if (place < 2.0) {
-        exponent = exponent + first + (place - 1.0) * (second - first);
-    } else if (place < 3.0) {
-        exponent = exponent + second + (place - 2.0) * (third - second);
-    } else if (place < 4.0) {
-        exponent = exponent + third + (place - 3.0) * (fourth - third);
-    } else if (place < 5.0) {
-        exponent = exponent + fourth + (place - 4.0) * (fifth - fourth);
-    } else {
-        exponent = exponent + fifth;
-    }
+    double place = lesser(greater(5.0 * x / reference, 1.0), 10.0);
+    exponent += h1 * elastic_shape_hat(place, 1.0) + h2 * elastic_shape_hat(place, 2.0) + h3 *
+        elastic_shape_hat(place, 3.0) + h4 * elastic_shape_hat(place, 4.0);
+    exponent += h5 * elastic_shape_hat(place, 5.0) + h6 * elastic_shape_hat(place, 6.0) + h7 *
+        elastic_shape_hat(place, 7.0) + h8 * elastic_shape_hat(place, 8.0);
+    exponent += h9 * elastic_shape_hat(place, 9.0) + h10 * elastic_shape_hat(place, 10.0);
     return (Tuple8){signal * exp(exponent), state};
 }
 
@@ -700,32 +700,32 @@ static inline Tuple15 warm_up_respond(double signal, Instant instant, Vector1 st
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[14] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector8 *)(p + 15));
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 15));
         signal = t1.a;
     }
-    if (p[23] != 0.0) {
-        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[24], p[25], p[26]}});
+    if (p[28] != 0.0) {
+        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[29], p[30], p[31]}});
         signal = t2.a;
     }
-    if (p[27] != 0.0) {
-        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 28));
+    if (p[32] != 0.0) {
+        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 33));
         signal = t3.a;
     }
-    if (p[33] != 0.0) {
+    if (p[38] != 0.0) {
         const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
-            + 34));
+            + 39));
         signal = t4.a;
         Vector3 after = t4.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
-    if (p[41] != 0.0) {
-        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[42], p[43], p[44]}});
+    if (p[46] != 0.0) {
+        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[47], p[48], p[49]}});
         signal = t5.a;
     }
-    if (p[45] != 0.0) {
-        const Tuple15 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[46], p[47], p[48]}});
+    if (p[50] != 0.0) {
+        const Tuple15 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[51], p[52], p[53]}});
         signal = t6.a;
         Vector1 after = t6.b;
         n[9] = after.v[0];
@@ -752,7 +752,7 @@ static inline double rate_independent_hysteresis_slip(double y, double travel, d
 }
 
 /* effects.rate_independent_hysteresis.py: Add the friction force [N]. */
-static inline Tuple16 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8
+static inline Tuple17 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8
     values)
 {
     double friction;
@@ -793,12 +793,12 @@ static inline Tuple16 rate_independent_hysteresis_respond(double signal, Instant
     }
     Vector8 after = (Vector8){{z, updated_at, direction, x, y1, y2, y3, y4}};
     if (instant.deflection <= 0.0 && !instant.two_sided) {
-        return (Tuple16){signal, after};
+        return (Tuple17){signal, after};
     }
     if (friction < 0.0) {
         friction *= rebound;
     }
-    return (Tuple16){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
+    return (Tuple17){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
 }
 
 /* effects.viscous_damping.py: Return the dashpot's force [N] at the rate v0 on the way in (side 1) or back (-1). */
@@ -1018,7 +1018,7 @@ static inline double viscoelastic_relaxation_left(double elastic, double held, d
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt =
    (F_elastic - q_i) / tau_i. */
-static inline Tuple18 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector12 values)
+static inline Tuple19 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector12 values)
 {
     double held;
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
@@ -1048,9 +1048,9 @@ static inline Tuple18 viscoelastic_relaxation_flow(double signal, Instant instan
     double h5 = elastic - q5;
     double added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
     if (instant.first) {
-        return (Tuple18){signal + added, (Vector6){{0.0, q1, q2, q3, q4, q5}}};
+        return (Tuple19){signal + added, (Vector6){{0.0, q1, q2, q3, q4, q5}}};
     }
-    return (Tuple18){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
+    return (Tuple19){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
 }
 
 /* effects.viscoelastic_relaxation.py: Return h after `interval` [s] in which the elastic force changed linearly by
@@ -1067,7 +1067,7 @@ static inline double viscoelastic_relaxation_overstress(double h, double change,
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N]; the state holds the last elastic force and the five
    overstresses. */
-static inline Tuple18 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector12
+static inline Tuple19 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector12
     values)
 {
     double held;
@@ -1105,7 +1105,7 @@ static inline Tuple18 viscoelastic_relaxation_respond(double signal, Instant ins
     if (sudden != 0.0) {
         added -= sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
     }
-    return (Tuple18){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
+    return (Tuple19){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
 }
 
 /* effects.bottoming.py: Add the second spring's force [N]. */
@@ -1129,42 +1129,42 @@ static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing s
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[49] != 0.0) {
-        const Tuple16 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
-            Vector8 *)(p + 50));
+    if (p[54] != 0.0) {
+        const Tuple17 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
+            Vector8 *)(p + 55));
         signal = t1.a;
         Vector8 after = t1.b;
         for (int i = 0; i < 8; i++)
             n[10 + i] = after.v[i];
     }
-    if (p[58] != 0.0 && p[3] != 0.0) {
-        const Tuple15 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 59));
+    if (p[63] != 0.0 && p[3] != 0.0) {
+        const Tuple15 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 64));
         signal = t2.a;
         Vector1 flowed = t2.b;
         n[18] = flowed.v[0];
-    } else if (p[58] != 0.0) {
-        const Tuple15 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 59));
+    } else if (p[63] != 0.0) {
+        const Tuple15 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 64));
         signal = t3.a;
         Vector1 after = t3.b;
         n[18] = after.v[0];
     }
-    if (p[66] != 0.0 && p[3] != 0.0) {
-        const Tuple18 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 67));
+    if (p[71] != 0.0 && p[3] != 0.0) {
+        const Tuple19 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
+            *)(p + 72));
         signal = t4.a;
         Vector6 flowed = t4.b;
         for (int i = 0; i < 6; i++)
             n[19 + i] = flowed.v[i];
-    } else if (p[66] != 0.0) {
-        const Tuple18 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 67));
+    } else if (p[71] != 0.0) {
+        const Tuple19 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
+            *)(p + 72));
         signal = t5.a;
         Vector6 after = t5.b;
         for (int i = 0; i < 6; i++)
             n[19 + i] = after.v[i];
     }
-    if (p[79] != 0.0) {
-        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 80));
+    if (p[84] != 0.0) {
+        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 85));
         signal = t6.a;
     }
     return signal;
@@ -1179,8 +1179,8 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[84] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[85]}});
+    if (p[89] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[90]}});
         signal = t1.a;
     }
     return signal;
@@ -1188,7 +1188,7 @@ static inline double through_inertia(double signal, Instant at, const double *p,
 
 /* effects.force_lag.py: Return the force [N] a delay `delta` [s] ago and the stored samples after this one: times,
    then forces. */
-static inline Tuple22 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
+static inline Tuple23 force_lag_delayed(double signal, Instant instant, Vector35 state, double delta)
 {
     Vector2 two;
     Vector4 four;
@@ -1233,7 +1233,7 @@ static inline Tuple22 force_lag_delayed(double signal, Instant instant, Vector35
             }
         }
     }
-    return (Tuple22){late, (Vector32){{times.v[0], times.v[1], times.v[2], times.v[3], times.v[4], times.v[5],
+    return (Tuple23){late, (Vector32){{times.v[0], times.v[1], times.v[2], times.v[3], times.v[4], times.v[5],
         times.v[6], times.v[7], times.v[8], times.v[9], times.v[10], times.v[11], times.v[12], times.v[13],
         times.v[14], times.v[15], forces.v[0], forces.v[1], forces.v[2], forces.v[3], forces.v[4], forces.v[5],
         forces.v[6], forces.v[7], forces.v[8], forces.v[9], forces.v[10], forces.v[11], forces.v[12], forces.v[13],
@@ -1242,18 +1242,18 @@ static inline Tuple22 force_lag_delayed(double signal, Instant instant, Vector35
 
 /* effects.force_lag.py: Return the measured force [N] for a solver: the states are the output and its slope; the
    delay is memory. */
-static inline Tuple24 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
+static inline Tuple25 force_lag_flow(double signal, Instant instant, Vector35 state, Vector3 values)
 {
     Vector3 held;
     double tau = values.v[0], delta = values.v[1], quality = values.v[2];
     double reading = state.v[0];
     double slope = state.v[1];
-    const Tuple22 t1 = force_lag_delayed(signal, instant, state, delta);
+    const Tuple23 t1 = force_lag_delayed(signal, instant, state, delta);
     double late = t1.a;
     Vector32 samples = t1.b;
     if (instant.first) {
         held = (Vector3){{late, 0.0, late}};
-        return (Tuple24){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+        return (Tuple25){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
             samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
             samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
             samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
@@ -1262,7 +1262,7 @@ static inline Tuple24 force_lag_flow(double signal, Instant instant, Vector35 st
     }
     if (tau == 0.0) {
         held = (Vector3){{0.0, 0.0, late}};
-        return (Tuple24){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+        return (Tuple25){late, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
             samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
             samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
             samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
@@ -1271,7 +1271,7 @@ static inline Tuple24 force_lag_flow(double signal, Instant instant, Vector35 st
     }
     if (quality * tau < NO_TIME) {
         held = (Vector3){{(late - reading) / tau, 0.0, late}};
-        return (Tuple24){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
+        return (Tuple25){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1],
             samples.v[2], samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8],
             samples.v[9], samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15],
             samples.v[16], samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22],
@@ -1279,7 +1279,7 @@ static inline Tuple24 force_lag_flow(double signal, Instant instant, Vector35 st
             samples.v[30], samples.v[31]}}};
     }
     held = (Vector3){{slope, (late - reading - tau * slope) / pow(quality * tau, 2.0), late}};
-    return (Tuple24){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
+    return (Tuple25){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
         samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8], samples.v[9],
         samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15], samples.v[16],
         samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22], samples.v[23],
@@ -1339,13 +1339,13 @@ static inline Vector2 force_lag_low_passed(Vector3 before, double late, double i
 
 /* effects.force_lag.py: Return the measured force [N]; the state: output, its slope, its last input, and the stored
    samples. */
-static inline Tuple24 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
+static inline Tuple25 force_lag_respond(double signal, Instant instant, Vector35 state, Vector3 values)
 {
     double tau = values.v[0], delta = values.v[1], quality = values.v[2];
     double reading = state.v[0];
     double slope = state.v[1];
     double last = state.v[2];
-    const Tuple22 t1 = force_lag_delayed(signal, instant, state, delta);
+    const Tuple23 t1 = force_lag_delayed(signal, instant, state, delta);
     double late = t1.a;
     Vector32 samples = t1.b;
     if (instant.first) {
@@ -1362,7 +1362,7 @@ static inline Tuple24 force_lag_respond(double signal, Instant instant, Vector35
         slope = t3.v[1];
     }
     Vector3 held = (Vector3){{reading, slope, late}};
-    return (Tuple24){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
+    return (Tuple25){reading, (Vector35){{held.v[0], held.v[1], held.v[2], samples.v[0], samples.v[1], samples.v[2],
         samples.v[3], samples.v[4], samples.v[5], samples.v[6], samples.v[7], samples.v[8], samples.v[9],
         samples.v[10], samples.v[11], samples.v[12], samples.v[13], samples.v[14], samples.v[15], samples.v[16],
         samples.v[17], samples.v[18], samples.v[19], samples.v[20], samples.v[21], samples.v[22], samples.v[23],
@@ -1405,31 +1405,31 @@ static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[86] != 0.0 && p[3] != 0.0) {
-        const Tuple24 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[87], p[88],
-            p[89]}});
+    if (p[91] != 0.0 && p[3] != 0.0) {
+        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[92], p[93],
+            p[94]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
             n[25 + i] = flowed.v[i];
-    } else if (p[86] != 0.0) {
-        const Tuple24 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[87], p[88],
-            p[89]}});
+    } else if (p[91] != 0.0) {
+        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[92], p[93],
+            p[94]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
             n[25 + i] = after.v[i];
     }
-    if (p[90] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[91]}});
+    if (p[95] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[96]}});
         signal = t3.a;
     }
-    if (p[92] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[93], p[94]}});
+    if (p[97] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[98], p[99]}});
         signal = t4.a;
     }
-    if (p[95] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[96], p[97]}});
+    if (p[100] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[101], p[102]}});
         signal = t5.a;
     }
     return signal;

@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "bcd9ffeddfe59e45" /* what stands where in p and s */
+#define LAYOUT "937e15bb4bff4830" /* what stands where in p and s */
 enum {
-    PARAMETERS = 98,
+    PARAMETERS = 103,
     STATES = 182,
     S_TIME = 0,
     S_STARTED = 4,
