@@ -97,7 +97,7 @@ def to_text(tire: TireModel) -> str:
 def from_text(text: str) -> TireModel:
     """Return the tire described by the text of a tire file, or raise TireFileError."""
     try:
-        content = json.loads(text)
+        content = json.loads(text, parse_int=_whole)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
     known = {
@@ -186,6 +186,12 @@ def _owned_by(owner: str) -> Iterator[None]:
         yield
     except ParameterError as error:
         raise ParameterError(f"{owner}.{error}") from None
+
+
+def _whole(digits: str) -> float:
+    """Return an integer of a file; one beyond every double is infinite, as 1e400 is, and so refused by its key."""
+    number = float(digits)
+    return int(digits) if math.isfinite(number) else number
 
 
 def _order(name: str) -> tuple[int, int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -126,6 +127,58 @@ def test_what_is_wrong_is_said_with_its_place(content: Any, said: str, tmp_path:
         read_tire(path)
     assert str(refusal.value).startswith(f"{path}: ")
     assert said in str(refusal.value)
+
+
+BEYOND = 10**400
+"""An integer beyond every double: JSON has no bound for it."""
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ({"law": {**LAW, "parameters": {"flat_exponent": BEYOND}}}, "flat_exponent = inf is not allowed"),
+        ({"effects": [{"name": "inertia", "parameters": {"mass": -BEYOND}}]}, "mass = -inf is not allowed"),
+        ({"reading_noise": BEYOND}, "reading_noise = inf is not allowed"),
+        (
+            {
+                "tested_range": {
+                    "curvature_min": 0,
+                    "curvature_max": 1,
+                    "deflection_max": 1,
+                    "force_max": BEYOND,
+                }
+            },
+            "tested_range force_max = inf is not a finite number",
+        ),
+        (
+            {"learned_remainder": {"by": "deflection", "at": [0, BEYOND], "force": [0, 1]}},
+            "learned_remainder has a value that is no finite number",
+        ),
+        (
+            {
+                "law": {
+                    "name": "recalibrated",
+                    "base": LAW,
+                    "surfaces": [{"radius": 1, "change": BEYOND, "exponent_change": 0}],
+                }
+            },
+            "the change of the law at the radius 1 m, inf and 0, is not allowed",
+        ),
+    ],
+)
+def test_an_integer_beyond_every_double_is_refused_by_its_key(
+    content: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path, {"schema": 1, "law": LAW, **content})
+    with pytest.raises(TireFileError, match=f"^{re.escape(str(path))}: ") as refusal:
+        read_tire(path)
+    assert said in str(refusal.value)
+
+
+def test_so_is_one_of_more_digits_than_python_reads(tmp_path: Path) -> None:
+    path = written(tmp_path, '{"schema": 1, "law": {"name": "hull1996"}, "preload": 1' + "0" * 5000 + "}")
+    with pytest.raises(TireFileError, match="preload = inf is not allowed"):
+        read_tire(path)
 
 
 def test_a_file_that_is_not_there_is_said_so(tmp_path: Path) -> None:

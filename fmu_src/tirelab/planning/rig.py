@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -22,13 +21,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import TirelabError
+from ..recordings.toml_text import parse_toml
 from ..recordings.units import UnitError, conversion, parse_interval, parse_radius
 from .waveforms import Limits
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 
@@ -105,13 +100,10 @@ def read_rig(
 
 def _content(file: Path) -> dict[str, Any]:
     try:
-        content: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
+        content = parse_toml(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise TirelabError(f"{file}: {error.strerror or error}; check the path") from None
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # also of an integer of 5000 digits, and of 1000 lists in one another
+    except (ValueError, RecursionError) as error:
         raise TirelabError(f'{file} is not TOML ({error}); write for instance stroke = "20 mm"') from None
     for key in content:
         if key not in KEYS:

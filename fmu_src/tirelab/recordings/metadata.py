@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +12,7 @@ from radialtire import CHANNELS
 from .channels import known_channel
 from .formats import RecordingError
 from .pieces import Piece
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from .toml_text import parse_toml
 
 FOLDER_SIDECAR = "recording.toml"
 """The sidecar of every recording in its folder."""
@@ -181,11 +176,8 @@ def _sidecar(content: Mapping[str, Any], source: str) -> Sidecar:
 
 def _content(file: Path) -> dict[str, Any]:
     try:
-        content: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # also of an integer of 5000 digits, and of 1000 lists in one another
+        content = parse_toml(file.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as error:
         raise RecordingError(
             f'{file.name} is not TOML ({error}); write for instance radius = "25.4 cm"'
         ) from None

@@ -63,6 +63,7 @@ def test_bad_limits_are_told_in_a_sentence(given: dict[str, str], words: str) ->
         ("depth = '20 mm'", "'depth' is not known here; the keys are stroke, speed, surfaces"),
         ("stroke = ", "is not TOML"),
         ("stroke = " + "9" * 5000, "is not TOML"),
+        ("surfaces = [" + "9" * 400 + "]", "is not TOML (surfaces is an integer of more than 64 bits)"),
         ("stroke = " + "[" * 20_000, "is not TOML"),
         ("surfaces = 3", "surfaces: 3 is no list; write for instance flat,25.4cm"),
     ],

@@ -42,6 +42,7 @@ class TestSidecar:
             ("radius = 25.4", "not text"),
             ("radius = \n", "not TOML"),
             ("radius = " + "9" * 5000, "not TOML"),
+            ("skip_rows = " + "9" * 400, r"not TOML \(skip_rows is an integer of more than 64 bits\)"),
             ('diameter = "3 cm"', "not known"),
             ('[columns]\nstroke = "x"', "no channel"),
             ('columns = "x"', "table"),
