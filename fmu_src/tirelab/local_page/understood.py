@@ -14,10 +14,10 @@ from ..recordings.choices import Choices
 from ..recordings.files import recording_files, why_no_recording
 from ..recordings.formats import Table, open_table
 from ..recordings.inspection import Inspection, inspect_recording
-from ..recordings.interpretation import plan_reading
 from ..recordings.metadata import read_sidecar
 from ..recordings.origin import Origin
 from ..recordings.pieces import split_piece
+from ..recordings.reading_plan import plan_reading
 
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 

@@ -18,11 +18,12 @@ from .formats.delimited import DelimitedTable
 from .formats.excel import ExcelTable
 from .formats.table import quoted
 from .frames import array_table, array_units, frame_table, is_single, single_radius
-from .interpretation import Interpreted, Plan, interpret, plan_reading
+from .interpretation import Interpreted, interpret
 from .memory import memory_available, readable_size
 from .metadata import Settings, read_sidecar
 from .origin import Origin
 from .pieces import Piece, split_piece
+from .reading_plan import Plan, plan_reading
 from .rows import OPTIONAL
 from .samples import SampleFault, check_time, check_values, checked_radius, find_gaps
 
