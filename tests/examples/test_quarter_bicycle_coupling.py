@@ -4,77 +4,26 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import json
 import math
 import os
 import re
 import subprocess
 import sys
-import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
-from xml.etree import ElementTree
 
-import fmpy
 import numpy as np
 import pytest
-from fmpy.ssp.ssd import read_ssd
 from radialtire import CATALOGUE, TireModel
 from tirelab.errors import TirelabError
-from tirelab.terrain import Ground, flat, ground_from, log, place, sine
-
-MODULES = (
-    "bicycle",
-    "wheel",
-    "model",
-    "coupled",
-    "account",
-    "rides",
-    "fmu_tire",
-    "quarter_bicycle_fmu",
-    "pack",
-)
-LATER = ("cosimulate", "ride_with_fmu")
-SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
-SSC = "{http://ssp-standard.org/SSP1/SystemStructureCommon}"
-SPEED, DURATION = 4.0, 0.3
-
-
-@pytest.fixture(scope="module")
-def example(repository: Path) -> Iterator[dict[str, ModuleType]]:
-    """The example's modules, which import each other by their plain names."""
-    folder = str(repository / "examples" / "quarter_bicycle")
-    sys.path.insert(0, folder)
-    yield {name: importlib.import_module(name) for name in (*MODULES, *LATER)}
-    sys.path.remove(folder)
-    for name in (*MODULES, *LATER):
-        del sys.modules[name]
-
-
-@pytest.fixture(scope="module")
-def wavy(example: dict[str, ModuleType]) -> Any:
-    """A ride over waves of 2 cm and 1.5 m, where the wheel keeps one contact and everything is smooth."""
-    return _ride(example, ground_from(sine(8.0, (0.01, 1.5), spacing=0.002), 0.002))
-
-
-@pytest.fixture(scope="module")
-def bumpy(example: dict[str, ModuleType]) -> Any:
-    """A ride over a log 4 cm tall, on which the contact leaps and the wheel leaves the ground."""
-    return _ride(example, ground_from(place(flat(5.0, 0.005), log(0.02), 1.5), 0.002))
 
 
 @pytest.fixture(scope="module")
 def truth(example: dict[str, ModuleType], wavy: Any) -> Any:
     """The wavy ride as one system, a sample every quarter of a millisecond."""
     return wavy.integrated(example["rides"].elastic(TireModel()), 1201)
-
-
-def _ride(example: dict[str, ModuleType], ground: Ground) -> Any:
-    bicycle, tire = example["bicycle"].QuarterBicycle(), example["rides"].elastic(TireModel())
-    state = example["model"].at_rest(bicycle, ground, tire, 1.0)
-    return example["rides"].RideOnGround(ground.name, bicycle, ground, SPEED, 1.0, DURATION, state)
 
 
 def _run(example: dict[str, ModuleType], ride: Any, *, step: float, **options: Any) -> Any:
@@ -103,7 +52,7 @@ def _system(
 
 
 @pytest.fixture(scope="module")
-def master(repository: Path) -> Callable[..., Any]:
+def master(repository: Path, bumpy: Any) -> Callable[..., Any]:
     """Runs a system in somebody else's master, in a fresh process without the project, and returns its table."""
 
     def run(name: str, package: str, ssp: Path, step: float) -> Any:
@@ -116,7 +65,7 @@ def master(repository: Path) -> Callable[..., Any]:
             repository / "examples" / "quarter_bicycle" / f"ride_with_{name}.py",
             ssp.parent / f"{name}.csv",
         )
-        options = ["--step", f"{1e3 * step:g}", "--duration", f"{DURATION:g}", "--out", str(out)]
+        options = ["--step", f"{1e3 * step:g}", "--duration", f"{bumpy.duration:g}", "--out", str(out)]
         result = subprocess.run(
             [sys.executable, "-I", str(script), str(ssp), *options],
             capture_output=True,
@@ -135,43 +84,6 @@ def master(repository: Path) -> Callable[..., Any]:
 MASTERS = [("libcosim", "libcosimpy"), ("ecos", "ecospy")]
 
 
-def test_archive_is_the_same_for_the_same_ride(
-    example: dict[str, ModuleType], wavy: Any, tmp_path: Path
-) -> None:
-    first, second = (_system(example, wavy, tmp_path / name, 1e-3, None).read_bytes() for name in "ab")
-    assert first == second
-
-
-def test_structure_is_ssp_with_units(example: dict[str, ModuleType], wavy: Any, tmp_path: Path) -> None:
-    """fmpy reads it against the standard's schema; every connector's unit is its FMU's and its partner's."""
-    path = _system(example, wavy, tmp_path, 1e-3, None)
-    assert read_ssd(str(path)).name == "QuarterBicycle"
-    with zipfile.ZipFile(path) as archive:
-        archive.extractall(tmp_path)
-    root = ElementTree.parse(tmp_path / "SystemStructure.ssd").getroot()
-    assert root.get("version") == "1.0"
-    units = {}
-    for component in root.iter(f"{SSD}Component"):
-        description = fmpy.read_model_description(str(tmp_path / component.get("source", "")))
-        variables = {v.name: v for v in description.modelVariables}
-        for connector in component.iter(f"{SSD}Connector"):
-            variable, real = variables[connector.get("name", "")], connector.find(f"{SSC}Real")
-            assert real is not None
-            assert (variable.causality, variable.unit) == (connector.get("kind"), real.get("unit"))
-            units[component.get("name"), connector.get("name")] = real.get("unit")
-    connections = list(root.iter(f"{SSD}Connection"))
-    assert len(connections) == 3
-    for c in connections:
-        start, end = (
-            (c.get("startElement"), c.get("startConnector")),
-            (c.get("endElement"), c.get("endConnector")),
-        )
-        assert units[start] == units[end]
-    assert {u.get("name") for u in root.iter(f"{SSC}Unit")} >= set(units.values())
-    (step,) = root.iter("{http://opensimulationplatform.com/SSP/OSPAnnotations}FixedStepAlgorithm")
-    assert step.get("baseStepSize") == "0.001"
-
-
 @pytest.mark.parametrize("one_after_the_other", [True, False])
 def test_fmpy_rides_the_system(
     example: dict[str, ModuleType], bumpy: Any, tmp_path: Path, one_after_the_other: bool
@@ -181,7 +93,7 @@ def test_fmpy_rides_the_system(
     look_ahead = example["coupled"].lag(1e-3, late)
     path = _system(example, bumpy, tmp_path, 1e-3, look_ahead)
     table = example["cosimulate"].cosimulate(
-        path, step=1e-3, duration=DURATION, one_after_the_other=one_after_the_other
+        path, step=1e-3, duration=bumpy.duration, one_after_the_other=one_after_the_other
     )
     expected = _run(example, bumpy, step=1e-3, late=late)
     assert (expected.deflection < 0.0).any()
@@ -245,7 +157,7 @@ def test_energy_of_a_stepped_ride(example: dict[str, ModuleType], bumpy: Any, wa
                 ride.ground,
                 law,
                 _run(example, ride, step=step, late=late, look_ahead=ahead),
-                speed=SPEED,
+                speed=ride.speed,
                 start=ride.start,
             )
             for ahead in (0.0, None)
@@ -268,35 +180,6 @@ def test_tire_fmu_in_the_loop(example: dict[str, ModuleType], bumpy: Any, tmp_pa
         tire(0.0, 0.01, math.inf)
         with pytest.raises(TirelabError, match=r"the tire FMU refused t = 0\.001 s: deflection = 22"):
             tire(0.001, 22.0, math.inf)
-
-
-def test_refusals_of_the_bicycle_fmu(example: dict[str, ModuleType], wavy: Any, tmp_path: Path) -> None:
-    """One message that says why, the state as before, and on with the next good value."""
-    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3)
-    replay = importlib.import_module("tirelab.fmu.replay")
-    with replay.opened(path) as unit:
-        instance, force, hub = (
-            unit.instance,
-            [unit.references["radial_force"]],
-            [unit.references["hub_height"]],
-        )
-        instance.setupExperiment(startTime=5.0)
-        instance.enterInitializationMode()
-        instance.exitInitializationMode()
-        before = instance.getReal(hub)
-        instance.setReal(force, [math.nan])
-        with pytest.raises(fmpy.fmi1.FMICallException):
-            instance.doStep(5.0, 1e-3)
-        assert unit.messages() == ("radial_force = nan is not allowed; it must be a finite number",)
-        assert instance.getReal(hub) == before
-        instance.setReal(force, [0.0])
-        instance.doStep(5.0, 1e-3)
-        with pytest.raises(fmpy.fmi1.FMICallException):
-            instance.doStep(8.0, 1e-3)
-        assert "has not the whole wheel over the ground" in unit.messages()[-1]
-        # Let go of the wheel: in 1 ms the fork and gravity move it by (S / m_u + g) t^2 / 2, S carrying 32 kg.
-        fallen = before[0] - instance.getReal(hub)[0]
-        assert fallen == pytest.approx(0.5 * 9.80665 * (1.0 + 32.0 / 3.5) * 1e-6, rel=0.05)
 
 
 def test_ride_beyond_the_ground(example: dict[str, ModuleType], wavy: Any) -> None:
@@ -322,17 +205,6 @@ def test_diverging_ride_says_when(example: dict[str, ModuleType], bumpy: Any) ->
             state=bumpy.state,
             coupling=example["coupled"].Coupling(0.0, late=True),
         )
-
-
-def test_parameters_of_the_ride_are_in_the_fmu(
-    example: dict[str, ModuleType], wavy: Any, tmp_path: Path
-) -> None:
-    path = example["pack"].pack_bicycle(wavy, tmp_path, step=1e-3)
-    variables = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
-    assert float(variables["sprung_mass"].start) == 32.0
-    assert variables["fork_stiffness"].unit == "N/m"
-    with zipfile.ZipFile(path) as archive:
-        assert json.loads(archive.read("resources/ride.json"))["state"] == wavy.state.tolist()
 
 
 def test_the_readmes_example_runs(

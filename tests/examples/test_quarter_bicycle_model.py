@@ -1,9 +1,5 @@
 """The quarter bicycle: rest, free fall, small oscillations and energies, each against its closed form."""
 
-import importlib
-import sys
-from collections.abc import Iterator
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -12,20 +8,8 @@ from scipy.linalg import expm
 from tirelab.errors import TirelabError
 from tirelab.terrain import Ground, contact, flat, from_function, ground_from, iso8608, log, place, sine
 
-MODULES = ("bicycle", "wheel", "model", "coupled", "account")
 GRAVITY = 9.80665
 WHEEL = 0.33
-
-
-@pytest.fixture(scope="module")
-def example(repository: Path) -> Iterator[dict[str, ModuleType]]:
-    """The example's two modules, which import each other by their plain names."""
-    folder = str(repository / "examples" / "quarter_bicycle")
-    sys.path.insert(0, folder)
-    yield {name: importlib.import_module(name) for name in MODULES}
-    sys.path.remove(folder)
-    for name in MODULES:
-        del sys.modules[name]
 
 
 @pytest.fixture(scope="module")
