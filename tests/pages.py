@@ -45,6 +45,7 @@ SMALLER = {
     "python -m tirelab.validation.calibrate --seed 1202056903 --seed 1553160433 --seed 2236067977 "
     "--trials 200 --out FILE": "--trials 10",
     "python -m tirelab.validation.coverage --seed 6 --draws 200": "--draws 2",
+    "python tests/benchmarks/bench_cases.py --seed 11": "nothing_on_a_press",
     "python -m tirelab.validation.form_errors --seed 1": "--draws 12",
     "python -m tirelab.validation.plans --seed 20261122 --trials 12 --out FILE": "--trials 1",
     "python tests/sensitivity.py --seed 701408733 --trials 200 --each 6": "--trials 1 --each 1 "
