@@ -101,6 +101,7 @@ DERIVED = (
     "estimation/minimise.STEP",
     "estimation/problem.COMMON",
     "estimation/problem.DEFLECTION_HATS",
+    "estimation/problem.KINKS",
     "estimation/problem.SIGNED_HATS",
     "estimation/ranking.MOST_EFFECTS",
     "estimation/ranking.SWAPPED",
@@ -113,7 +114,7 @@ DERIVED = (
 )
 
 PRIOR = tuple(
-    f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "HEIGHT", "PRELOAD")
+    f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "KINK", "PRELOAD")
 )
 
 EFFORT = (

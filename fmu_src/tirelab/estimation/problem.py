@@ -32,6 +32,7 @@ from ..regressors.signature import (
     BEND,
     EXPONENT,
     FACTOR,
+    HEIGHTS,
     KINK,
     LAW,
     MOST_SURFACES,
@@ -131,17 +132,7 @@ def parameters_of_law(surfaces: int, preload: float = 0.0, gap: float = 0.0) -> 
     groups = [1, 2, 3, 4, *[5] * KINKS, *[6, 7] * surfaces]
     shape = tuple(
         FreeParameter(
-            LAW,
-            i,
-            label,
-            "1",
-            0.0,
-            spread,
-            False,
-            -2.0 / spread,
-            2.0 / spread,
-            -2.0,
-            2.0,
+            *(LAW, i, label, "1", 0.0, spread, False, -2.0 / spread, 2.0 / spread, -2.0, 2.0),
             optional=4 <= i < COMMON,
             group=groups[i],
         )
@@ -329,9 +320,9 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
     return arranged(tire, effects)
 
 
-DEFLECTION_HATS, SIGNED_HATS = 6, 3
-"""Numbers of hat functions of the deflection, and of those of the deflection times the sign of the direction and of the
-path since the last reversal."""
+DEFLECTION_HATS, SIGNED_HATS = HEIGHTS // 2 + 1, HEIGHTS // 4 + 1
+"""Numbers of hat functions of the deflection (a hat at every second height of a law's shape), and of those of the
+deflection times the sign of the direction and of the path since the last reversal."""
 
 
 def smooth_functions(dataset: Dataset) -> FloatArray:
