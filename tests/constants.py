@@ -113,9 +113,7 @@ DERIVED = (
     "diagnosis/localization.LOCATED",
 )
 
-PRIOR = tuple(
-    f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "KINK", "PRELOAD")
-)
+PRIOR = tuple(f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND", "TWIST", "KINK", "PRELOAD"))
 
 EFFORT = (
     "preprocessing/gauge.CANDIDATES",

@@ -143,17 +143,7 @@ def parameters_of_law(surfaces: int, preload: float = 0.0, gap: float = 0.0) -> 
         *shape,
         *(
             FreeParameter(
-                LAW,
-                len(shape),
-                label,
-                unit,
-                0.0,
-                spread,
-                False,
-                -far,
-                far,
-                -far * spread,
-                far * spread,
+                *(LAW, len(shape), label, unit, 0.0, spread, False, -far, far, -far * spread, far * spread),
                 group=group,
             )
             for label, unit, spread, far, group in constants
