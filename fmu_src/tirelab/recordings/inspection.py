@@ -150,14 +150,18 @@ def _table_text(found: Understood) -> str:
         if not isinstance(found.table, ExcelTable):
             return kind
         sheet = found.table.sheet_of(found.plan.matches["force"].index)
-        return f"{kind}, sheet {sheet.title!r}, names in row {sheet.header_row}"
+        where = (
+            f"names in row {sheet.header_row}" if sheet.header_row else f"numbers in row {sheet.first_row}"
+        )
+        return f"{kind}, sheet {sheet.title!r}, {where}"
     layout = found.table.layout
     named = "names" if layout.lines_before_data >= layout.table_line else "numbers"
     text = f"{named} in row {layout.table_line}"
     if named == "names":
         text += f", numbers from row {layout.lines_before_data + 1}"
     decimal = "commas" if layout.style.decimal_comma else "points"
-    marks = f"; {SEPARATORS[layout.separator]} between columns, decimal {decimal}"
+    between = "spaces" if layout.spaced else SEPARATORS[layout.separator]
+    marks = f"; {between} between columns, decimal {decimal}"
     thousands = f", {layout.style.thousands!r} between thousands" if layout.style.thousands else ""
     encoding = "" if layout.encoding == "utf-8" else f"; {layout.encoding}"
     trials = f"; {found.plan.trials} trials side by side" if found.plan.trials > 1 else ""

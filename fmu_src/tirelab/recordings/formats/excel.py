@@ -55,11 +55,6 @@ class ExcelTable:
             )
         # of sheets with the same channels the longest: one of results has a row for each specimen, or a single one
         chosen = max(found, key=lambda sheet: (sheet.rows > 1, _channels(sheet.headers), sheet.rows))
-        if not chosen.header_row:
-            raise RecordingError(
-                f"{path.name}, row {chosen.first_row} is no header; put a row above the numbers that names "
-                "the columns and their units, such as force [N]"
-            )
         names = _names(chosen)
         alike = [sheet for sheet in found if _names(sheet) == names]
         # columns without a name behind the last one that has one: of these sheets, some may have them, others not

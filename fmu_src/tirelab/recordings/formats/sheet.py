@@ -32,7 +32,7 @@ DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 
 @dataclass(frozen=True)
 class Sheet:
-    """The table of one sheet: its title, its row of names and its first row of numbers from 1, its columns.
+    """The table of one sheet: its title, its row of names (0: none) and its first row of numbers from 1, its columns.
 
     style: of numbers that are stored as text, where most rows hold one; rows: how many were seen below the names;
     counted: whether its first column holds no text; provenance: the rows above the names
@@ -94,11 +94,15 @@ def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
     if width < len(names):
         names, head = names[:width], [row[:width] for row in head]
         lines = ["\t".join(line.rstrip("\n").split("\t")[:width]) + "\n" for line in lines]
-    if not any(isinstance(cell, str) and cell.strip() for cell in names):
-        return Sheet(title, 0, start + 1, (), ())
-    headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
-    headers, below, notes = below_names(lines, start + 1, headers, "\t")
-    body = head[start + 1 + below :]
+    if any(isinstance(cell, str) and cell.strip() for cell in names):
+        headers = tuple(_header(cell, n) for n, cell in enumerate(names, 1))
+        headers, below, notes = below_names(lines, start + 1, headers, "\t")
+        header_row, first_row = start + 1, start + below + 2
+    else:
+        headers = tuple(_header(None, n) for n in range(1, len(_trimmed(names)) + 1))
+        notes = ("the sheet has no header row: its columns are known by number only",)
+        header_row, first_row = 0, start + 1
+    body = head[first_row - 1 :]
     values = next((row for row in body if holds_any(row)), ())
     dated = {n for n, cell in enumerate(values) if isinstance(cell, DATES)}
     headers = with_cell_units(with_dates(headers, dated), cell_units)
@@ -112,7 +116,7 @@ def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
         notes = (*notes, f"numbers that are stored as text read with decimal {marks}")
     counted = column_counted([[cell_text(cell) for cell in row] for row in body])
     above = tuple("; ".join(filter(None, map(cell_text, row))) for row in head[:start] if holds_any(row))
-    return Sheet(title, start + 1, start + below + 2, headers, notes, style, len(body), counted, above)
+    return Sheet(title, header_row, first_row, headers, notes, style, len(body), counted, above)
 
 
 def _style_of_texts(body: Sequence[Sequence[Any]]) -> NumberStyle | None:

@@ -90,7 +90,9 @@ def _loaded(path: Path) -> OpenpyxlBook | CalamineBook:
 
 def _check_size(path: Path, stream: io.BytesIO) -> None:
     """Raise RecordingError for an archive that would fill the memory, before it is unpacked."""
-    if not zipfile.is_zipfile(stream):  # .xls, or what the library refuses
+    packed_in_zip = zipfile.is_zipfile(stream)
+    stream.seek(0)
+    if not packed_in_zip:  # .xls, or what the library refuses
         return
     with zipfile.ZipFile(stream) as members:
         content = sum(member.file_size for member in members.infolist())

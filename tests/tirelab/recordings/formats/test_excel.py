@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from old_workbook import write_old_workbook
 from one_recording import COLUMNS, HEADERS, SAMPLES, TIME, assert_the_recording, refusal
 from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.choices import Choices
@@ -83,8 +84,16 @@ class TestExcel:
         # Excel keeps a day as a double: half a microsecond is lost, and openpyxl rounds to one.
         np.testing.assert_allclose(recording.time, TIME, atol=2e-6)
 
-    def test_a_sheet_without_a_header_is_told(self, tmp_path: Path) -> None:
-        assert "is no header" in refusal(self.save(tmp_path / "a.xlsx", self.rows()[1:]))
+    def test_a_sheet_without_a_header_is_read_by_the_numbers_of_its_columns(self, tmp_path: Path) -> None:
+        path = self.save(tmp_path / "a.xlsx", self.rows()[1:])
+        assert "has no header row" in refusal(path)
+        columns = {"time": "#1", "deflection": "#2", "force": "#3"}
+        units = {"time": "s", "deflection": "mm", "force": "kN"}
+        recording = read_recording(path, radius="flat", columns=columns, units=units)
+        by_number = "the sheet has no header row: its columns are known by number only"
+        assert_the_recording(recording, by_number, digits=1e-15)
+        found = inspect_recording(path, Choices(radius="flat", columns=columns, units=units))
+        assert dict(found.facts)["table"] == "xlsx, sheet 'Sheet', numbers in row 1"
         assert "no header and no numbers" in refusal(self.save(tmp_path / "b.xlsx", []))
 
     def test_the_table_below_a_title_with_units_below_its_names(self, tmp_path: Path) -> None:
@@ -242,6 +251,14 @@ def test_an_open_document_is_read_as_the_others_are(tmp_path: Path) -> None:
     recording = read_recording(tmp_path / "a.ods", radius="flat")
     np.testing.assert_allclose(recording.force, 9.0 * np.arange(30))
     np.testing.assert_allclose(recording.deflection, 2e-4 * np.arange(30))
+
+
+def test_a_workbook_of_the_format_before_xlsx(tmp_path: Path) -> None:
+    """It is no archive, so that a search for one leaves the stream at its end."""
+    pytest.importorskip("python_calamine")
+    rows = [list(HEADERS), *(list(map(float, row)) for row in zip(*COLUMNS.values(), strict=True))]
+    path = write_old_workbook(tmp_path / "a.xls", rows)
+    assert_the_recording(read_recording(path, radius="flat"))
 
 
 @pytest.mark.parametrize("name", ["bomb.xlsx", "bomb.ods"])
