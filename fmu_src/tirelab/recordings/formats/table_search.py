@@ -70,7 +70,7 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     above = [row for row in texts if len(row.cells) == width]
     header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
     if header is None or not _named(header.cells):
-        header = next(iter(_nearly_as_wide(texts, rows[first])), header)
+        header = next(iter(_nearly_as_wide(texts, rows, first)), header)
     else:
         header = next(row for row in above if _named(row.cells) == _named(header.cells))
     if header is not None:
@@ -82,17 +82,20 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     return TablePlace(found, start + rows[begin].line)
 
 
-def _nearly_as_wide(texts: Sequence[_Row], numbers: _Row) -> list[_Row]:
-    """Return the row of text nearest above the numbers if it is a cell wider or narrower and names channels.
+def _nearly_as_wide(texts: Sequence[_Row], rows: Sequence[_Row], first: int) -> list[_Row]:
+    """Return the row of text nearest above the numbers if it is a cell wider or narrower, and shows that it names them.
 
-    Some programs name a column for remarks that few rows have, or end each row of numbers with a separator.
+    Some programs name a column for remarks that few rows have, or end each row of numbers with a separator. It names
+    channels, or the row of numbers right below it has its remark, DAQ Start, so that it is as wide.
     """
     if not texts:
         return []
+    numbers, below = rows[first], rows[rows.index(texts[-1]) + 1]
     names, width = [cell for cell in texts[-1].cells if cell.strip()], len(numbers.cells)
     trailed = not numbers.cells[-1].strip()
     fits = len(names) == width + 1 or (trailed and len(names) == width - 1)
-    return [texts[-1]] if fits and _named(names) > 1 else []
+    remarked = below.numeric and len(names) == len(below.cells) == width + 1
+    return [texts[-1]] if fits and (remarked or _named(names) > 1) else []
 
 
 def is_value(cell: str) -> bool:
