@@ -142,13 +142,16 @@ def _repeated(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
 def _before_the_clock(values: Mapping[str, FloatArray]) -> int:
     """Return how many rows at the beginning have the time of the row after them; 0 where other rows repeat one too.
 
-    A machine may write what it reads while it waits for the start of the test. One row alone may be a slip: it is none.
+    A machine may write what it reads while it waits for the start of the test. One row alone may be a slip; it is none
+    where the deflection has not changed after it.
     """
-    time = values.get("time")
+    time, deflection = values.get("time"), values.get("deflection")
     if time is None or len(time) < 2 or not time[0] < time[-1]:
         return 0
     still = np.flatnonzero(time[1:] == time[:-1])
-    return len(still) if len(still) > 1 and np.array_equal(still, np.arange(len(still))) else 0
+    if len(still) == 1 and (deflection is None or deflection[0] != deflection[1]):
+        return 0
+    return len(still) if np.array_equal(still, np.arange(len(still))) else 0
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

@@ -107,6 +107,10 @@ def test_rows_before_the_clock_runs_are_skipped_and_named() -> None:
     np.testing.assert_array_equal(rows.values["time"], [0.0, 0.1, 0.2])
     np.testing.assert_array_equal(rows.values["force"], [6.0, 7.0, 8.0])
     assert rows.place(0) == "row 4"
+    # one row alone is one of them where nothing has moved
+    one = rows_of(time=[0.0, 0.0, 0.5], deflection=[1.0, 1.0, 2.0], force=[-43.4, -43.5, 524.7])
+    assert one.notes == ("skipped as before the clock runs: row 2",)
+    assert rows_of(time=[0.0, 0.0, 0.5], deflection=[1.0, 1.1, 2.0], force=[5.0, 5.5, 6.0]).kept is None
     # one row alone, a clock that is coarser than the samples, and one that never runs
     assert rows_of(time=[0.0, 0.0, 0.1], force=[5.0, 5.5, 6.0]).kept is None
     assert rows_of(time=[0.0, 0.0, 1.0, 1.0, 2.0], force=[5.0, 5.5, 6.0, 7.0, 8.0]).kept is None
