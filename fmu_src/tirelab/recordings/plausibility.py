@@ -67,6 +67,9 @@ beginning is within this part of the stroke."""
 LOWEST = 0.003
 """The force with the least deflection is the mean over this part of the stroke."""
 
+FOLLOWS = 0.9
+"""A force follows the deflection where their correlation is above this."""
+
 NO_FORCE = 0.01
 """Before the force begins it is below this part of the largest everywhere: a law that rises from zero is not."""
 
@@ -110,6 +113,8 @@ def doubts_of(
         # what is slack or centred elsewhere is the part's own; farther than any slack it is likely the gauge's
         off = zero is not None and zero.far and zero.seen
         begun = (_placed(where("deflection", None), gauges.doubt(zero)),) if zero is not None and off else ()
+        pulls = _pull_doubt(gauges, x, f)
+        begun += (_placed(where("force", None), pulls),) if pulls else ()
         return Doubts((*begun, *loops))
     found = [
         _placed(where("radius", step * at), sentence)
@@ -291,6 +296,21 @@ def _loop_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
     return (
         f"the loops of force over deflection run backwards: {-share:.0%} of the work comes out of the part, and "
         f"nothing passive gives out energy; is one of the two counted the other way? Then {naming} turns the force"
+    )
+
+
+def _pull_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
+    """Return a sentence where a part pulls all the time, the less the more it is deflected, "" where it does not.
+
+    A part that is stretched further pulls more, so that what is read may be a load cell that was not zeroed.
+    """
+    least, most = float(f.min()), float(f.max())
+    if not most < 0.0 or np.ptp(x) == 0.0 or not float(np.corrcoef(x, f)[0, 1]) > FOLLOWS:
+        return ""
+    given = gauges.origin.zero(gauges.at_zero({"force": float(f"{least:.3g}")}))
+    return (
+        f"the force is {least:.3g} to {most:.3g} N: it pulls all the time, the least where the deflection is largest; "
+        f"if the load cell was not zeroed, give what it reads without load, such as {given}"
     )
 
 

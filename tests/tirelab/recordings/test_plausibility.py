@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tirelab.recordings.inspection import step_of
+from tirelab.recordings.choices import Choices
+from tirelab.recordings.inspection import inspect_recording, step_of
 from tirelab.recordings.plausibility import force_begins
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
 
@@ -118,3 +119,18 @@ def test_a_stroke_that_is_all_but_nothing_is_read() -> None:
     """A tire's force at 1e-232 m is 0 in floating point: nothing can be compared with it."""
     recording = Recording.from_arrays(T, 1e-230 * X, pressed(900.0, 1.45), "flat")
     assert not any("times too" in doubt for doubt in recording.doubts)
+
+
+def test_a_load_cell_that_was_not_zeroed_is_asked_about(tmp_path: Path) -> None:
+    """A strip that is stretched from 0.5 to 6.5 N reads -14.5 to -8.5 N."""
+    path = tmp_path / "a.csv"
+    table = np.column_stack([T, 1e3 * X, 0.5 + 6.0 * X / X.max() - 15.0])
+    header = "time [s],deflection [mm],force [N]"
+    np.savetxt(path, table, fmt="%.4f", delimiter=",", header=header, comments="")
+    signed = {"deflection": "+deflection [mm]", "force": "+force [N]"}
+    (doubt,) = inspect_recording(path, Choices(part=True, columns=signed)).recording.doubts
+    assert "the force is -14.5 to -8.5 N: it pulls all the time" in doubt
+    assert "force=-14.5N" in doubt
+    zeroed = inspect_recording(path, Choices(part=True, columns=signed, zero={"force": "-15 N"})).recording
+    assert zeroed.doubts == ()
+    np.testing.assert_allclose(zeroed.force, 0.5 + 6.0 * X / X.max(), atol=1e-3)
