@@ -112,7 +112,9 @@ def doubts_of(
     if part:
         # what is slack or centred elsewhere is the part's own; farther than any slack it is likely the gauge's
         off = zero is not None and zero.far and zero.seen
-        begun = (_placed(where("deflection", None), gauges.doubt(zero)),) if zero is not None and off else ()
+        begun: tuple[str, ...] = ()
+        if zero is not None and off:
+            begun = (_placed(where("deflection", None), gauges.doubt(zero)),)
         pulls = _pull_doubt(gauges, x, f)
         begun += (_placed(where("force", None), pulls),) if pulls else ()
         return Doubts((*begun, *loops))
