@@ -303,7 +303,8 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         tire = replace(tire, law=Recalibrated(tire.law, rows))
         if any(shape):
             bend, twist, *kinks = shape
-            heights = (RAMPS @ kinks).tolist()
+            last = CATALOGUE[SHAPE].parameters[-1]
+            heights = np.clip(RAMPS @ kinks, last.minimum, last.maximum).tolist()
             twist = min(max(twist, -1.0), 1.0)
             reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
             effects.append((SHAPE, (bend, twist, reference, *heights)))

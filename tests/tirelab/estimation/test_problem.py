@@ -193,3 +193,13 @@ def test_the_law_of_a_part_that_begins_beyond_a_gap_has_its_gap() -> None:
     last = problem_of(dataset, {REFITTED_LAW: start}, plain=False).parameters[-1]
     assert (last.label, last.unit) == ("gap", "m")
     assert last.value(last.position(-0.0003)) == pytest.approx(-0.0003)
+
+
+def test_a_law_with_every_kink_at_its_bound_is_one_that_a_tire_file_holds() -> None:
+    """Kinks add up along the deflection: nine of 2 are a height of 10, where a tire's is at most 2."""
+    start = law_start(DATASET)
+    for bound in (2.0, -2.0):
+        moved = tire_of(DATASET, {REFITTED_LAW: (*start[:4], *[bound] * 9, *start[13:])})
+        ((_, values),) = moved.effects
+        assert values[-1] == bound
+        assert values[3] == 0.0
