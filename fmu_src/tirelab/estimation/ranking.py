@@ -384,5 +384,6 @@ def _refit_below_subsets(sets: FittedSets) -> None:
             fit = sets.fits[subset]
             leaves_less = subset < names and fit.power < 0.999 * sets.fits[names].power
             if leaves_less and sets.posterior(names) >= sets.posterior(sets.best()) - REACH:
-                added = {n: sets.additions(fit, n)[0] for n in sorted(names - subset)}
-                sets.fit([{**fit.values, **added}], fit.variance)
+                added = {n: sets.additions(fit, n) for n in sorted(names - subset)}
+                if all(added.values()):  # beside the subset none of them is silent
+                    sets.fit([{**fit.values, **{n: v[0] for n, v in added.items()}}], fit.variance)

@@ -65,7 +65,7 @@ def test_what_the_baseline_has_stays() -> None:
 
 
 def test_a_refitted_law_takes_its_shape_with_it() -> None:
-    bent = tire(elastic_shape=(0.05, 0.0, 0.0125, *[0.0] * 5))
+    bent = tire(elastic_shape=(0.05, 0.0, 0.0125, *[0.0] * 10))
     assert without(REFITTED_LAW, bent, TireModel()).effects == ()
 
 
@@ -172,7 +172,7 @@ def test_the_bend_belongs_to_the_law_and_friction_does_not() -> None:
     def with_effects(**values: tuple[float, ...]) -> TireModel:
         return replace(CORRECTED, effects=tuple((CATALOGUE[n], v) for n, v in values.items()))
 
-    bent = with_effects(elastic_shape=(0.05, 0.0, 0.0125, *[0.0] * 5), force_offset=(40.0,))
+    bent = with_effects(elastic_shape=(0.05, 0.0, 0.0125, *[0.0] * 10), force_offset=(40.0,))
     (plain,) = law_changes(BASELINE, CORRECTED, {}, [pressed(math.inf)])
     (curved,) = law_changes(BASELINE, bent, {}, [pressed(math.inf)])
     x = curved.deflection[1:]
