@@ -20,9 +20,8 @@ def parse_toml(text: str) -> dict[str, Any]:
     Errors: ValueError for what is none, which names the key of an integer of more than 64 bits (tomllib reads it, and
     it may be beyond every float and too long to be printed); RecursionError for 1000 lists in one another.
     """
-    content: dict[str, Any] = tomllib.loads(
-        text
-    )  # raises ValueError too for a decimal integer of 5000 digits
+    # It raises ValueError too for a decimal integer of 5000 digits.
+    content: dict[str, Any] = tomllib.loads(text)
     for key, value in _values(content, ""):
         if isinstance(value, int) and not -LARGEST - 1 <= value <= LARGEST:
             raise ValueError(f"{key} is an integer of more than 64 bits")
