@@ -12,9 +12,10 @@ to them (`estimation.ranking`). Without any, the accepted effects are fitted onc
 which is then simulated from its true history: a whole recording, the last one first, or the end of each recording that
 holds the last part of the misfit. The part has to be driven like the data that stay fitted: on the same surfaces, at
 depths and speeds and after rests within a factor of two, and where the set explains at least half as much; otherwise
-its error is one of extrapolation and refutes nothing. The set also has to change the force in it, or it proves nothing.
-Where no part fulfils this, the end of each kind of driving is held out, surface by surface. The effects were chosen on
-all of the data; the parameters were fitted without the held-out part.
+its error is one of extrapolation and refutes nothing. So do samples deeper than all that stay fitted on their surface:
+those of a recording's end are fitted too. The set also has to change the force in the part, or it proves nothing. Where
+no part fulfils this, the end of each kind of driving is held out, surface by surface. The effects were chosen on all of
+the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -138,7 +139,7 @@ def split(
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
     motions = [e.motion for e in dataset.experiments]
-    kept, by = _parts(recordings, before, explanation.residuals, _ways(recordings, motions))
+    kept, by = _parts(recordings, motions, before, explanation.residuals)
     refitted = explanation.refitted(kept)
     noise_free = [
         noise_free_residual(refitted.tire, r, e.motion)
@@ -151,25 +152,47 @@ def split(
     return HeldOut(by, *(tuple(p for p in side if p.chosen.any()) for side in (fitted, others)))
 
 
-def _ways(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
+def _surfaces(recordings: Sequence[Recorded]) -> list[IndexArray]:
+    """Return the number of the surface at each sample; one number for all where there are too many to tell apart."""
+    radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
+    if radii.size > MOST_SURFACES:
+        return [np.zeros(r.time.size, dtype=np.intp) for r in recordings]
+    return [np.searchsorted(radii, r.surface_radius) for r in recordings]
+
+
+def _ways(
+    recordings: Sequence[Recorded], motions: Sequence[Motion], surfaces: Sequence[IndexArray]
+) -> list[IndexArray]:
     """Return a number for the kind of driving at each sample: the same on one surface, at depths and speeds within one
     factor of two and, at rest, after rests within one factor of two.
     """
     deepest = max(float(np.abs(m.deflection).max()) for m in motions)
     fastest = max(float(np.abs(m.rate).max()) for m in motions)
-    radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
-    told_apart = radii.size <= MOST_SURFACES
     timed = is_timed(recordings)
     speeds = [_halvings(m.rate, fastest) for m in motions]
     rested = [_rested(r.time, s == HALVINGS - 1) for r, s in zip(recordings, speeds, strict=True)]
     longest = max(float(r.max()) for r in rested)
     found = []
-    for recording, motion, speed, rest in zip(recordings, motions, speeds, rested, strict=True):
-        way = np.searchsorted(radii, recording.surface_radius) if told_apart else np.zeros_like(speed)
+    for way, motion, speed, rest in zip(surfaces, motions, speeds, rested, strict=True):
         for part in (speed, _halvings(rest, longest)) if timed else ():
             way = way * HALVINGS + part
         found.append(np.asarray(way * HALVINGS + _halvings(motion.deflection, deepest)))
     return found
+
+
+def _within(
+    kept: Sequence[BoolArray], motions: Sequence[Motion], surfaces: Sequence[IndexArray]
+) -> list[BoolArray]:
+    """Return which samples lie within the deflections of those that are kept on the same surface."""
+    fits, surface = np.concatenate(kept), np.concatenate(surfaces)
+    deflection = np.concatenate([m.deflection for m in motions])
+    least, most = np.full((2, int(surface.max()) + 1), [[np.inf], [-np.inf]])
+    np.minimum.at(least, surface[fits], deflection[fits])
+    np.maximum.at(most, surface[fits], deflection[fits])
+    return [
+        (m.deflection >= least[own]) & (m.deflection <= most[own])
+        for m, own in zip(motions, surfaces, strict=True)
+    ]
 
 
 def _rested(time: FloatArray, rests: BoolArray) -> FloatArray:
@@ -187,28 +210,35 @@ def _halvings(values: FloatArray, largest: float) -> IndexArray:
 
 def _parts(
     recordings: Sequence[Recorded],
+    motions: Sequence[Motion],
     before: Sequence[FloatArray],
     after: Sequence[FloatArray],
-    ways: Sequence[IndexArray],
 ) -> tuple[list[BoolArray], str]:
     """Return which samples stay fitted, and the name of the held-out part.
 
     before, after [N]: what the baseline and the set leave of each recording
     """
+    surfaces = _surfaces(recordings)
+    ways = _ways(recordings, motions, surfaces)
     for number in reversed(range(len(recordings))) if len(recordings) > 1 else ():
         kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
-        if _shows_as_much(kept, before, after, ways):
+        if _shows_as_much(kept, before, after, ways, _within(kept, motions, surfaces)):
             return kept, f"recording {recordings[number].name}"
-    kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
-    if not _shows_as_much(kept, before, after, ways):
-        kept = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
+    for whole in (True, False):
+        kept = [_beginning(b, np.zeros_like(w) if whole else w) for b, w in zip(before, ways, strict=True)]
+        within = _within(kept, motions, surfaces)
+        seen = whole and _shows_as_much(kept, before, after, ways, within)
+        kept = [k | ~w for k, w in zip(kept, within, strict=True)]
+        if seen:
+            break
+    else:
         return kept, "the end of each motion"
-    r, count = recordings[0], int(np.sum(~kept[0]))
+    r, held_out = recordings[0], np.flatnonzero(~kept[0])
     more = " and the ends of the others" if len(recordings) > 1 else ""
-    first = kept[0].size - count
+    first, last = int(held_out[0]), int(held_out[-1])
     if not is_timed([r]):
-        return kept, f"samples {first + 1}-{r.time.size}{more}"
-    return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[-1]):.4g} s{more}"
+        return kept, f"samples {first + 1}-{last + 1}{more}"
+    return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[last]):.4g} s{more}"
 
 
 def _shows_as_much(
@@ -216,26 +246,30 @@ def _shows_as_much(
     before: Sequence[FloatArray],
     after: Sequence[FloatArray],
     ways: Sequence[IndexArray],
+    within: Sequence[BoolArray],
 ) -> bool:
     """Return whether the held-out part can refute a set.
 
-    It can if the set changes the force in it, and if most of what the set explains there belongs to kinds of driving
-    that are also fitted, in which it explains at least half as much. What shows only in the held-out part cannot be
-    fitted without it.
+    It can if the set changes the force in it, and if most of what the set explains there lies within the deflections
+    that are also fitted, and belongs to kinds of driving that are, in which it explains at least half as much. What
+    shows only in the held-out part cannot be fitted without it.
     """
-    fits, way = np.concatenate(kept), np.concatenate(ways)
+    fits, way, inside = np.concatenate(kept), np.concatenate(ways), np.concatenate(within)
     missed, left = np.concatenate(before), np.concatenate(after)
     changed, explained = (missed - left) ** 2, missed**2 - left**2
     count = int(way.max()) + 1
-    samples = [np.bincount(way[own], minlength=count) for own in (fits, ~fits)]
-    fitted, held_out = (
-        np.maximum(np.bincount(way[own], explained[own], count), 0.0) / np.maximum(n, 1)
-        for own, n in zip((fits, ~fits), samples, strict=True)
+    fitted, held_out, all_of_it = (
+        np.bincount(way[own], explained[own], count) for own in (fits, ~fits & inside, ~fits)
     )
-    whole = held_out * samples[1]
-    alike = 4.0 * fitted >= held_out
+    samples = [np.bincount(way[own], minlength=count) for own in (fits, ~fits & inside)]
+    each, other = (
+        np.maximum(e, 0.0) / np.maximum(n, 1) for e, n in zip((fitted, held_out), samples, strict=True)
+    )
+    alike = 4.0 * each >= other
+    whole = np.maximum(all_of_it, 0.0).sum()
     return bool(
-        changed[~fits].sum() >= NEGLIGIBLE * changed.sum() and whole[alike].sum() >= FITTED * whole.sum()
+        changed[~fits].sum() >= NEGLIGIBLE * changed.sum()
+        and np.maximum(held_out, 0.0)[alike].sum() >= FITTED * whole
     )
 
 

@@ -208,3 +208,22 @@ def test_nor_is_it_where_the_noise_hides_it():
     held_out = split(drives, raw_dataset_of(drives, TireModel()), before, found)
     assert not held_out.by.startswith("recording")
     assert held_out.after < held_out.before
+
+
+def test_a_press_deeper_than_all_that_stays_fitted_refutes_nothing():
+    """A stop at the end of one press is known from nothing before it: the end is fitted, and what lies between is held
+    out.
+    """
+    time = np.linspace(0.0, 20.0, 4000)
+    deflection = 0.0015 * time
+    force = 0.8 * flat_force(deflection) + 4e5 * np.maximum(deflection - 0.027, 0.0)
+    press = [read("press", time, deflection, force, seed=7)]
+    found = explain_misfit(press, TireModel(), ["bottoming", "recalibration"], lambda stage: None).of(
+        ("bottoming", "recalibration")
+    )
+    before = [p.force - flat_force(p.deflection) for p in press]
+    held_out = split(press, raw_dataset_of(press, TireModel()), before, found)
+    (fitted,), (other,) = held_out.fitted, held_out.held_out
+    assert deflection[other.chosen].max() < 0.027 < deflection[fitted.chosen].max()
+    assert held_out.after == pytest.approx(5.0, rel=0.1)
+    assert held_out.before > 10.0 * held_out.after
