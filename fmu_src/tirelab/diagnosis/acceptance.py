@@ -224,21 +224,24 @@ def _parts(
         kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
         if _shows_as_much(kept, before, after, ways, _within(kept, motions, surfaces)):
             return kept, f"recording {recordings[number].name}"
-    for whole in (True, False):
-        kept = [_beginning(b, np.zeros_like(w) if whole else w) for b, w in zip(before, ways, strict=True)]
-        within = _within(kept, motions, surfaces)
-        seen = whole and _shows_as_much(kept, before, after, ways, within)
+    kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
+    within = _within(kept, motions, surfaces)
+    if _shows_as_much(kept, before, after, ways, within):
         kept = [k | ~w for k, w in zip(kept, within, strict=True)]
-        if seen:
-            break
-    else:
-        return kept, "the end of each motion"
-    r, held_out = recordings[0], np.flatnonzero(~kept[0])
+        return kept, _name_of(kept, recordings)
+    ends = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
+    kept = [k | ~w for k, w in zip(ends, _within(ends, motions, surfaces), strict=True)]
+    return ends if all(k.all() for k in kept) else kept, "the end of each motion"
+
+
+def _name_of(kept: Sequence[BoolArray], recordings: Sequence[Recorded]) -> str:
+    """Return the name of what is held out of the first recording that is not all kept, and of the others."""
+    r, own = next((r, k) for r, k in zip(recordings, kept, strict=True) if not k.all())
+    first, last = np.flatnonzero(~own)[[0, -1]]
     more = " and the ends of the others" if len(recordings) > 1 else ""
-    first, last = int(held_out[0]), int(held_out[-1])
     if not is_timed([r]):
-        return kept, f"samples {first + 1}-{last + 1}{more}"
-    return kept, f"time block {float(r.time[first]):.4g}-{float(r.time[last]):.4g} s{more}"
+        return f"samples {first + 1}-{last + 1}{more}"
+    return f"time block {float(r.time[first]):.4g}-{float(r.time[last]):.4g} s{more}"
 
 
 def _shows_as_much(
