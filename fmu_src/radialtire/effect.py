@@ -4,7 +4,7 @@ An effect is a pure response at one stage of the signal path from the measured d
 
     place "deflection"  measured deflection  -> deflection of wheel and tire
     place "series"      deflection           -> deflection of the tire (springs in series)
-    place "scale"       factor               -> factor on the elastic force (pressure, softening)
+    place "scale"       elastic force        -> elastic force (shape, pressure, softening)
     place "parallel"    force                -> force with what acts beside the elastic law
     place "inertia"     force                -> force with what accelerates
     place "reading"     force                -> measured force (lag, zero, ceiling)
@@ -97,11 +97,12 @@ class Instant(NamedTuple):
     deflection: [m] at the places "deflection" and "series" the input of the place, after them that of the tire
     rate: [m/s] of that deflection; acceleration: [m/s^2] of the measured deflection
     coefficient, exponent: A [N/cm^B] and B [1] of the surface
-    elastic_force: [N] at the place "scale" A x^B and the preload, after it with their factor, before it 0
+    elastic_force: [N] at the place "scale" A x^B, and the preload of a part that air carries, after it with their
+    factor, before it 0
     curvature: [1/m] of the surface, convex > 0
     pressure: [Pa], gauge, and temperature [K] of the tire, as measured or as inputs; else NOT_MEASURED
     two_sided: whether the part is held at both ends, so that a deflection below 0 is no lost contact
-    preload: [N] after "scale" the force of a part that is there without a deflection, without the factor
+    preload: [N] after "scale" that preload without the factor; 0 of a part without air
     """
 
     time: float

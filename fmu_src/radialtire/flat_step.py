@@ -4,9 +4,11 @@ The state before (s) and after (n) the step and the parameters (p) are flat rows
 copied, stored and restored by any host. Where the numbers of each effect stand says a `SignalPath`, a constant: the
 translation to C has every effect of the catalogue and skips those whose switch is 0.
 
-    deflection reading -> deflection of the tire -> factor -> elastic law -> parallel forces -> inertia -> force reading
+    deflection reading -> deflection of the tire -> elastic law -> shape and factors -> parallel forces -> inertia
+    -> force reading
 
-The factor acts on A x^B and on the preload of a part, since both are the force of its air or its rubber.
+The factors act on A x^B, and on the preload of a part that air carries, for it is the force of that air. Without air
+the preload is a pretension or the zero of a load cell, which nothing softens: it is added after them.
 """
 
 from __future__ import annotations
@@ -26,13 +28,13 @@ one, 0 before; time [s] of the first one."""
 HEAD = 6
 """Index of the first number of an effect in the state."""
 
-TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD = 0, 1, 2, 3, 4, 5
+TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD, INFLATED = 0, 1, 2, 3, 4, 5, 6
 """In the parameters: 1 where rate and acceleration follow from the readings (0: they are given, or not needed); 1 where
 the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading; 1 where effects that
 are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at
-both ends, and then its force [N] without a deflection."""
+both ends, and then its force [N] without a deflection; 1 where air carries it."""
 
-PARAMETERS = 6
+PARAMETERS = 7
 """Index of the first number of an effect in the parameters."""
 
 TRACK = 4 * 14 + 4 + 1
@@ -144,13 +146,14 @@ def step(
             if p[TRACKED] != 0.0:
                 store(n, path.compression, tracking.begin(x))
 
-    bare = p[PRELOAD] + power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
+    bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
+    preload = p[PRELOAD] if held and p[INFLATED] != 0.0 else 0.0
+    pretension = p[PRELOAD] if held and p[INFLATED] == 0.0 else 0.0
+    bare = preload + bare
     at = Instant(
         time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held, 0.0
     )
-    factor = through(path.scale, 1.0, at, p, s, n)
-    elastic = factor * bare
-    preload = p[PRELOAD] if held else 0.0
+    elastic = through(path.scale, bare, at, p, s, n)
     at = Instant(
         time - start,
         interval,
@@ -167,7 +170,7 @@ def step(
         held,
         preload,
     )
-    force = through(path.parallel, elastic, at, p, s, n)
+    force = through(path.parallel, pretension + elastic, at, p, s, n)
     if force < 0.0 and not held:
         force = 0.0
     force = through(path.inertia, force, at, p, s, n)

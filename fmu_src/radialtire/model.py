@@ -11,6 +11,7 @@ from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
 from .flat_step import (
     ACCELERATION,
     FOLLOWED,
+    INFLATED,
     NOISE,
     PARAMETERS,
     PRELOAD,
@@ -125,8 +126,9 @@ class TireModel:
     two_sided: whether the part is held at both ends, as a damper or a bushing is: it has a force at deflections below 0
     and can pull. A tire on the ground can do neither.
     inflated: whether air carries its load: without, nothing of a pressure is looked for
-    preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring;
-    effects that multiply the law multiply it too, as a pressure does
+    preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring, which
+    effects that multiply the law multiply too, as a pressure does; where it is not inflated a pretension, or the zero
+    of a load cell, which nothing multiplies
     curve: a force over the deflection that is added to the preload, None for a part that a power law follows
     remainder: a force without physics that is added to all others, None where nobody asked for one
     """
@@ -201,6 +203,7 @@ class TireModel:
         parameters[TRACKED], parameters[FOLLOWED] = float(self.differentiates), float(follows)
         parameters[NOISE] = self.reading_noise
         parameters[TWO_SIDED], parameters[PRELOAD] = float(self.two_sided), self.preload
+        parameters[INFLATED] = float(self.inflated)
         at = PARAMETERS
         for effect, values in self.effects:
             parameters[at : at + 1 + len(values)] = (1.0, *values)

@@ -2,8 +2,8 @@
 
     F(x) = straight lines between F_i at x_i,   F_1 below x_1 and F_n above x_n
 
-Detents, a magnet, a snap-through rise and fall with the deflection. The curve is added to the part's preload, so what
-acts on its elastic force, as friction and relaxation do, has it too.
+Detents, a magnet, a snap-through rise and fall with the deflection. The curve is added to the part's preload, and
+acted on as that is (see `flat_step`).
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,27 @@ def test_a_pressure_multiplies_the_preload_of_a_gas_spring() -> None:
     tire = TireModel(PowerLaw(1e-6, 1.0), ((effect, values),), two_sided=True, preload=200.0)
     single, double = (drive(tire, [0.0, 1.0], [0.0, 0.0], pressure=p)[-1] for p in (344.7e3, 689.4e3))
     assert double > 1.5 * single
+
+
+@pytest.mark.parametrize(
+    ("name", "changed"),
+    [
+        ("mullins_softening", {"share": 0.3}),
+        ("warm_up", {"gain": 0.2, "time_constant": 20.0}),
+        ("elastic_shape", {"bend": 0.05, "height_3": 0.1}),
+        ("part_shape", {"lowest": -0.02, "highest": 0.02, "force_3": 40.0}),
+        ("rate_independent_hysteresis", {"load_share": 0.1}),
+        ("viscoelastic_relaxation", {"share_1": 0.3}),
+    ],
+)
+def test_without_air_another_zero_of_the_load_cell_is_added_and_changes_nothing(
+    name: str, changed: dict[str, float]
+) -> None:
+    def force(preload: float, *, inflated: bool) -> np.ndarray:
+        return drive(replace(part(name, preload=preload, **changed), inflated=inflated), TIME, X)
+
+    assert force(150.0, inflated=False) - 150.0 == pytest.approx(force(0.0, inflated=False), abs=1e-9)
+    assert force(0.0, inflated=True) == pytest.approx(force(0.0, inflated=False), abs=1e-12)
 
 
 def test_a_second_spring_that_sets_in_softly_has_begun_at_no_deflection() -> None:

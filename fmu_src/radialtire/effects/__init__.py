@@ -14,6 +14,7 @@ from .gas_compression import GAS_COMPRESSION
 from .inertia import INERTIA
 from .inflation_pressure import INFLATION_PRESSURE
 from .mullins_softening import MULLINS_SOFTENING
+from .part_shape import PART_SHAPE
 from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
 from .saturation import SATURATION
@@ -29,6 +30,7 @@ CATALOGUE: dict[str, Effect] = {
         DEFLECTION_LAG,
         SERIES_COMPLIANCE,
         ELASTIC_SHAPE,
+        PART_SHAPE,
         INFLATION_PRESSURE,
         GAS_COMPRESSION,
         MULLINS_SOFTENING,

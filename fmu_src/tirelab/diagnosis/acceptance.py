@@ -271,7 +271,8 @@ def _shows_as_much(
     alike = 4.0 * each >= other
     whole = np.maximum(all_of_it, 0.0).sum()
     return bool(
-        changed[~fits].sum() >= NEGLIGIBLE * changed.sum()
+        np.any(~fits & inside)
+        and changed[~fits].sum() >= NEGLIGIBLE * changed.sum()
         and np.maximum(held_out, 0.0)[alike].sum() >= FITTED * whole
     )
 

@@ -189,13 +189,18 @@ def law_changes(
     radii = sorted(deepest, key=lambda radius: 1.0 / radius)
     if len(radii) > MOST_SURFACES:
         radii = [radii[i] for i in np.linspace(0, len(radii) - 1, MOST_SURFACES).round().astype(int)]
-    return tuple(_change(radius, deepest[radius], (baseline, corrected), estimates) for radius in radii)
+    pulled = min(float(r.deflection.min()) for r in recordings) if baseline.two_sided else 0.0
+    spans = ((radius, (min(pulled, 0.0), deepest[radius])) for radius in radii)
+    return tuple(_change(radius, span, (baseline, corrected), estimates) for radius, span in spans)
 
 
 def _change(
-    radius: float, deepest: float, tires: tuple[TireModel, TireModel], estimates: Mapping[str, Estimate]
+    radius: float,
+    span: tuple[float, float],
+    tires: tuple[TireModel, TireModel],
+    estimates: Mapping[str, Estimate],
 ) -> LawChange:
-    x = np.linspace(0.0, max(deepest, 1e-12), POINTS)
+    x = np.linspace(span[0], max(span[1], span[0] + 1e-12), POINTS)
     motion = Test("ramp", np.arange(POINTS, dtype=float), x, np.full(POINTS, radius))
     before, after = (_bare(tire) for tire in tires)
     a, b = before.law.coefficients(radius), after.law.coefficients(radius)

@@ -36,6 +36,7 @@ from ..regressors.signature import (
     KINK,
     LAW,
     MOST_SURFACES,
+    PART_SHAPE,
     PRELOAD,
     RAMPS,
     REFERENCE,
@@ -44,8 +45,10 @@ from ..regressors.signature import (
     form_error,
     gap_of,
     gap_spread,
+    kink_spread,
     preload_spread,
     size_of,
+    span_of,
 )
 
 FloatArray = NDArray[np.float64]
@@ -117,26 +120,30 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
     )
 
 
-def parameters_of_law(surfaces: int, preload: float = 0.0, gap: float = 0.0) -> tuple[FreeParameter, ...]:
+def parameters_of_law(
+    surfaces: int, preload: float = 0.0, gap: float = 0.0, kink: float = KINK
+) -> tuple[FreeParameter, ...]:
     """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and kinks of the
     shape, with more than one surface a further factor and exponent for each, and for a part its preload or its gap.
 
-    preload [N], gap [m]: standard deviations of their changes; 0: of a tire, which has none
+    preload [N], gap [m], kink [1 or N]: standard deviations of their changes; a tire has neither preload nor gap
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
-    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[KINK] * KINKS]
+    spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[kink] * KINKS]
     spreads += [FACTOR * shared, EXPONENT * shared] * (surfaces if surfaces > 1 else 0)
     labels = ["log factor on A", "change of B", "bend", "twist"]
-    labels += [f"kink {i + 1}" for i in range(KINKS)]
+    labels += [f"{'slope change' if preload else 'kink'} {i + 1}" for i in range(KINKS)]
     labels += [f"{w}, surface {i}" for i in range(surfaces) for w in labels[:2]] if surfaces > 1 else []
-    groups = [1, 2, 3, 4, *[5] * KINKS, *[6, 7] * surfaces]
+    groups = [1, 2, 3, 4, *[5] * KINKS, *[6, 7] * surfaces][: len(spreads)]
+    units = ["N" if group == 5 and preload else "1" for group in groups]
+    bounds = [2.0 * kink / KINK if group == 5 else 2.0 for group in groups]
     shape = tuple(
         FreeParameter(
-            *(LAW, i, label, "1", 0.0, spread, False, -2.0 / spread, 2.0 / spread, -2.0, 2.0),
+            *(LAW, i, label, unit, 0.0, spread, False, -most / spread, most / spread, -most, most),
             optional=4 <= i < COMMON,
             group=groups[i],
         )
-        for i, (label, spread) in enumerate(zip(labels, spreads, strict=True))
+        for i, (label, unit, spread, most) in enumerate(zip(labels, units, spreads, bounds, strict=True))
     )
     constants = ("preload", "N", preload, 2.0 / PRELOAD, 8), ("gap", "m", gap, 2.0 / FACTOR, 9)
     return (
@@ -275,7 +282,9 @@ def law_start(dataset: Dataset) -> tuple[float, ...]:
 
 
 def _parameters_of_law(dataset: Dataset) -> tuple[FreeParameter, ...]:
-    return parameters_of_law(law_surfaces(dataset), preload_spread(dataset), gap_spread(dataset))
+    return parameters_of_law(
+        law_surfaces(dataset), preload_spread(dataset), gap_spread(dataset), kink_spread(dataset)
+    )
 
 
 def with_readings(name: str, values: Sequence[float], dataset: Dataset) -> tuple[float, ...]:
@@ -303,12 +312,21 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         tire = replace(tire, law=Recalibrated(tire.law, rows))
         if any(shape):
             bend, twist, *kinks = shape
-            last = CATALOGUE[SHAPE].parameters[-1]
-            heights = np.clip(RAMPS @ kinks, last.minimum, last.maximum).tolist()
             twist = min(max(twist, -1.0), 1.0)
-            reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
-            effects.append((SHAPE, (bend, twist, reference, *heights)))
+            if tire.two_sided and any(kinks):
+                effects.append((PART_SHAPE, (*span_of(dataset), *_heights(PART_SHAPE, kinks))))
+                kinks = [0.0] * KINKS
+            if bend or twist or any(kinks):
+                reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
+                effects.append((SHAPE, (bend, twist, reference, *_heights(SHAPE, kinks))))
     return arranged(tire, effects)
+
+
+def _heights(shape: str, kinks: Sequence[float]) -> list[float]:
+    """Return the heights of a law's shape from its kinks, within their bounds."""
+    last = CATALOGUE[shape].parameters[-1]
+    found: list[float] = np.clip(RAMPS @ kinks, last.minimum, last.maximum).tolist()
+    return found
 
 
 DEFLECTION_HATS, SIGNED_HATS = HEIGHTS // 2 + 1, HEIGHTS // 4 + 1

@@ -95,7 +95,7 @@ def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> st
 def curve_advice(tire: TireModel, recordings: Sequence[Recording]) -> str:
     """Return the reason to take the curve instead of the law of `tire`, "" where there is none.
 
-    A diagnosis refits the law by factors, so it cannot follow a force that is more than the spring's.
+    A diagnosis refits the law by a factor and ten forces, so it cannot follow what rises and falls between them.
     """
     if not tire.two_sided or tire.curve is not None:
         return ""

@@ -32,9 +32,10 @@ BoolArray = NDArray[np.bool_]
 class Scales:
     """The scales of the recordings, by which priors are scaled; all positive.
 
-    force [N]: peak; travel [m]: span of the deflection; duration [s]: of the longest recording; interval [s]: between
-    samples; rate [m/s], acceleration [m/s^2]: root mean squares over the counted blocks; gauge [m]: noise of the
-    deflection reading; channels: level of each channel in its SI unit, by its name
+    force [N]: peak, of a part without air beside its preload; travel [m]: span of the deflection; duration [s]: of the
+    longest recording; interval [s]: between samples; rate [m/s], acceleration [m/s^2]: root mean squares over the
+    counted blocks; gauge [m]: noise of the deflection reading; channels: level of each channel in its SI unit, by its
+    name
     """
 
     force: float
@@ -94,7 +95,8 @@ class Dataset:
     def load(self) -> float:
         """Root mean square force in units of the noise: of the baseline, or for a two-sided part of the recording."""
         read = self.misfit if self.tire.two_sided else 0.0
-        return float(np.sqrt(np.mean((self.stacked([e.baseline for e in self.experiments]) + read) ** 2)))
+        elastic = self.stacked([e.baseline - zero_of(self.tire) for e in self.experiments])
+        return float(np.sqrt(np.mean((elastic + read) ** 2)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -172,7 +174,7 @@ def dataset_of(
     return Dataset(
         experiments,
         replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)),
-        _scales(experiments, recordings),
+        _scales(experiments, recordings, tire),
     )
 
 
@@ -226,10 +228,15 @@ def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) 
     return replace(tire, effects=tuple(order))
 
 
-def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded]) -> Scales:
+def zero_of(tire: TireModel) -> float:
+    """Return the force [N] that counts for nothing: the preload of a part without air may be a load cell's zero."""
+    return 0.0 if tire.inflated else tire.preload
+
+
+def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded], baseline: TireModel) -> Scales:
     rate = np.concatenate([e.rate[e.counts] for e in experiments])
     acceleration = np.concatenate([e.acceleration[e.counts] for e in experiments])
-    force = np.concatenate([np.abs(r.force) for r in recordings])
+    force = np.concatenate([np.abs(r.force - zero_of(baseline)) for r in recordings])
     deflection = np.concatenate([e.deflection for e in experiments])
     return Scales(
         force=max(float(np.quantile(force, 0.999)), 1e-12),

@@ -37,8 +37,8 @@ FloatArray = NDArray[np.float64]
 LAW = REFITTED_LAW
 """The name under which a refitted law stands in a verdict."""
 
-SHAPE = next(name for name, effect in CATALOGUE.items() if "law" in effect.traits)
-"""The effect in which a refitted law keeps bend and twist."""
+SHAPE, PART_SHAPE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
+"""The effects in which a refitted law keeps its shape: bend, twist and the heights of a tire; the curve of a part."""
 
 FACTOR, EXPONENT, BEND, TWIST, KINK = 0.1, 0.07, 0.03, 0.01, 0.05
 """Standard deviations of a, b, c, d and each kink at the scale 1, a kink by what it changes over the whole span. Only
@@ -65,7 +65,7 @@ MOST_SURFACES = 8
 
 def candidates() -> tuple[str, ...]:
     """Return the names of the effects that may be missing; the law comes beside them."""
-    return tuple(name for name in CATALOGUE if name != SHAPE)
+    return tuple(name for name in CATALOGUE if name not in (SHAPE, PART_SHAPE))
 
 
 def acts_on_signal(name: str) -> bool:
@@ -76,6 +76,17 @@ def acts_on_signal(name: str) -> bool:
 def form_error(name: str) -> float:
     """Return the declared form error of an effect or of the law."""
     return CATALOGUE[SHAPE if name == LAW else name].form_error
+
+
+def kink_spread(dataset: Dataset) -> float:
+    """Return the standard deviation of each kink at the scale 1: of ln F, for a part of its force [N]."""
+    return KINK * (dataset.scales.force if dataset.tire.two_sided else 1.0)
+
+
+def span_of(dataset: Dataset) -> tuple[float, float]:
+    """Return the lowest and the highest deflection [m] of the recordings."""
+    x = dataset.gathered([e.deflection for e in dataset.experiments])
+    return float(x.min()), float(x.max())
 
 
 def preload_spread(dataset: Dataset) -> float:
@@ -106,19 +117,19 @@ def law_signature(dataset: Dataset) -> Signature:
     that is more.
     """
     gather = dataset.gathered
-    x = gather(
-        [np.abs(e.deflection) if dataset.tire.two_sided else e.deflection for e in dataset.experiments]
-    )
+    x = gather([e.deflection for e in dataset.experiments])
     radius = gather([e.surface_radius for e in dataset.experiments])
     tire = dataset.tire  # what it is without a deflection, and its curve, are no factor's
     force = dataset.stacked([e.baseline - preload_of(tire, e.deflection) for e in dataset.experiments])
     reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
-    way = np.log(np.maximum(x / reference, LEAST_RATIO))
-    places = 2.0 * reference * np.arange(1, HEIGHTS + 1) / HEIGHTS
-    kinks = [KINK * np.interp(x, places, heights) for heights in RAMPS.T]
+    way = np.log(np.maximum((np.abs(x) if tire.two_sided else x) / reference, LEAST_RATIO))
     changes = [FACTOR + 0.0 * way, EXPONENT * way]
-    bends = [BEND * way**2, TWIST * way**3, *kinks]
-    columns = [force * part for part in (*changes, *bends)]
+    columns = [force * part for part in (*changes, BEND * way**2, TWIST * way**3)]
+    places = np.linspace(*span_of(dataset), HEIGHTS)
+    if not tire.two_sided:
+        places = 2.0 * reference * np.arange(1, HEIGHTS + 1) / HEIGHTS
+    bent = dataset.stacked([np.ones(e.time.size) for e in dataset.experiments]) if tire.two_sided else force
+    columns += [bent * kink_spread(dataset) * np.interp(x, places, heights) for heights in RAMPS.T]
     if len(dataset.radii) > 1:
         shapes = [np.sqrt(0.5) * force * part for part in changes]
         columns[: len(shapes)] = shapes

@@ -51,7 +51,12 @@ OF_A_PART = {
 }
 """Constants of a part's law."""
 
-_OF_THE_LAW = {**_OF_A_SURFACE, **OF_A_PART, "kink": "change of the slope of ln F at that tenth of the span"}
+_OF_THE_LAW = {
+    **_OF_A_SURFACE,
+    **OF_A_PART,
+    "kink": "change of the slope of ln F at that tenth of the span",
+    "slope change": "change of the slope of the force at that ninth of the span, by what it adds over all of it",
+}
 
 
 def meaning(effect: str, parameter: str) -> str:

@@ -44,7 +44,8 @@ class KeptStages(Stages):
     def simulate(self, tire: TireModel) -> FloatArray:
         """Return the radial force [N] of `tire` at every sample; it may be given out again: do not change it."""
         before = tuple((e.name, v) for e, v in tire.effects if e.place in (*UPSTREAM, "scale"))
-        law = (tire.law, tire.two_sided, tire.preload, tire.curve, tire.reading_noise, tire.differentiates)
+        part = (tire.two_sided, tire.inflated, tire.preload, tire.curve)
+        law = (tire.law, *part, tire.reading_noise, tire.differentiates)
         history, force = self._once(
             (law, before), (), lambda: elastic_stage(tire, self._motion, self._motion)
         )

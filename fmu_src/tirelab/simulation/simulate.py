@@ -1,6 +1,6 @@
 """The force of a tire on a whole recording: the steps of `TireModel`, sample by sample, compiled.
 
-    measured deflection -> deflection of the tire -> factor -> elastic law -> parallel forces -> inertia -> force
+    measured deflection -> deflection of the tire -> elastic law -> factors -> parallel forces -> inertia -> force
 
 `simulate` does it all. A search that tries many values calls the stages itself and keeps what lies upstream of the
 parameters it varies: `history_of` (the quantities that effects use), `respond_series` (one effect). With `signal` zero
@@ -87,8 +87,8 @@ class History:
 
     time: [s] as recorded; deflection [m], rate [m/s], acceleration [m/s^2]
     coefficient, exponent: A [N/cm^B] and B [1]; elastic_force: [N]; curvature: [1/m]; channels: those of CHANNELS
-    two_sided: whether the part is held at both ends; preload (n,) [N]: after "scale" its force without a
-    deflection
+    two_sided: whether the part is held at both ends; preload (n,) [N]: after "scale" the part of the elastic force that
+    is there without a deflection, without the factor
     """
 
     time: FloatArray
@@ -156,7 +156,7 @@ def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | 
 def elastic_stage(
     tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None
 ) -> tuple[History, FloatArray]:
-    """Return the quantities for the effects after the elastic law, and the elastic force [N] with its factor."""
+    """Return the quantities for the effects after the elastic law, and the force [N] of the law and the preload."""
     history = history_of(tire, recording, kinematics)
     x = upstream(tire, history)
     rate = history.rate
@@ -169,12 +169,13 @@ def elastic_stage(
             later, sooner = (upstream(tire, extrapolated(history, h)) for h in (AHEAD, -AHEAD))
             rate = (later - sooner) / (2.0 * AHEAD)
     bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
-    preload = preload_of(tire, x)
-    if tire.two_sided:
-        bare = preload + bare
+    preload = preload_of(tire, x) if tire.two_sided else np.zeros_like(x)
+    # As `flat_step`: without air a preload is a pretension or the zero of a load cell.
+    preload, pretension = (preload, 0.0) if tire.inflated else (np.zeros_like(x), preload)
+    bare = preload + bare
     history = replace(history, deflection=x, rate=rate, elastic_force=bare)
-    elastic = downstream(tire, history, np.ones_like(bare), ("scale",)) * bare
-    return replace(history, elastic_force=elastic, preload=preload), elastic
+    elastic = downstream(tire, history, bare, ("scale",))
+    return replace(history, elastic_force=elastic, preload=preload), pretension + elastic
 
 
 def preload_of(tire: TireModel, deflection: FloatArray) -> FloatArray:

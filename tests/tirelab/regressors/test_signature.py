@@ -107,6 +107,54 @@ def test_the_laws_signature_is_what_a_refitted_law_can_do(dataset: Dataset) -> N
     np.testing.assert_allclose(signature.basis * unit, np.column_stack(slopes), atol=2e-3 * unit)
 
 
+def bushing(zero: float = 0.0) -> Dataset:
+    """A part pulled 8 mm and pressed 14 mm, of 20 N/cm and stiffer when pressed, with the load cell's `zero` [N]."""
+    time = np.arange(0.0, 12.0, 0.01)
+    x = 0.003 + 0.011 * np.sin(2.0 * np.pi * 0.5 * time)
+    force = 2e3 * x + 3e5 * np.maximum(x, 0.0) ** 2 + NOISE * np.random.default_rng(9).normal(size=time.size)
+    part = TireModel(PowerLaw(20.0, 1.0), two_sided=True, inflated=False, preload=zero, tested_range=None)
+    return dataset_of([Recording("wave", time, x, np.full(time.size, np.inf), force + zero)], part)
+
+
+def test_of_a_part_it_is_a_curve_over_the_deflection_beside_its_preload() -> None:
+    """As above, in units of the preload's change, the largest column; bend and twist are of the law as of a tire."""
+    data = bushing()
+    problem = problem_of(data, {LAW: law_start(data)}, plain=False)
+    assert {p.unit for p in problem.parameters if p.label.startswith("slope change")} == {"N"}
+    origin, step = np.zeros(len(problem.parameters)), 1e-4
+    slopes = [
+        (problem.residual(origin) - problem.residual(origin + step * row)) / step
+        for row in np.eye(origin.size)
+    ]
+    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], data.scales)
+    slopes[1] = slopes[1] - EXPONENT * np.log(reference / 0.01) / FACTOR * slopes[0]
+    preload = slopes[-1]
+    # The curve adds nothing at no deflection: what it has there is the preload's.
+    (e,) = data.experiments
+    at_rest = int(np.argmin(np.abs(e.deflection[e.counts])))
+    columns = law_signature(data).basis * size_of(preload)
+    columns[:, 4:-1] -= columns[at_rest, 4:-1]
+    np.testing.assert_allclose(columns, np.column_stack(slopes), atol=2e-2 * size_of(preload))
+
+
+def test_the_zero_of_a_load_cell_changes_no_signature() -> None:
+    """A constant on the force of a part and on its preload: every response is the same."""
+    plain, shifted = bushing(), bushing(zero=-400.0)
+    np.testing.assert_allclose(law_signature(shifted).basis, law_signature(plain).basis, atol=1e-9)
+    for name in ("mullins_softening", "warm_up", "rate_independent_hysteresis", "viscoelastic_relaxation"):
+        one, other = signature_of(name, plain), signature_of(name, shifted)
+        np.testing.assert_allclose(other.curves, one.curves, atol=1e-9)
+        np.testing.assert_allclose(other.sizes, one.sizes, rtol=1e-9)
+
+
+def test_a_part_that_is_stiffer_when_pressed_lies_in_the_span_of_its_signature() -> None:
+    """What no factor on A x^B does that is the same both ways."""
+    data = bushing()
+    (e,) = data.experiments
+    pressed = data.stacked([3e5 * np.maximum(e.deflection, 0.0) ** 2])
+    assert left_by(law_signature(data).columns, pressed) < 0.02
+
+
 def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) -> None:
     """What no change of A and B follows: heights of opposite signs."""
     shape = (0.0, 0.0, at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales))

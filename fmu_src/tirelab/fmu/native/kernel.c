@@ -55,14 +55,14 @@ typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
 typedef struct { double v[13]; } Vector13;
-typedef struct { double v[5]; } Vector5;
-typedef struct { double a; Vector3 b; } Tuple13;
-typedef struct { double a; Vector1 b; } Tuple15;
-typedef struct { double v[8]; } Vector8;
-typedef struct { double a; Vector8 b; } Tuple17;
-typedef struct { double v[6]; } Vector6;
-typedef struct { double a; Vector6 b; } Tuple19;
 typedef struct { double v[12]; } Vector12;
+typedef struct { double v[5]; } Vector5;
+typedef struct { double a; Vector3 b; } Tuple14;
+typedef struct { double a; Vector1 b; } Tuple16;
+typedef struct { double v[8]; } Vector8;
+typedef struct { double a; Vector8 b; } Tuple18;
+typedef struct { double v[6]; } Vector6;
+typedef struct { double a; Vector6 b; } Tuple20;
 typedef struct { double v[16]; } Vector16;
 typedef struct { double v[32]; } Vector32;
 typedef struct { double a; Vector32 b; } Tuple23;
@@ -396,12 +396,12 @@ static inline Tuple8 deflection_lag_respond(double signal, Instant instant, Noth
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static inline double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[6] != 0.0) {
-        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[7]}});
+    if (p[7] != 0.0) {
+        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[8]}});
         signal = t1.a;
     }
-    if (p[8] != 0.0) {
-        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[9], p[10]}});
+    if (p[9] != 0.0) {
+        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[10], p[11]}});
         signal = t2.a;
     }
     return signal;
@@ -493,8 +493,8 @@ static inline Tuple8 series_compliance_respond(double signal, Instant instant, N
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static inline double unremembered_series(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[11] != 0.0) {
-        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[12], p[13]}});
+    if (p[12] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[13], p[14]}});
         signal = t1.a;
     }
     return signal;
@@ -594,6 +594,29 @@ static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothi
     return (Tuple8){signal * exp(exponent), state};
 }
 
+/* effects.part_shape.py: Return g(x) [N] at a deflection [m]. */
+static inline double part_shape_curve(double x, Vector12 values)
+{
+    double lowest = values.v[0], highest = values.v[1], g1 = values.v[2], g2 = values.v[3], g3 = values.v[4], g4 =
+        values.v[5], g5 = values.v[6], g6 = values.v[7], g7 = values.v[8], g8 = values.v[9], g9 = values.v[10], g10
+        = values.v[11];
+    double place = lesser(greater(1.0 + 9.0 * (x - lowest) / greater(highest - lowest, 1e-300), 1.0), 10.0);
+    double force = g1 * elastic_shape_hat(place, 1.0) + g2 * elastic_shape_hat(place, 2.0) + g3 *
+        elastic_shape_hat(place, 3.0) + g4 * elastic_shape_hat(place, 4.0);
+    force += g5 * elastic_shape_hat(place, 5.0) + g6 * elastic_shape_hat(place, 6.0) + g7 * elastic_shape_hat(place,
+        7.0) + g8 * elastic_shape_hat(place, 8.0);
+    return force + g9 * elastic_shape_hat(place, 9.0) + g10 * elastic_shape_hat(place, 10.0);
+}
+
+/* effects.part_shape.py: Add g(x) - g(0) to the elastic force [N]. */
+static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing state, Vector12 values)
+{
+    if (instant.deflection <= 0.0 && !instant.two_sided) {
+        return (Tuple8){signal, state};
+    }
+    return (Tuple8){signal + (part_shape_curve(instant.deflection, values) - part_shape_curve(0.0, values)), state};
+}
+
 /* effect.py: Return whether a channel was recorded: NOT_MEASURED is not equal to itself. */
 static inline bool effect_is_measured(double value)
 {
@@ -632,7 +655,7 @@ static inline Tuple8 gas_compression_respond(double signal, Instant instant, Not
 
 /* effects.mullins_softening.py: Multiply the factor by the softening; the state: largest measure, last counted
    position [m], path length [m]. */
-static inline Tuple13 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
+static inline Tuple14 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
 {
     double share = values.v[0], ratio = values.v[1], width = values.v[2], gaussian = values.v[3], history =
         values.v[4], gathering = values.v[5], load = values.v[6];
@@ -656,7 +679,7 @@ static inline Tuple13 mullins_softening_respond(double signal, Instant instant, 
         uncounted = 0.0;
     }
     if (share == 0.0 || (x <= 0.0 && !instant.two_sided) || measure >= largest) {
-        return (Tuple13){signal, (Vector3){{largest, counted, path}}};
+        return (Tuple14){signal, (Vector3){{largest, counted, path}}};
     }
     double fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
     double below = (largest - measure) / (ratio * largest + fixed);
@@ -664,7 +687,7 @@ static inline Tuple13 mullins_softening_respond(double signal, Instant instant, 
     if (gathering > 0.0) {
         share *= -expm1(-(path + uncounted) / gathering);
     }
-    return (Tuple13){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
+    return (Tuple14){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
 }
 
 /* effects.pressure_leak.py: Multiply the factor by the remaining pressure. */
@@ -684,50 +707,54 @@ static inline Tuple8 pressure_leak_respond(double signal, Instant instant, Nothi
 
 /* effects.warm_up.py: Multiply the factor by the rise of the pressure; the state is the temperature [K] at the
    start. */
-static inline Tuple15 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
+static inline Tuple16 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
 {
     double start;
     double gain = values.v[0], tau = values.v[1], stretch = values.v[2];
     if (effect_is_measured(instant.temperature)) {
         start = instant.first ? instant.temperature : state.v[0];
-        return (Tuple15){signal * greater(1.0 + gain * (instant.temperature - start) / WARMING, 0.0),
+        return (Tuple16){signal * greater(1.0 + gain * (instant.temperature - start) / WARMING, 0.0),
             (Vector1){{start}}};
     }
-    return (Tuple15){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
+    return (Tuple16){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[14] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 15));
+    if (p[15] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 16));
         signal = t1.a;
     }
-    if (p[28] != 0.0) {
-        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[29], p[30], p[31]}});
+    if (p[29] != 0.0) {
+        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 30));
         signal = t2.a;
     }
-    if (p[32] != 0.0) {
-        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 33));
+    if (p[42] != 0.0) {
+        const Tuple8 t3 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[43], p[44], p[45]}});
         signal = t3.a;
     }
-    if (p[38] != 0.0) {
-        const Tuple13 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
-            + 39));
+    if (p[46] != 0.0) {
+        const Tuple8 t4 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 47));
         signal = t4.a;
-        Vector3 after = t4.b;
+    }
+    if (p[52] != 0.0) {
+        const Tuple14 t5 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
+            + 53));
+        signal = t5.a;
+        Vector3 after = t5.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
-    if (p[46] != 0.0) {
-        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[47], p[48], p[49]}});
-        signal = t5.a;
-    }
-    if (p[50] != 0.0) {
-        const Tuple15 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[51], p[52], p[53]}});
+    if (p[60] != 0.0) {
+        const Tuple8 t6 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[61], p[62], p[63]}});
         signal = t6.a;
-        Vector1 after = t6.b;
+    }
+    if (p[64] != 0.0) {
+        const Tuple16 t7 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[65], p[66], p[67]}});
+        signal = t7.a;
+        Vector1 after = t7.b;
         n[9] = after.v[0];
     }
     return signal;
@@ -752,7 +779,7 @@ static inline double rate_independent_hysteresis_slip(double y, double travel, d
 }
 
 /* effects.rate_independent_hysteresis.py: Add the friction force [N]. */
-static inline Tuple17 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8
+static inline Tuple18 rate_independent_hysteresis_respond(double signal, Instant instant, Vector8 state, Vector8
     values)
 {
     double friction;
@@ -793,12 +820,12 @@ static inline Tuple17 rate_independent_hysteresis_respond(double signal, Instant
     }
     Vector8 after = (Vector8){{z, updated_at, direction, x, y1, y2, y3, y4}};
     if (instant.deflection <= 0.0 && !instant.two_sided) {
-        return (Tuple17){signal, after};
+        return (Tuple18){signal, after};
     }
     if (friction < 0.0) {
         friction *= rebound;
     }
-    return (Tuple17){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
+    return (Tuple18){signal + (slip_force + load_share * fabs(instant.elastic_force)) * friction, after};
 }
 
 /* effects.viscous_damping.py: Return the dashpot's force [N] at the rate v0 on the way in (side 1) or back (-1). */
@@ -852,42 +879,42 @@ static inline Vector2 viscous_damping_rate_at(double force, double size, double 
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] for a solver: the state is by how much compliance and
    play give way. */
-static inline Tuple15 viscous_damping_flow(double signal, Instant instant, Vector1 state, Vector7 values)
+static inline Tuple16 viscous_damping_flow(double signal, Instant instant, Vector1 state, Vector7 values)
 {
     double compliance = values.v[5];
     double half = 0.5 * values.v[6];
     double x = instant.deflection;
     double v = instant.rate;
     if (x <= 0.0 && !instant.two_sided) {
-        return (Tuple15){signal, (Vector1){{instant.first ? 0.0 : -state.v[0] / RELEASED}}};
+        return (Tuple16){signal, (Vector1){{instant.first ? 0.0 : -state.v[0] / RELEASED}}};
     }
     const Vector2 t1 = viscous_damping_steady(v, x, values);
     double force = t1.v[0], given_way = t1.v[1];
     if (instant.first) {
-        return (Tuple15){signal + force, (Vector1){{given_way}}};
+        return (Tuple16){signal + force, (Vector1){{given_way}}};
     }
     if (compliance <= 0.0 && half <= 0.0) {
-        return (Tuple15){signal + force, (Vector1){{0.0}}};
+        return (Tuple16){signal + force, (Vector1){{0.0}}};
     }
     double z = state.v[0];
     double side = z > 0.0 ? 1.0 : -1.0;
     double beyond = fabs(z) - half;
     if (compliance <= 0.0) {
         if (beyond >= 0.0 && v * side > 0.0) {
-            return (Tuple15){signal + force, (Vector1){{0.0}}};
+            return (Tuple16){signal + force, (Vector1){{0.0}}};
         }
-        return (Tuple15){signal, (Vector1){{v}}};
+        return (Tuple16){signal, (Vector1){{v}}};
     }
     if (beyond <= 0.0) {
-        return (Tuple15){signal, (Vector1){{v}}};
+        return (Tuple16){signal, (Vector1){{v}}};
     }
     double size = viscous_damping_size_of(side, x, values);
     if (size <= 0.0) {
-        return (Tuple15){signal, (Vector1){{v - side * beyond / RELEASED}}};
+        return (Tuple16){signal, (Vector1){{v - side * beyond / RELEASED}}};
     }
     const Vector2 t2 = viscous_damping_rate_at(beyond / compliance, size, values.v[1], values.v[3]);
     double rate = t2.v[0];
-    return (Tuple15){signal + side * beyond / compliance, (Vector1){{v - side * rate}}};
+    return (Tuple16){signal + side * beyond / compliance, (Vector1){{v - side * rate}}};
 }
 
 /* effects.viscous_damping.py: Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by
@@ -963,7 +990,7 @@ static inline Vector2 viscous_damping_in_series(Instant instant, double given_wa
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
    ends always is. */
-static inline Tuple15 viscous_damping_respond(double signal, Instant instant, Vector1 state, Vector7 values)
+static inline Tuple16 viscous_damping_respond(double signal, Instant instant, Vector1 state, Vector7 values)
 {
     double force;
     double given_way;
@@ -973,7 +1000,7 @@ static inline Tuple15 viscous_damping_respond(double signal, Instant instant, Ve
     double x = instant.deflection;
     double v = instant.rate;
     if (x <= 0.0 && !instant.two_sided) {
-        return (Tuple15){signal, (Vector1){{0.0}}};
+        return (Tuple16){signal, (Vector1){{0.0}}};
     }
     if (compliance > 0.0 || play > 0.0) {
         if (instant.first) {
@@ -985,7 +1012,7 @@ static inline Tuple15 viscous_damping_respond(double signal, Instant instant, Ve
             force = t2.v[0];
             given_way = t2.v[1];
         }
-        return (Tuple15){signal + force, (Vector1){{given_way}}};
+        return (Tuple16){signal + force, (Vector1){{given_way}}};
     }
     if (thinning > 0.0) {
         v = asinh(thinning * v) / thinning;
@@ -1000,7 +1027,7 @@ static inline Tuple15 viscous_damping_respond(double signal, Instant instant, Ve
     if (v < 0.0) {
         v *= rebound;
     }
-    return (Tuple15){signal + damping * v, (Vector1){{0.0}}};
+    return (Tuple16){signal + damping * v, (Vector1){{0.0}}};
 }
 
 /* effects.viscoelastic_relaxation.py: Return t0 [s] for a freshness above 0 and the first relaxation time [s]. */
@@ -1018,7 +1045,7 @@ static inline double viscoelastic_relaxation_left(double elastic, double held, d
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N] with q_i = F_elastic - h_i for a solver: dq_i/dt =
    (F_elastic - q_i) / tau_i. */
-static inline Tuple19 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector12 values)
+static inline Tuple20 viscoelastic_relaxation_flow(double signal, Instant instant, Vector6 state, Vector12 values)
 {
     double held;
     double g1 = values.v[0], tau1 = values.v[1], g2 = values.v[2], tau2 = values.v[3], g3 = values.v[4], tau3 =
@@ -1048,9 +1075,9 @@ static inline Tuple19 viscoelastic_relaxation_flow(double signal, Instant instan
     double h5 = elastic - q5;
     double added = g1 * h1 + g2 * h2 + g3 * h3 + g4 * h4 + g5 * h5 - sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
     if (instant.first) {
-        return (Tuple19){signal + added, (Vector6){{0.0, q1, q2, q3, q4, q5}}};
+        return (Tuple20){signal + added, (Vector6){{0.0, q1, q2, q3, q4, q5}}};
     }
-    return (Tuple19){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
+    return (Tuple20){signal + added, (Vector6){{0.0, h1 / tau1, h2 / tau2, h3 / tau3, h4 / tau4, h5 / tau5}}};
 }
 
 /* effects.viscoelastic_relaxation.py: Return h after `interval` [s] in which the elastic force changed linearly by
@@ -1067,7 +1094,7 @@ static inline double viscoelastic_relaxation_overstress(double h, double change,
 
 /* effects.viscoelastic_relaxation.py: Add the overstress [N]; the state holds the last elastic force and the five
    overstresses. */
-static inline Tuple19 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector12
+static inline Tuple20 viscoelastic_relaxation_respond(double signal, Instant instant, Vector6 state, Vector12
     values)
 {
     double held;
@@ -1105,7 +1132,7 @@ static inline Tuple19 viscoelastic_relaxation_respond(double signal, Instant ins
     if (sudden != 0.0) {
         added -= sudden * (g1 + g2 + g3 + g4 + g5) * elastic;
     }
-    return (Tuple19){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
+    return (Tuple20){signal + added, (Vector6){{elastic, h1, h2, h3, h4, h5}}};
 }
 
 /* effects.bottoming.py: Add the second spring's force [N]. */
@@ -1129,42 +1156,42 @@ static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing s
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[54] != 0.0) {
-        const Tuple17 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
-            Vector8 *)(p + 55));
+    if (p[68] != 0.0) {
+        const Tuple18 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
+            Vector8 *)(p + 69));
         signal = t1.a;
         Vector8 after = t1.b;
         for (int i = 0; i < 8; i++)
             n[10 + i] = after.v[i];
     }
-    if (p[63] != 0.0 && p[3] != 0.0) {
-        const Tuple15 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 64));
+    if (p[77] != 0.0 && p[3] != 0.0) {
+        const Tuple16 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 78));
         signal = t2.a;
         Vector1 flowed = t2.b;
         n[18] = flowed.v[0];
-    } else if (p[63] != 0.0) {
-        const Tuple15 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 64));
+    } else if (p[77] != 0.0) {
+        const Tuple16 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 78));
         signal = t3.a;
         Vector1 after = t3.b;
         n[18] = after.v[0];
     }
-    if (p[71] != 0.0 && p[3] != 0.0) {
-        const Tuple19 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 72));
+    if (p[85] != 0.0 && p[3] != 0.0) {
+        const Tuple20 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
+            *)(p + 86));
         signal = t4.a;
         Vector6 flowed = t4.b;
         for (int i = 0; i < 6; i++)
             n[19 + i] = flowed.v[i];
-    } else if (p[71] != 0.0) {
-        const Tuple19 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 72));
+    } else if (p[85] != 0.0) {
+        const Tuple20 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
+            *)(p + 86));
         signal = t5.a;
         Vector6 after = t5.b;
         for (int i = 0; i < 6; i++)
             n[19 + i] = after.v[i];
     }
-    if (p[84] != 0.0) {
-        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 85));
+    if (p[98] != 0.0) {
+        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 99));
         signal = t6.a;
     }
     return signal;
@@ -1179,8 +1206,8 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[89] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[90]}});
+    if (p[103] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[104]}});
         signal = t1.a;
     }
     return signal;
@@ -1405,31 +1432,31 @@ static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[91] != 0.0 && p[3] != 0.0) {
-        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[92], p[93],
-            p[94]}});
+    if (p[105] != 0.0 && p[3] != 0.0) {
+        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[106], p[107],
+            p[108]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
             n[25 + i] = flowed.v[i];
-    } else if (p[91] != 0.0) {
-        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[92], p[93],
-            p[94]}});
+    } else if (p[105] != 0.0) {
+        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[106], p[107],
+            p[108]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
             n[25 + i] = after.v[i];
     }
-    if (p[95] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[96]}});
+    if (p[109] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[110]}});
         signal = t3.a;
     }
-    if (p[97] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[98], p[99]}});
+    if (p[111] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[112], p[113]}});
         signal = t4.a;
     }
-    if (p[100] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[101], p[102]}});
+    if (p[114] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[115], p[116]}});
         signal = t5.a;
     }
     return signal;
@@ -1479,15 +1506,16 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
             }
         }
     }
-    double bare = held ? p[5] + power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
+    double bare = held ? power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
+    double preload = held && p[6] != 0.0 ? p[5] : 0.0;
+    double pretension = held && p[6] == 0.0 ? p[5] : 0.0;
+    bare = preload + bare;
     Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure,
         temperature, held, 0.0};
-    double factor = through_scale(1.0, at, p, s, n);
-    double elastic = factor * bare;
-    double preload = held ? p[5] : 0.0;
+    double elastic = through_scale(bare, at, p, s, n);
     at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature,
         held, preload};
-    double force = through_parallel(elastic, at, p, s, n);
+    double force = through_parallel(pretension + elastic, at, p, s, n);
     if (force < 0.0 && !held) {
         force = 0.0;
     }

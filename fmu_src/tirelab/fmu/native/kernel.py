@@ -15,6 +15,7 @@ from radialtire.effect import PLACES
 from radialtire.flat_step import (
     CONTINUOUS,
     FOLLOWED,
+    INFLATED,
     NOISE,
     PARAMETERS,
     PRELOAD,
@@ -50,6 +51,7 @@ def parameters_of(tire: TireModel) -> list[float]:
     follows = any(effect.place in ("deflection", "series") for effect, _ in tire.effects)
     row[FOLLOWED] = float(tire.differentiates and follows)
     row[NOISE], row[TWO_SIDED], row[PRELOAD] = tire.reading_noise, float(tire.two_sided), tire.preload
+    row[INFLATED] = float(tire.inflated)
     at = PARAMETERS
     values = {effect.name: given for effect, given in tire.effects}
     for effect in effects:

@@ -1,0 +1,73 @@
+"""The elastic force of a part that no power law follows: a curve over the deflection, beside A x^B.
+
+    F = A x^B + g(x) - g(0)
+
+g: straight lines between g_1 to g_10 at ten deflections evenly from x_from to x_to, constant beyond them. At no
+deflection it adds nothing: there is the preload, which may be the zero of a load cell.
+
+Where only this is needed no physics is missing: the law was fitted to another part, or over another range. A factor on
+A x^B, as a tire's shape is, cannot do it: a part's force need not be the same pulled as pressed, and where it has no
+spring a factor changes nothing.
+"""
+
+from __future__ import annotations
+
+from ..effect import Effect, Instant, State
+from ..parameter import Parameter
+from ..prior import Prior
+from .elastic_shape import hat
+
+
+def curve(x: float, values: State) -> float:
+    """Return g(x) [N] at a deflection [m]."""
+    lowest, highest, g1, g2, g3, g4, g5, g6, g7, g8, g9, g10 = values
+    place = min(max(1.0 + 9.0 * (x - lowest) / max(highest - lowest, 1e-300), 1.0), 10.0)
+    force = g1 * hat(place, 1.0) + g2 * hat(place, 2.0) + g3 * hat(place, 3.0) + g4 * hat(place, 4.0)
+    force += g5 * hat(place, 5.0) + g6 * hat(place, 6.0) + g7 * hat(place, 7.0) + g8 * hat(place, 8.0)
+    return force + g9 * hat(place, 9.0) + g10 * hat(place, 10.0)
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Add g(x) - g(0) to the elastic force [N]."""
+    if instant.deflection <= 0.0 and not instant.two_sided:
+        return signal, state
+    return signal + (curve(instant.deflection, values) - curve(0.0, values)), state
+
+
+def _end(name: str, symbol: str, start: float, meaning: str) -> Parameter:
+    return Parameter(name, symbol, "m", start, -10.0, 10.0, meaning, optional=True, role="reading")
+
+
+def _force(number: int) -> Parameter:
+    return Parameter(
+        f"force_{number}",
+        f"g{number}",
+        "N",
+        0.0,
+        -1e8,
+        1e8,
+        f"force at {number - 1} ninths of the way from the lowest to the highest deflection",
+        neutral=0.0,
+        nominal=10.0 if number == 10 else 0.0,
+        role="strength",
+        prior=Prior("normal", 0, 0.05, "force", "the same as that of a part's preload"),
+    )
+
+
+PART_SHAPE = Effect(
+    name="part_shape",
+    place="scale",
+    parameters=(
+        _end("lowest", "x_from", 0.0, "lowest deflection that was measured"),
+        _end("highest", "x_to", 0.025, "highest deflection that was measured"),
+        *(_force(number) for number in range(1, 11)),
+    ),
+    initial_state=(),
+    respond=respond,
+    statement="the elastic force of the part is no power of the deflection",
+    tell_tale="a smooth misfit over the deflection, the same at every rate and time",
+    imitators=("series_compliance", "deflection_offset", "bottoming"),
+    source="any law: straight lines between ten forces",
+    traits=("static", "law"),
+    form_error=0.0029,
+)

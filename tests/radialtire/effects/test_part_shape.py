@@ -1,0 +1,54 @@
+"""A part's force that no power of the deflection follows: straight lines between forces, nothing at no deflection."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from driving import drive, values_of
+from radialtire import CATALOGUE, PowerLaw, TireModel
+
+LAW = PowerLaw(200.0, 1.3)
+FORCES = np.random.default_rng(5).uniform(-80.0, 80.0, 10)
+
+
+def part(lowest: float, highest: float) -> TireModel:
+    values = {f"force_{i + 1}": float(force) for i, force in enumerate(FORCES)}
+    effect = CATALOGUE["part_shape"]
+    shape = values_of(effect, lowest=lowest, highest=highest, **values)
+    return TireModel(LAW, ((effect, shape),), two_sided=True, preload=30.0, inflated=False)
+
+
+def added(tire: TireModel, x: np.ndarray) -> np.ndarray:
+    """What it adds to the force of the law."""
+    time = np.arange(float(x.size))
+    return np.asarray(drive(tire, time, x) - drive(replace(tire, effects=()), time, x))
+
+
+@pytest.mark.parametrize(("lowest", "highest"), [(-0.006, 0.018), (0.0, 0.02), (0.004, 0.012)])
+def test_between_the_forces_are_straight_lines_and_beyond_them_the_last_one(
+    lowest: float, highest: float
+) -> None:
+    x = np.linspace(-0.01, 0.025, 701)
+    curve = np.interp(x, np.linspace(lowest, highest, 10), FORCES)
+    at_zero = np.interp(0.0, np.linspace(lowest, highest, 10), FORCES)
+    np.testing.assert_allclose(added(part(lowest, highest), x), curve - at_zero, atol=1e-9)
+
+
+def test_with_no_deflection_there_is_the_preload_alone() -> None:
+    assert drive(part(-0.01, 0.01), [0.0], [0.0])[0] == pytest.approx(30.0, abs=1e-12)
+
+
+def test_what_softens_the_law_softens_the_curve_too() -> None:
+    """Half the force is lost at once far below the largest deflection, whatever gives it."""
+    tire = part(-0.01, 0.02)
+    softening = CATALOGUE["mullins_softening"]
+    soft = replace(tire, effects=(*tire.effects, (softening, values_of(softening, share=0.5, ratio=0.005))))
+    time, x = np.arange(3.0), np.array([0.0, 0.02, 0.004])
+    assert drive(soft, time, x)[2] - 30.0 == pytest.approx(0.5 * (drive(tire, time, x)[2] - 30.0), rel=1e-9)
+
+
+def test_a_tire_in_the_air_has_no_force() -> None:
+    tire = replace(part(0.0, 0.02), two_sided=False, preload=0.0)
+    assert drive(tire, np.arange(2.0), np.array([-0.001, 0.0])).tolist() == [0.0, 0.0]
