@@ -4,12 +4,14 @@ An effect is a pure response at one stage of the signal path from the measured d
 
     place "deflection"  measured deflection  -> deflection of wheel and tire
     place "series"      deflection           -> deflection of the tire (springs in series)
-    place "scale"       elastic force        -> elastic force (shape, pressure, softening)
-    place "parallel"    force                -> force with what acts beside the elastic law
+    place "law"         force of A x^B       -> force of another law
+    place "scale"       factor               -> factor on the elastic force (pressure, softening)
+    place "parallel"    force                -> force with what is added beside the elastic law
     place "inertia"     force                -> force with what accelerates
     place "reading"     force                -> measured force (lag, zero, ceiling)
 
-Effects of one place act in the order of the catalogue. After "parallel" a force below zero becomes zero, since the
+Effects of one place act in the order of the catalogue. At "scale" a response multiplies its signal, at "law" and
+"parallel" it adds to it, whatever the signal is. After "parallel" a force below zero becomes zero, since the
 ground cannot pull; that of a part that is held at both ends (a damper, a bushing) stays.
 """
 
@@ -27,7 +29,7 @@ TRAITS = ("static", "rate", "loop", "localized", "slow", "reading", "law", "air"
 of the range only; changes with the time since the start; is of the instrument and not of the tire; is the elastic law's
 own shape; needs air that carries the load."""
 
-PLACES = ("deflection", "series", "scale", "parallel", "inertia", "reading")
+PLACES = ("deflection", "series", "law", "scale", "parallel", "inertia", "reading")
 
 State = tuple[float, ...]
 
@@ -97,8 +99,7 @@ class Instant(NamedTuple):
     deflection: [m] at the places "deflection" and "series" the input of the place, after them that of the tire
     rate: [m/s] of that deflection; acceleration: [m/s^2] of the measured deflection
     coefficient, exponent: A [N/cm^B] and B [1] of the surface
-    elastic_force: [N] at the place "scale" A x^B, and the preload of a part that air carries, after it with their
-    factor, before it 0
+    elastic_force: [N] after "scale" A x^B with its factor, and with the preload of a part that air carries; before it 0
     curvature: [1/m] of the surface, convex > 0
     pressure: [Pa], gauge, and temperature [K] of the tire, as measured or as inputs; else NOT_MEASURED
     two_sided: whether the part is held at both ends, so that a deflection below 0 is no lost contact

@@ -4,7 +4,7 @@ The state before (s) and after (n) the step and the parameters (p) are flat rows
 copied, stored and restored by any host. Where the numbers of each effect stand says a `SignalPath`, a constant: the
 translation to C has every effect of the catalogue and skips those whose switch is 0.
 
-    deflection reading -> deflection of the tire -> elastic law -> shape and factors -> parallel forces -> inertia
+    deflection reading -> deflection of the tire -> elastic law -> factors -> parallel forces -> inertia
     -> force reading
 
 The factors act on A x^B, and on the preload of a part that air carries, for it is the force of that air. Without air
@@ -68,6 +68,7 @@ class SignalPath(NamedTuple):
 
     deflection: tuple[Stage, ...]
     series: tuple[Stage, ...]
+    law: tuple[Stage, ...]
     scale: tuple[Stage, ...]
     parallel: tuple[Stage, ...]
     inertia: tuple[Stage, ...]
@@ -97,8 +98,8 @@ def laid_out(
         )
     track = len(s)
     s += [0.0] * tracks
-    deflection, series, scale, parallel, inertia, reading = (tuple(stages[place]) for place in PLACES)
-    path = SignalPath(deflection, series, scale, parallel, inertia, reading, track, track + TRACK)
+    deflection, series, law, scale, parallel, inertia, reading = (tuple(stages[place]) for place in PLACES)
+    path = SignalPath(deflection, series, law, scale, parallel, inertia, reading, track, track + TRACK)
     return path, p, s
 
 
@@ -149,11 +150,11 @@ def step(
     bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     preload = p[PRELOAD] if held and p[INFLATED] != 0.0 else 0.0
     pretension = p[PRELOAD] if held and p[INFLATED] == 0.0 else 0.0
-    bare = preload + bare
     at = Instant(
-        time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure, temperature, held, 0.0
+        time - start, interval, first, x, v, acceleration, A, B, 0.0, bend, pressure, temperature, held, 0.0
     )
-    elastic = through(path.scale, bare, at, p, s, n)
+    bare = preload + through(path.law, bare, at, p, s, n)
+    elastic = through(path.scale, 1.0, at, p, s, n) * bare
     at = Instant(
         time - start,
         interval,

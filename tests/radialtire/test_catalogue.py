@@ -155,6 +155,23 @@ def test_an_effect_that_needs_a_channel_does_nothing_without_it(effect: Effect) 
 
 
 @EFFECTS
+def test_its_place_says_how_it_changes_a_signal(effect: Effect) -> None:
+    """A factor multiplies whatever it is given, and what acts beside the law adds to it: `simulate` relies on it."""
+    first = Instant(0.0, 0.0, True, 0.012, 0.3, 5.0, 550.9, 1.422, 700.0, 2.0, 4e5, 310.0)
+    later = first._replace(
+        time=3.0, interval=0.1, first=False, deflection=0.004, rate=-0.2, elastic_force=150.0
+    )
+    _, state = effect.respond(0.0, first, effect.initial_state, effect.nominal)
+    none, one, many = (effect.respond(s, later, state, effect.nominal)[0] for s in (0.0, 1.0, 250.0))
+    if effect.place == "scale":
+        assert none == 0.0
+        assert many == pytest.approx(250.0 * one, rel=1e-12)
+    elif effect.place in ("law", "parallel"):
+        assert one == pytest.approx(none + 1.0, rel=1e-12)
+        assert many == pytest.approx(none + 250.0, rel=1e-12)
+
+
+@EFFECTS
 def test_it_names_channels_that_there_are(effect: Effect) -> None:
     names = {channel.name for channel in CHANNELS}
     assert {*effect.changes, *([effect.reads.channel] if effect.reads else [])} <= names

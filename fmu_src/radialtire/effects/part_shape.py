@@ -56,7 +56,7 @@ def _force(number: int) -> Parameter:
 
 PART_SHAPE = Effect(
     name="part_shape",
-    place="scale",
+    place="law",
     parameters=(
         _end("lowest", "x_from", 0.0, "lowest deflection that was measured"),
         _end("highest", "x_to", 0.025, "highest deflection that was measured"),

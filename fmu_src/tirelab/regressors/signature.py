@@ -37,8 +37,8 @@ FloatArray = NDArray[np.float64]
 LAW = REFITTED_LAW
 """The name under which a refitted law stands in a verdict."""
 
-SHAPE, PART_SHAPE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
-"""The effects in which a refitted law keeps its shape: bend, twist and the heights of a tire; the curve of a part."""
+PART_SHAPE, SHAPE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
+"""The effects in which a refitted law keeps its shape: the curve of a part; bend, twist and the heights of a tire."""
 
 FACTOR, EXPONENT, BEND, TWIST, KINK = 0.1, 0.07, 0.03, 0.01, 0.05
 """Standard deviations of a, b, c, d and each kink at the scale 1, a kink by what it changes over the whole span. Only
@@ -70,7 +70,7 @@ def candidates() -> tuple[str, ...]:
 
 def acts_on_signal(name: str) -> bool:
     """Whether an effect changes what other effects are given or give, so that its response depends on them."""
-    return name != LAW and CATALOGUE[name].place in (*UPSTREAM, "scale", "reading")
+    return name != LAW and CATALOGUE[name].place in (*UPSTREAM, "law", "scale", "reading")
 
 
 def form_error(name: str) -> float:

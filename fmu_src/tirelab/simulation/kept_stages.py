@@ -1,5 +1,5 @@
 """Simulations of one motion that keep what their stages gave: a tire that differs from one before in one effect runs
-that effect and what follows it, not what lies upstream. The forces are those of `simulate`, to the last bit.
+that effect and what depends on it. The forces are those of `simulate`, to the last bit.
 """
 
 from __future__ import annotations
@@ -9,24 +9,15 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import Effect, State, TireModel
+from radialtire import TireModel
 
 from .channels import Sampled
-from .simulate import (
-    UPSTREAM,
-    History,
-    Kinematics,
-    Stages,
-    elastic_stage,
-    force_after_law,
-    learned_force,
-    respond_series,
-)
+from .simulate import Kinematics, Stages, elastic_stage, force_after_law, learned_force
 
 FloatArray = NDArray[np.float64]
 T = TypeVar("T")
 
-KEPT = 64
+KEPT = 96
 """Results that are kept, the last used ones: a Jacobian of six effects with ten parameters each."""
 
 
@@ -43,25 +34,11 @@ class KeptStages(Stages):
 
     def simulate(self, tire: TireModel) -> FloatArray:
         """Return the radial force [N] of `tire` at every sample; it may be given out again: do not change it."""
-        before = tuple((e.name, v) for e, v in tire.effects if e.place in (*UPSTREAM, "scale"))
-        part = (tire.two_sided, tire.inflated, tire.preload, tire.curve)
-        law = (tire.law, *part, tire.reading_noise, tire.differentiates)
-        history, force = self._once(
-            (law, before), (), lambda: elastic_stage(tire, self._motion, self._motion)
-        )
+        history, force = elastic_stage(tire, self._motion, self._motion, self)
         force = force_after_law(tire, history, force, self)
         return force if tire.remainder is None else force + learned_force(tire, self._motion, self._motion)
 
-    def respond(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
-        """Return the signal after an effect."""
-        given = (signal, history)
-        return self._once((effect.name, values), given, lambda: respond_series(effect, values, *given))
-
-    def compressive(self, force: FloatArray) -> FloatArray:
-        """Return a force [N] without its tensile part."""
-        return self._once("compressive", (force,), lambda: super(KeptStages, self).compressive(force))
-
-    def _once(self, what: Hashable, of: tuple[Any, ...], make: Callable[[], T]) -> T:
+    def once(self, what: Hashable, of: tuple[Any, ...], make: Callable[[], T]) -> T:
         """Return what `make` gives, made anew only where it was not kept for the same values `of` the same objects."""
         key = (what, *map(id, of))
         # The objects are kept too, or another one could have their identity.

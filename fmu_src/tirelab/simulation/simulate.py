@@ -10,9 +10,9 @@ linear fit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from . import compiled
 from .channels import Sampled, begun, channel_rows, measured_of
 
 FloatArray = NDArray[np.float64]
+T = TypeVar("T")
 
 UPSTREAM = ("deflection", "series")
 """Places that change the deflection."""
@@ -121,21 +122,36 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
 class Stages:
     """Runs the stages of a simulation, each anew: the effects, and a ground that cannot pull."""
 
+    def once(self, what: Hashable, of: tuple[Any, ...], make: Callable[[], T]) -> T:
+        """Return what `make` gives for the values `what` and the objects `of`."""
+        return make()
+
     def respond(self, effect: Effect, values: State, signal: FloatArray, history: History) -> FloatArray:
         """Return the signal after an effect."""
-        return respond_series(effect, values, signal, history)
+        given = (signal, history)
+        return self.once((effect.name, values), given, lambda: respond_series(effect, values, *given))
 
-    def compressive(self, force: FloatArray) -> FloatArray:
-        """Return a force [N] without its tensile part."""
-        return np.asarray(np.maximum(force, 0.0))
+    def alone(self, effect: Effect, values: State, start: float, history: History) -> FloatArray:
+        """Return the signal after an effect where it is `start` before it at every sample."""
+
+        def make() -> FloatArray:
+            return respond_series(effect, values, np.full(history.time.size, start), history)
+
+        return self.once((effect.name, values, start), (history,), make)
 
 
 def force_after_law(tire: TireModel, history: History, force: FloatArray, stages: Stages) -> FloatArray:
     """Return the radial force [N] from the elastic one, without a learned remainder."""
-    force = downstream(tire, history, force, ("parallel",), stages)
-    if not tire.two_sided:
-        force = stages.compressive(force)
-    return downstream(tire, history, force, ("inertia", "reading"), stages)
+    beside = _at(tire, "parallel")
+    each = [stages.alone(effect, values, 0.0, history) for effect, values in beside]
+
+    def whole() -> FloatArray:
+        together = sum(each, start=force)
+        return together if tire.two_sided else np.maximum(together, 0.0)
+
+    told = tuple((effect.name, values) for effect, values in beside)
+    pressed = stages.once((told, tire.two_sided), (history, force), whole)
+    return downstream(tire, history, pressed, ("inertia", "reading"), stages)
 
 
 def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:
@@ -154,28 +170,65 @@ def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | 
 
 
 def elastic_stage(
-    tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None
+    tire: TireModel,
+    recording: Sampled,
+    kinematics: Kinematics | None = None,
+    stages: Stages = Stages(),  # noqa: B008 - it holds nothing
 ) -> tuple[History, FloatArray]:
     """Return the quantities for the effects after the elastic law, and the force [N] of the law and the preload."""
-    history = history_of(tire, recording, kinematics)
-    x = upstream(tire, history)
-    rate = history.rate
-    if any(effect.place in UPSTREAM for effect, _ in tire.effects) and tire.differentiates:
-        if kinematics is not None:
-            rate = rate + np.gradient(x - recording.deflection, history.time)
-        elif tire.reading_noise < FINEST:
-            rate, _ = track(history.time, x, tire.reading_noise)
-        else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
-            later, sooner = (upstream(tire, extrapolated(history, h)) for h in (AHEAD, -AHEAD))
-            rate = (later - sooner) / (2.0 * AHEAD)
-    bare = elastic_force(x, history.coefficient, history.exponent, two_sided=tire.two_sided)
-    preload = preload_of(tire, x) if tire.two_sided else np.zeros_like(x)
-    # As `flat_step`: without air a preload is a pretension or the zero of a load cell.
-    preload, pretension = (preload, 0.0) if tire.inflated else (np.zeros_like(x), preload)
-    bare = preload + bare
-    history = replace(history, deflection=x, rate=rate, elastic_force=bare)
-    elastic = downstream(tire, history, bare, ("scale",))
-    return replace(history, elastic_force=elastic, preload=preload), pretension + elastic
+    part = (tire.two_sided, tire.inflated, tire.preload, tire.curve)
+    law = (tire.law, tire.two_sided, tire.reading_noise, tire.differentiates)
+    factors = _at(tire, "scale")
+    read = stages.once(law, (), lambda: history_of(tire, recording, kinematics))
+    moved = _moved(tire, read, kinematics, stages)
+    bare = stages.once((law, part), (moved,), lambda: _bare_force(tire, moved))
+    for effect, values in _at(tire, "law"):
+        bare = stages.respond(effect, values, bare, moved)
+    each = [stages.alone(effect, values, 1.0, moved) for effect, values in factors]
+    preload = preload_of(tire, moved.deflection) if tire.two_sided else 0.0
+
+    def whole() -> tuple[History, FloatArray]:
+        # As `flat_step`: without air a preload is a pretension or the zero of a load cell.
+        multiplied, added = (preload, 0.0) if tire.inflated else (0.0, preload)
+        elastic = np.prod(each, axis=0) * (multiplied + bare) if each else multiplied + bare
+        after = replace(
+            moved, elastic_force=elastic, preload=np.broadcast_to(multiplied, elastic.shape).copy()
+        )
+        return after, added + elastic
+
+    return stages.once((part, tuple((e.name, v) for e, v in factors)), (moved, bare), whole)
+
+
+def _at(tire: TireModel, place: str) -> list[tuple[Effect, State]]:
+    """Return the effects of a tire at one place."""
+    return [(effect, values) for effect, values in tire.effects if effect.place == place]
+
+
+def _bare_force(tire: TireModel, history: History) -> FloatArray:
+    """Return A x^B [N] at the tire's own deflection."""
+    A, B = history.coefficient, history.exponent
+    return elastic_force(history.deflection, A, B, two_sided=tire.two_sided)
+
+
+def _moved(tire: TireModel, read: History, kinematics: Kinematics | None, stages: Stages) -> History:
+    """Return the quantities at the tire's own deflection and its rate."""
+    before = tuple((effect.name, values) for effect, values in tire.effects if effect.place in UPSTREAM)
+    if not before:
+        return read
+
+    def make() -> History:
+        x, rate = upstream(tire, read), read.rate
+        if tire.differentiates:
+            if kinematics is not None:
+                rate = rate + np.gradient(x - read.deflection, read.time)
+            elif tire.reading_noise < FINEST:
+                rate, _ = track(read.time, x, tire.reading_noise)
+            else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
+                later, sooner = (upstream(tire, extrapolated(read, h)) for h in (AHEAD, -AHEAD))
+                rate = (later - sooner) / (2.0 * AHEAD)
+        return replace(read, deflection=x, rate=rate)
+
+    return stages.once(before, (read,), make)
 
 
 def preload_of(tire: TireModel, deflection: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ from drives import ride
 from radialtire import CATALOGUE, Effect, PowerLaw, TireModel
 from radialtire.learned_remainder import LearnedRemainder
 from tirelab.simulation import kept_stages
+from tirelab.simulation import simulate as stages_of
 from tirelab.simulation.kept_stages import KeptStages
 from tirelab.simulation.simulate import SmoothedMotion, simulate
 
@@ -46,15 +47,36 @@ def test_they_give_the_force_of_the_simulation(most: int, monkeypatch: pytest.Mo
         np.testing.assert_array_equal(stages.simulate(tire), simulate(tire, MOTION, MOTION))
 
 
-def test_what_lies_upstream_is_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    stages, run = KeptStages(MOTION), []
-    respond = kept_stages.respond_series
+def effects_run(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Return the list to which the name of every effect is added that is run from now on."""
+    run: list[str] = []
+    respond = stages_of.respond_series
 
     def counted(effect: Effect, *rest: Any) -> Any:
         run.append(effect.name)
         return respond(effect, *rest)
 
-    monkeypatch.setattr(kept_stages, "respond_series", counted)
+    monkeypatch.setattr(stages_of, "respond_series", counted)
+    return run
+
+
+def test_factors_and_what_is_added_do_not_depend_on_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two factors and a damper only the one that changes is run, and friction with it, which needs their force."""
+    stages, run = KeptStages(MOTION), effects_run(monkeypatch)
+    names = ("mullins_softening", "warm_up", "rate_independent_hysteresis", "viscous_damping")
+    first = [(CATALOGUE[n], CATALOGUE[n].nominal) for n in names]
+    stages.simulate(TireModel(effects=tuple(first)))
+    assert run == list(names)
+    for changed, expected in ((1, [names[1], *names[2:]]), (3, [names[3]])):
+        run.clear()
+        effect, values = first[changed]
+        own = [*first[:changed], (effect, (1.1 * values[0], *values[1:])), *first[changed + 1 :]]
+        stages.simulate(TireModel(effects=tuple(own)))
+        assert run == expected
+
+
+def test_what_lies_upstream_is_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    stages, run = KeptStages(MOTION), effects_run(monkeypatch)
     friction, inertia = CATALOGUE["rate_independent_hysteresis"], CATALOGUE["inertia"]
 
     def tire(slip: float, mass: float) -> TireModel:

@@ -54,8 +54,8 @@ typedef struct { double time; double interval; bool first; double deflection; do
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
-typedef struct { double v[13]; } Vector13;
 typedef struct { double v[12]; } Vector12;
+typedef struct { double v[13]; } Vector13;
 typedef struct { double v[5]; } Vector5;
 typedef struct { double a; Vector3 b; } Tuple14;
 typedef struct { double a; Vector1 b; } Tuple16;
@@ -569,6 +569,39 @@ static inline double elastic_shape_hat(double place, double number)
     return greater(1.0 - fabs(place - number), 0.0);
 }
 
+/* effects.part_shape.py: Return g(x) [N] at a deflection [m]. */
+static inline double part_shape_curve(double x, Vector12 values)
+{
+    double lowest = values.v[0], highest = values.v[1], g1 = values.v[2], g2 = values.v[3], g3 = values.v[4], g4 =
+        values.v[5], g5 = values.v[6], g6 = values.v[7], g7 = values.v[8], g8 = values.v[9], g9 = values.v[10], g10
+        = values.v[11];
+    double place = lesser(greater(1.0 + 9.0 * (x - lowest) / greater(highest - lowest, 1e-300), 1.0), 10.0);
+    double force = g1 * elastic_shape_hat(place, 1.0) + g2 * elastic_shape_hat(place, 2.0) + g3 *
+        elastic_shape_hat(place, 3.0) + g4 * elastic_shape_hat(place, 4.0);
+    force += g5 * elastic_shape_hat(place, 5.0) + g6 * elastic_shape_hat(place, 6.0) + g7 * elastic_shape_hat(place,
+        7.0) + g8 * elastic_shape_hat(place, 8.0);
+    return force + g9 * elastic_shape_hat(place, 9.0) + g10 * elastic_shape_hat(place, 10.0);
+}
+
+/* effects.part_shape.py: Add g(x) - g(0) to the elastic force [N]. */
+static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing state, Vector12 values)
+{
+    if (instant.deflection <= 0.0 && !instant.two_sided) {
+        return (Tuple8){signal, state};
+    }
+    return (Tuple8){signal + (part_shape_curve(instant.deflection, values) - part_shape_curve(0.0, values)), state};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static inline double through_law(double signal, Instant at, const double *p, const double *s, double *n)
+{
+    if (p[15] != 0.0) {
+        const Tuple8 t1 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 16));
+        signal = t1.a;
+    }
+    return signal;
+}
+
 /* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x)). */
 static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector13 values)
 {
@@ -592,29 +625,6 @@ static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothi
         elastic_shape_hat(place, 7.0) + h8 * elastic_shape_hat(place, 8.0);
     exponent += h9 * elastic_shape_hat(place, 9.0) + h10 * elastic_shape_hat(place, 10.0);
     return (Tuple8){signal * exp(exponent), state};
-}
-
-/* effects.part_shape.py: Return g(x) [N] at a deflection [m]. */
-static inline double part_shape_curve(double x, Vector12 values)
-{
-    double lowest = values.v[0], highest = values.v[1], g1 = values.v[2], g2 = values.v[3], g3 = values.v[4], g4 =
-        values.v[5], g5 = values.v[6], g6 = values.v[7], g7 = values.v[8], g8 = values.v[9], g9 = values.v[10], g10
-        = values.v[11];
-    double place = lesser(greater(1.0 + 9.0 * (x - lowest) / greater(highest - lowest, 1e-300), 1.0), 10.0);
-    double force = g1 * elastic_shape_hat(place, 1.0) + g2 * elastic_shape_hat(place, 2.0) + g3 *
-        elastic_shape_hat(place, 3.0) + g4 * elastic_shape_hat(place, 4.0);
-    force += g5 * elastic_shape_hat(place, 5.0) + g6 * elastic_shape_hat(place, 6.0) + g7 * elastic_shape_hat(place,
-        7.0) + g8 * elastic_shape_hat(place, 8.0);
-    return force + g9 * elastic_shape_hat(place, 9.0) + g10 * elastic_shape_hat(place, 10.0);
-}
-
-/* effects.part_shape.py: Add g(x) - g(0) to the elastic force [N]. */
-static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing state, Vector12 values)
-{
-    if (instant.deflection <= 0.0 && !instant.two_sided) {
-        return (Tuple8){signal, state};
-    }
-    return (Tuple8){signal + (part_shape_curve(instant.deflection, values) - part_shape_curve(0.0, values)), state};
 }
 
 /* effect.py: Return whether a channel was recorded: NOT_MEASURED is not equal to itself. */
@@ -722,39 +732,35 @@ static inline Tuple16 warm_up_respond(double signal, Instant instant, Vector1 st
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[15] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 16));
+    if (p[28] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 29));
         signal = t1.a;
     }
-    if (p[29] != 0.0) {
-        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 30));
+    if (p[42] != 0.0) {
+        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[43], p[44], p[45]}});
         signal = t2.a;
     }
-    if (p[42] != 0.0) {
-        const Tuple8 t3 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[43], p[44], p[45]}});
+    if (p[46] != 0.0) {
+        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 47));
         signal = t3.a;
     }
-    if (p[46] != 0.0) {
-        const Tuple8 t4 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 47));
-        signal = t4.a;
-    }
     if (p[52] != 0.0) {
-        const Tuple14 t5 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
+        const Tuple14 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
             + 53));
-        signal = t5.a;
-        Vector3 after = t5.b;
+        signal = t4.a;
+        Vector3 after = t4.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
     if (p[60] != 0.0) {
-        const Tuple8 t6 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[61], p[62], p[63]}});
-        signal = t6.a;
+        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[61], p[62], p[63]}});
+        signal = t5.a;
     }
     if (p[64] != 0.0) {
-        const Tuple16 t7 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[65], p[66], p[67]}});
-        signal = t7.a;
-        Vector1 after = t7.b;
+        const Tuple16 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[65], p[66], p[67]}});
+        signal = t6.a;
+        Vector1 after = t6.b;
         n[9] = after.v[0];
     }
     return signal;
@@ -1509,10 +1515,10 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
     double bare = held ? power_law_two_sided(x, A, B) : tire_elastic(x, A, B);
     double preload = held && p[6] != 0.0 ? p[5] : 0.0;
     double pretension = held && p[6] == 0.0 ? p[5] : 0.0;
-    bare = preload + bare;
-    Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, bare, bend, pressure,
+    Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, 0.0, bend, pressure,
         temperature, held, 0.0};
-    double elastic = through_scale(bare, at, p, s, n);
+    bare = preload + through_law(bare, at, p, s, n);
+    double elastic = through_scale(1.0, at, p, s, n) * bare;
     at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature,
         held, preload};
     double force = through_parallel(pretension + elastic, at, p, s, n);
