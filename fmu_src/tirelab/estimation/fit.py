@@ -187,6 +187,7 @@ class Fit:
     scales: of the form errors of each effect
     beyond_forms: sum of squares that form errors and refitted parameters leave
     sizes: root mean square of the response that each effect adds to the others, by its name
+    evaluations: simulations of all dataset's blocks that it took, from all its starts
     held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
     """
 
@@ -265,15 +266,14 @@ def fitted(
     variance: V at the start; the fit is repeated where it leads to another one; wanted: a log likelihood: a fit that is
     further below it than optional parameters may gain is not refined
     """
-    plain = [_optimise(problem_of(dataset, s, plain=True), s, discrepancy, variance) for s in starts]
-    best = max(plain, key=lambda f: f.log_likelihood)
-    if best.log_likelihood < wanted - OPTIONAL_GAIN:
-        return best
+    tried = [_optimise(problem_of(dataset, s, plain=True), s, discrepancy, variance) for s in starts]
+    best = max(tried, key=lambda f: f.log_likelihood)
     whole = problem_of(dataset, best.values, plain=False)
-    if len(whole.parameters) == len(best.problem.parameters):
-        return best
-    free = _optimise(whole, best.values, discrepancy, best.variance)
-    return max((best, free), key=lambda f: f.log_likelihood)
+    has_optional = len(whole.parameters) > len(best.problem.parameters)
+    if has_optional and best.log_likelihood >= wanted - OPTIONAL_GAIN:
+        tried.append(_optimise(whole, best.values, discrepancy, best.variance))
+        best = max((best, tried[-1]), key=lambda f: f.log_likelihood)
+    return replace(best, evaluations=sum(f.evaluations for f in tried))
 
 
 def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:

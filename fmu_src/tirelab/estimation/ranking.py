@@ -80,6 +80,10 @@ REACH = TEMPERATURE * LOST
 MOST_FITS = 40
 """Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
 
+MOST_WORK = 6e7
+"""Budget: number of simulated blocks of one ranking, after which it ends however much it still gains: some 20 s of a
+core of an x86-64 server, with which the whole command stays within 60 s."""
+
 REPEATS = 2
 """Budget: number of fits of one set, each from the optimum of another set."""
 
@@ -156,6 +160,7 @@ class FittedSets:
     usual: float = 0.0
     assessed_at: int = 0
     gained_at: int = 0
+    work: int = 0
 
     @property
     def best_fit(self) -> Fit:
@@ -164,8 +169,8 @@ class FittedSets:
 
     @property
     def spent(self) -> bool:
-        """Whether as many sets as the budget allows were fitted without a decisive gain."""
-        return self.count - self.gained_at >= MOST_FITS
+        """Whether as many sets as the budget allows were fitted since a decisive gain, or as many blocks simulated."""
+        return self.count - self.gained_at >= MOST_FITS or self.work >= MOST_WORK
 
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one; return whether that has changed.
@@ -194,6 +199,7 @@ class FittedSets:
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
         found = _predicted(self.held_out, found)
         self.count += 1
+        self.work += found.evaluations * found.residual.size
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count

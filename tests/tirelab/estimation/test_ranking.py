@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from drives import flat_force
 from radialtire import CATALOGUE, TireModel
+from tirelab.estimation import ranking as module
 from tirelab.estimation.fit import fitted
 from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
 from tirelab.recordings.recording import Recording
@@ -50,6 +51,23 @@ def test_what_is_there_wins_although_nothing_was_begun_with(ranking: Ranking) ->
     (damping,) = ranking.best.values["viscous_damping"][:1]
     assert damping == pytest.approx(500.0, rel=0.05)
     assert list(ranking.posteriors) == sorted(ranking.posteriors, reverse=True)
+
+
+def test_a_ranking_ends_where_its_budget_of_simulations_does(
+    dataset: Dataset,
+    signatures: tuple[Signature, ...],
+    noise: Discrepancy,
+    ranking: Ranking,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Every fit is counted with all its starts; that which uses the budget up is the last of the search."""
+    sets = begun(dataset, signatures, noise, [])
+    monkeypatch.setattr(module, "MOST_WORK", 150 * dataset.misfit.size)
+    short = ranked(sets, lambda name: ())
+    assert len(short.fits) < len(ranking.fits)
+    assert sets.work >= 150 * dataset.misfit.size
+    assert sets.work >= sum(f.evaluations * f.residual.size for f in short.fits)
+    assert short.best.names == ("viscous_damping",)
 
 
 def test_no_set_within_reach_leaves_more_than_a_subset_of_it(ranking: Ranking) -> None:
