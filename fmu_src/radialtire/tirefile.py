@@ -202,9 +202,9 @@ def _entry(value: Any, what: str, known: set[str], needed: set[str]) -> dict[str
     if not isinstance(value, dict):
         raise TireFileError(f"{what} must be an object with {', '.join(sorted(needed))}, not {value!r}")
     for key in sorted(value.keys() - known):
-        raise TireFileError(f"{what} has an unknown entry {key!r}; known are {', '.join(sorted(known))}")
+        raise TireFileError(f"unknown entry {key!r} in {what}; known are {', '.join(sorted(known))}")
     for key in sorted(needed - value.keys()):
-        raise TireFileError(f"{what} lacks its entry {key!r}; add it")
+        raise TireFileError(f"no entry {key!r} in {what}; add it")
     return value
 
 

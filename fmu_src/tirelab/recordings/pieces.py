@@ -148,5 +148,6 @@ def _index(where: str, bound: str, time: NDArray[np.float64], rows: NDArray[np.i
         seconds = conversion(found["unit"], "s").to_si(np.array([float(found["value"])]))[0]
     except UnitError as error:
         raise RecordingError(f"{where}: {error}") from None
-    # 0.3 s is the sample at 0.30000000000000004 s too
-    return int(np.searchsorted(time, seconds - 1e-9 * max(1.0, abs(seconds)), "left"))
+    # 0.3 s is the sample at 0.30000000000000004 s too; a number of 400 digits is later than all samples
+    nearly = 1e-9 * max(1.0, abs(seconds)) if np.isfinite(seconds) else 0.0
+    return int(np.searchsorted(time, seconds - nearly, "left"))

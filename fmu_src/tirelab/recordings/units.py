@@ -259,7 +259,9 @@ def parse_radius(text: str | float) -> float:
     Errors: UnitError for zero, NaN, a missing unit or a unit that is not a length.
     """
     if isinstance(text, (int, float)):
-        radius = float(text)
+        # A truth value is a number in Python, and an integer may be beyond every double.
+        known = not isinstance(text, bool) and (isinstance(text, float) or abs(text) < 10**300)
+        radius = float(text) if known else math.nan
     elif text.strip().lower() in FLAT_WORDS:
         return math.inf
     else:

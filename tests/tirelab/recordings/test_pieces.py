@@ -72,6 +72,7 @@ class TestRanges:
             ("0.6s:1s", 0.6, 0.8),
             ("2:4", 0.0, 0.4),
             ("100:", 19.6, 20.0),
+            ("19.6s:1e400s", 19.6, 20.0),
         ],
     )
     def test_time_has_its_end_left_out_and_rows_have_both(

@@ -157,7 +157,9 @@ def test_a_radius_is_flat_or_a_length(text: str | float, metres: float) -> None:
     assert parse_radius(text) == pytest.approx(metres, rel=3e-16)
 
 
-@pytest.mark.parametrize("text", ["25.4", "0 cm", 0.0, math.nan, "nan cm", "wide", "", "25.4 kg", "cm"])
+@pytest.mark.parametrize(
+    "text", ["25.4", "0 cm", 0.0, True, 10**400, math.nan, "nan cm", "wide", "", "25.4 kg", "cm"]
+)
 def test_what_is_no_radius_is_refused(text: str | float) -> None:
     with pytest.raises(UnitError, match=r"radius|not a unit of length"):
         parse_radius(text)
