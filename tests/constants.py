@@ -167,6 +167,7 @@ EFFORT = (
     "estimation/ranking.REPEATS",
     "diagnosis/contradiction.DEPTHS",
     "diagnosis/contradiction.SPEEDS_PER_OCTAVE",
+    "diagnosis/contradiction.ANEW",
     "diagnosis/contradiction.SUSPECTED",
     "diagnosis/acceptance.CONSIDERED",
     "diagnosis/binning.BINS",

@@ -31,6 +31,9 @@ together are left with, and less than this part of what it leaves of that record
 BEYOND_NOISE = 3.0
 """Least error of that tire on the recording, over its noise floor and the form errors of its effects together."""
 
+ANEW = 0.1
+"""Budget: part of that of a ranking with which the others are explained anew: to leave half as much needs little."""
+
 SUSPECTED = 2
 """Budget: most recordings without which the others are explained anew, the one furthest apart first."""
 

@@ -12,6 +12,7 @@ from radialtire import TireModel
 from ..computing.threads import one_thread
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
+from ..estimation.ranking import MOST_WORK
 from ..planning.waveforms import Limits
 from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal, not_compared
 from ..preprocessing.motion import FloatArray
@@ -28,7 +29,7 @@ from .acceptance import (
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of
 from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
-from .contradiction import contradiction_of
+from .contradiction import ANEW, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
@@ -74,9 +75,9 @@ def diagnose(
     data = _Data(fitted, raw_dataset_of(fitted, baseline), [r.force - simulate(baseline, r) for r in fitted])
 
     def explain(
-        several: Sequence[Recorded], say: Callable[[str], None] = lambda sentence: None
+        several: Sequence[Recorded], say: Callable[[str], None], most_work: float = MOST_WORK
     ) -> Explanation:
-        return explain_misfit(several, baseline, allowed, say, timed=data.timed, held_out=kept)
+        return explain_misfit(several, baseline, allowed, say, held_out=kept, most_work=most_work)
 
     candidates = explain(fitted, report)
     levels = [floor.level for floor in candidates.floors]
@@ -103,7 +104,13 @@ def diagnose(
     where = data.shown(localize(fitted, data.samples, located, levels, noise))
 
     motions = [e.motion for e in data.samples.experiments]
-    contradiction = contradiction_of(explanation, fitted, motions, data.before, explain)
+    contradiction = contradiction_of(
+        explanation,
+        fitted,
+        motions,
+        data.before,
+        lambda several: explain(several, lambda sentence: None, ANEW * MOST_WORK),
+    )
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
     missing = not_compared(fitted)

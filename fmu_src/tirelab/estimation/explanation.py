@@ -16,7 +16,7 @@ from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor
-from ..preprocessing.samples import Recorded
+from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
 from ..regressors.excitation import Excitation, excitation_of, of_deflection
 from ..regressors.signature import (
@@ -48,6 +48,7 @@ from .findings import (
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .ranking import (
+    MOST_WORK,
     Ranking,
     corrected,
     held_out_of,
@@ -204,17 +205,17 @@ def explain_misfit(
     catalogue: Sequence[str],
     progress: Progress,
     *,
-    timed: bool = True,
     held_out: Sequence[Recorded] = (),
+    most_work: float = MOST_WORK,
 ) -> Explanation:
     """Return what explains the misfit of the `baseline` tire on `recordings`.
 
     catalogue: names of the effects that may be found, of `catalogue_names`; progress: called with a sentence for each
-    stage; timed: whether the times of the samples were measured; held_out: recordings to which nothing is fitted, which
-    judge what is
+    stage; held_out: recordings to which nothing is fitted, which judge what is; most_work: budget of each ranking (see
+    `ranking.MOST_WORK`)
     """
     dataset = dataset_of(recordings, baseline)
-    excitation = excitation_of(dataset, timed=timed)
+    excitation = excitation_of(dataset, timed=is_timed(recordings))
     impossible = excitation.channels.impossible
     if not baseline.inflated:
         impossible |= {name for name, effect in CATALOGUE.items() if "air" in effect.traits}
@@ -230,7 +231,8 @@ def explain_misfit(
         hidden |= {gap[0].name: LIKE_GAP}
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
-    blocks = FirstSets(dataset, raw, samples_of(recordings, baseline), held_out_of(held_out, baseline))
+    samples, others = samples_of(recordings, baseline), held_out_of(held_out, baseline)
+    blocks = FirstSets(dataset, raw, samples, others, most_work)
     alike = partial(_alike, excitation)
     sets = blocks.begun(quiet)
     sets = blocks.less_distorted(sets, sets.best_fit.tire)

@@ -36,6 +36,7 @@ from ..selection.search import (
 )
 from .ranking import (
     BEGUN,
+    MOST_WORK,
     FittedSets,
     HeldOutRecordings,
     begun,
@@ -60,13 +61,14 @@ def with_signatures(
 @dataclass(frozen=True)
 class FirstSets:
     """What sets are fitted to: the dataset in blocks and its signatures, as first read; the samples of the blocks; the
-    held-out recordings.
+    held-out recordings; and the budget of simulated blocks.
     """
 
     dataset: Dataset
     signatures: tuple[Signature, ...]
     samples: Samples
     held_out: HeldOutRecordings | None
+    most_work: float = MOST_WORK
 
     def begun(self, quiet: Dataset) -> FittedSets:
         """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
@@ -75,7 +77,7 @@ class FirstSets:
         equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
         likely = search(equations, rough).starts(BEGUN)
         starts = [(e.variance, parts_of(e, equations, rough)) for e in likely]
-        return begun(quiet, signatures, rough, starts, self.held_out)
+        return begun(quiet, signatures, rough, starts, self.held_out, self.most_work)
 
     def less_distorted(self, sets: FittedSets, tire: TireModel) -> FittedSets:
         """Return the sets begun anew without what blocks leave out of a tire's response; the same ones where that is

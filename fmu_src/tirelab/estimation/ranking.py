@@ -161,6 +161,7 @@ class FittedSets:
     assessed_at: int = 0
     gained_at: int = 0
     work: int = 0
+    most_work: float = MOST_WORK
 
     @property
     def best_fit(self) -> Fit:
@@ -170,7 +171,7 @@ class FittedSets:
     @property
     def spent(self) -> bool:
         """Whether as many sets as the budget allows were fitted since a decisive gain, or as many blocks simulated."""
-        return self.count - self.gained_at >= MOST_FITS or self.work >= MOST_WORK
+        return self.count - self.gained_at >= MOST_FITS or self.work >= self.most_work
 
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one; return whether that has changed.
@@ -244,14 +245,16 @@ def begun(
     discrepancy: Discrepancy,
     starts: Sequence[tuple[float, Mapping[str, FloatArray]]],
     held_out: HeldOutRecordings | None = None,
+    most_work: float = MOST_WORK,
 ) -> FittedSets:
     """Return the empty set and the sets to begin with, fitted.
 
     starts: the latter, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
-    held_out: recordings that take part in the posterior
+    held_out: recordings that take part in the posterior; most_work: budget in place of MOST_WORK
     """
     noise = discrepancy_of(dataset.misfit, 0.0)
-    sets = FittedSets(dataset, {s.name: s for s in signatures}, noise, discrepancy, held_out)
+    known = {s.name: s for s in signatures}
+    sets = FittedSets(dataset, known, noise, discrepancy, held_out, most_work=most_work)
     sets.fit([{}], discrepancy.highest)
     nothing_fitted = np.zeros((dataset.misfit.size, 0))
     for variance, parts in starts:

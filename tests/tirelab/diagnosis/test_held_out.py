@@ -69,7 +69,7 @@ def test_without_a_clock_the_end_is_named_by_its_samples():
     without = Recording(
         "untimed", np.arange(1000.0), drive.deflection, drive.surface_radius, drive.force + 60.0, timed=False
     )
-    found = explain_misfit([without], TireModel(), ("force_offset",), lambda stage: None, timed=False)
+    found = explain_misfit([without], TireModel(), ("force_offset",), lambda stage: None)
     before = [without.force - flat_force(without.deflection)]
     held_out = split([without], raw_dataset_of([without], TireModel()), before, found.of(("force_offset",)))
     first = int(np.searchsorted(np.cumsum(before[0] ** 2), 0.7 * np.sum(before[0] ** 2))) + 1

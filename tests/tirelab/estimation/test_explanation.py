@@ -93,9 +93,10 @@ def test_only_what_the_catalogue_holds_is_found() -> None:
 
 
 def test_without_a_time_nothing_that_depends_on_it_is_found() -> None:
-    found = explain_misfit(
-        RIDES[:1], TireModel(), ("viscous_damping", "warm_up", "force_offset"), lambda s: None, timed=False
-    )
+    r = RIDES[0]
+    untimed = Recording("untimed", r.time, r.deflection, r.surface_radius, r.force, timed=False)
+    catalogue = ("viscous_damping", "warm_up", "force_offset")
+    found = explain_misfit([untimed], TireModel(), catalogue, lambda s: None)
     assert dict(found.hidden) == dict.fromkeys(("viscous_damping", "warm_up"), "the recording has no time")
     assert {n for e in found.evidence for n in e.names} <= {"force_offset"}
 
