@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from drives import flat_force
 from radialtire import CATALOGUE, TireModel
-from tirelab.estimation import ranking as module
 from tirelab.estimation.fit import fitted
 from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
 from tirelab.recordings.recording import Recording
@@ -58,11 +57,9 @@ def test_a_ranking_ends_where_its_budget_of_simulations_does(
     signatures: tuple[Signature, ...],
     noise: Discrepancy,
     ranking: Ranking,
-    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Every fit is counted with all its starts; that which uses the budget up is the last of the search."""
-    sets = begun(dataset, signatures, noise, [])
-    monkeypatch.setattr(module, "MOST_WORK", 150 * dataset.misfit.size)
+    sets = begun(dataset, signatures, noise, [], most_work=150 * dataset.misfit.size)
     short = ranked(sets, lambda name: ())
     assert len(short.fits) < len(ranking.fits)
     assert sets.work >= 150 * dataset.misfit.size
