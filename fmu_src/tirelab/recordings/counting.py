@@ -15,7 +15,7 @@ from .formats import RecordingError
 from .matching import Match
 from .metadata import Settings
 from .origin import Origin
-from .plausibility import force_begins
+from .plausibility import PULLS, force_begins
 from .sign_convention import Signs, compressive_signs, mass_alike, work_share
 from .zero import ZEROED, Gauges, quantity_text, zero_in_si
 
@@ -50,6 +50,8 @@ def count_from_zero(
 
     A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are,
     but for both being negative under load, as of a part that is loaded the other way and then relaxes or breaks.
+    A part that is loaded both ways, as a damper is, shows by no sign how its rig counts: the larger of its forces is
+    that of its stiffer way.
     Where a mass that moves may be why the force falls, nothing is turned without asking.
     Errors: RecordingError for a zero that is no quantity of its channel.
     """
@@ -67,6 +69,8 @@ def count_from_zero(
     signs = compressive_signs(values["deflection"], values["force"])
     given = {name for name in ZEROED if matches[name].sign}
     turned = {name for name, sign in (("deflection", signs.deflection), ("force", signs.force)) if sign < 0}
+    if settings.part and len(turned) == 2 and _both_ways(values["force"]):
+        return Counted(gauges, tuple(notes))
     of_part = settings.part and bool(signs.doubt) and not signs.falls
     if len(given) == 2 or (of_part and not (signs.negative and not given)):
         return Counted(gauges, tuple(notes))
@@ -89,6 +93,11 @@ def count_from_zero(
     if turned:
         notes.append(f"the rig counts compression negative: {' and '.join(sorted(turned))} turned in sign")
     return Counted(replace(gauges, turned=gauges.turned ^ turned), tuple(notes))
+
+
+def _both_ways(force: FloatArray) -> bool:
+    ends = sorted((abs(float(force.min())), abs(float(force.max()))))
+    return bool(force.min() < 0.0 < force.max()) and ends[0] > PULLS * ends[1]
 
 
 def _asked(

@@ -98,6 +98,21 @@ class TestSigns:
         assert read.deflection.max() < 0.0
         assert read.force[0] == -5.0
 
+    @pytest.mark.parametrize("pull", [15.0, 25.0, 40.0])
+    def test_a_damper_that_is_stiffer_one_way_counts_as_its_sister_does(
+        self, tmp_path: Path, pull: float
+    ) -> None:
+        """Force and deflection are of both signs; which of the forces is larger says nothing of how the rig counts."""
+        time = np.arange(800) / 20.0
+        turn = np.sin(time - 0.6)
+        force = 10.0 * np.clip(turn, 0.0, None) + pull * np.clip(turn, None, 0.0)
+        path = write_rows(
+            tmp_path / "a.csv", "time [s],Displacement [mm],Force [N]", time, 5.0 * np.sin(time), force
+        )
+        read = Reading(part=True)(path)
+        np.testing.assert_allclose(read.force, force, rtol=1e-4, atol=1e-4)
+        np.testing.assert_allclose(read.deflection, 5e-3 * np.sin(time), rtol=1e-4, atol=1e-7)
+
     def test_a_sign_that_the_user_settles_is_taken(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         path = write_rows(tmp_path / "a.csv", "time [s],gap [cm],force [N]", time, 5.0 - deflection, force)
