@@ -96,7 +96,7 @@ class RowReader:
                     continue
                 blank_before, beside_text = blank_before + 1 if blank else 0, False
                 if (self.text_rows.open or not self.text_rows.begins) and any(map(str.strip, row)):
-                    self.text_rows.numbers(start)
+                    self.text_rows.numbers(start, len(row))
                 lines.append(start)
                 for column, cell in zip(columns, cells, strict=True):
                     column.append(cell)  # type: ignore[arg-type]  # clock times are texts, all else numbers

@@ -105,7 +105,7 @@ class ExcelTable:
                 except RecordingError as fault:
                     text_rows.take(line, texts, fault)
                     continue
-                text_rows.numbers(line)
+                text_rows.numbers(line, len(texts))
                 # Empty rows at the very end are no rows; those before a row are.
                 for skipped in [*empty, line]:
                     lines.append(skipped)

@@ -20,11 +20,15 @@ MOST_ASIDE = 60
 
 @dataclass(frozen=True)
 class _Aside:
-    """A row that was set aside: its line, its first cell, whether that is all it holds, and the fault found in it."""
+    """A row that was set aside: its line, its first cell, whether that is all it holds, and the fault found in it.
+
+    names: how many cells it has, if several and most of them are no number; else 0
+    """
 
     line: int
     text: str
     remark: bool
+    names: int
     fault: RecordingError
 
     def __str__(self) -> str:
@@ -70,7 +74,7 @@ class TextRows:
             self._check_units(line, row)
             return
         if not filled or is_value(filled[0]):
-            raise fault
+            raise self._wider_or_narrower(len(row)) or fault
         if len(self._aside) >= MOST_ASIDE:
             raise self._aside[0].fault
         values = [is_value(cell) for cell in filled]
@@ -80,24 +84,36 @@ class TextRows:
         if len(filled) > 1 and not numbers and len(row) == len(self.headers):
             self._another = self._another or line
         alone = sum(map(bool, map(str.strip, row))) == 1
-        self._aside.append(_Aside(line, filled[0], alone, fault))
+        names = len(row) if len(filled) > 1 and 2 * sum(values) < len(filled) else 0
+        self._aside.append(_Aside(line, filled[0], alone, names, fault))
 
-    def numbers(self, line: int) -> None:
-        """Note a row of numbers: what was set aside above it has to be remarks alone. Errors: RecordingError."""
+    def numbers(self, line: int, cells: int) -> None:
+        """Note a row of numbers of so many cells: what was set aside above it has to be remarks alone.
+
+        Errors: RecordingError.
+        """
         self.begins = self.begins or line
         self._after_header = False
         for row in self._aside:
             if row.remark:
                 self.remarks.append(str(row))
             elif self._another:
-                above = f"{self.file}@{self.begins}:{self._aside[0].line - 1}"
-                raise RecordingError(
-                    f"{self.file}, row {self._another}: another table begins here; read the one above it, {above}, or "
-                    f"this one, --skip-rows {self._another - 1}"
-                )
+                raise self._another_table(self._another)
             else:
-                raise row.fault
+                raise self._wider_or_narrower(cells) or row.fault
         self._aside.clear()
+
+    def _wider_or_narrower(self, cells: int) -> RecordingError | None:
+        """The error for another table, of as many columns as its names, where a row has so many cells; None else."""
+        names = [row.line for row in self._aside if row.names == cells != len(self.headers)]
+        return self._another_table(names[-1]) if names else None
+
+    def _another_table(self, line: int) -> RecordingError:
+        above = f"{self.file}@{self.begins}:{self._aside[0].line - 1}"
+        return RecordingError(
+            f"{self.file}, row {line}: another table begins here; read the one above it, {above}, or "
+            f"this one, --skip-rows {line - 1}"
+        )
 
     def notes(self) -> list[str]:
         """Return what was left out, at the end of the file."""
