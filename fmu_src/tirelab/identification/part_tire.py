@@ -181,6 +181,14 @@ def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:
     squares = [r.force[r.deflection < x0] ** 2 for r in loose]
     left = float(np.sqrt(np.mean(np.concatenate(squares))))
     if left > IN_GAP * max(float(np.abs(r.force).max()) for r in recordings):
+        first = loose[0]
+        if float(first.deflection.max()) <= x0 and float(first.force.max()) > -float(first.force.min()):
+            low, high = (1e3 * float(end) for end in (first.deflection.min(), first.deflection.max()))
+            raise TirelabError(
+                f"the deflection of {first.name} is {low:.3g} to {high:.3g} mm, where the law {fit.name} has no force; "
+                "give what the gauge reads where the part begins to be loaded, as the file counts: tirelab inspect "
+                "--part FILE --zero deflection=..."
+            )
         raise TirelabError(
             f"the law {fit.name} has no force below {1e3 * x0:.3g} mm, and the recordings have {left:.3g} N there "
             f"(root mean square); choose one of {', '.join(TWO_SIDED)} for a part that pulls too"

@@ -308,14 +308,18 @@ def understand(path: Path | str, how: Choices) -> Understood:
 
 
 def _read(table: Table, plan: Plan, piece: Piece) -> Columns:
-    """Return the columns of a plan; where rows cannot be read, those of the piece alone if it names its rows."""
+    """Return the columns of a plan; where not all can be read, those up to the last row of the piece, if it names its
+    rows, or those of the piece alone."""
     try:
         return table.read(plan.wanted)
     except RecordingError:
         rows = piece.rows
         if rows is None or not isinstance(table, DelimitedTable):
             raise
-        return table.read_rows(plan.wanted, *rows)
+        try:
+            return table.read_rows(plan.wanted, 1, rows[1])  # what was recorded before the piece counts
+        except RecordingError:
+            return table.read_rows(plan.wanted, *rows)
 
 
 def _refuse_unknown(given: Mapping[str, object], known: Mapping[str, object]) -> None:

@@ -45,6 +45,15 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("compressive displacement", "compressive extension", "extension", "position"),
         *("machine extension", "disp", "displ", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
         *("linear pot", "linear potentiometer", "potentiometer"),
+        *(
+            "penetration",
+            "penetration depth",
+            "pd",
+            "indentation depth",
+            "sinkage",
+            "settlement",
+            "displacment",
+        ),
         *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量"),
     ),
     "radius": (
@@ -76,7 +85,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("force verticale", "effort", "charge", "charge verticale"),
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
         *("forza", "carico", "forca", "kracht", "belasting"),
-        *("compressive load", "axial force", "axial load", "standard force", "compression force", "fz"),
+        *("compressive load", "axial force", "axial load", "standard force", "compression force", "fz", "fn"),
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
     "pressure": (
@@ -110,7 +119,7 @@ SECOND = {
         ),
         *("traversenposition", "traversenweg absolut", "absoluter traversenweg", "absolute crosshead travel"),
         *("position traverse", "position de la traverse"),
-        *("distance entre mors", "tool separation", "grip to grip separation", "grip separation"),
+        *("distance entre mors", "tool separation", "grip to grip separation", "grip separation", "gap"),
     ),
     "force": ("fx", "fy"),
 }

@@ -287,3 +287,14 @@ def test_springs_and_dampers_are_not_told_the_curve() -> None:
                 except TirelabError:
                     continue
                 assert curve_advice(tire, recordings) == "", (name, fit.name)
+
+
+def test_a_pad_whose_gauge_counts_from_elsewhere_is_asked_for_its_zero() -> None:
+    """Pressed in the last 4 % of the stroke, and let go as far: the fit finds no gap, and no law of a pull helps."""
+    way = np.linspace(-0.025, -0.0056, 400)
+    pad = recording(
+        np.concatenate([way, way[::-1]]), 13.0 * np.exp((np.concatenate([way, way[::-1]]) + 0.0056) / 1e-4)
+    )
+    fits = {fit.name: fit for fit in fit_laws([pad])}
+    with pytest.raises(TirelabError, match=r"-25 to -5\.6 mm, .* --zero deflection="):
+        tire_of(fits["power_gap"], [pad], "")

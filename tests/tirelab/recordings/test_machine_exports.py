@@ -154,7 +154,9 @@ class TestNothingIsLostWithoutAWord:
             read_recording(path, radius="flat")
         assert len(read_recording(f"{path}@2:201", radius="flat")) == 200
 
-    @pytest.mark.parametrize("names", [["Peak (N)", "Rise (mm)", "Gauge A", "1281068"], ["Peak (N)", "Rise (mm)"]])
+    @pytest.mark.parametrize(
+        "names", [["Peak (N)", "Rise (mm)", "Gauge A", "1281068"], ["Peak (N)", "Rise (mm)"]]
+    )
     def test_a_table_of_another_width_below_is_named_with_the_part_above_it(
         self, names: list[str], tmp_path: Path
     ) -> None:
@@ -162,11 +164,19 @@ class TestNothingIsLostWithoutAWord:
         m = pressed()
         path = tmp_path / "a.txt"
         rows = table((m.time, mm(m), m.force)).replace(",", "\t")
-        below = ["", "Data Acquisition\t\t\t\tTime:\t320.0\ts", "\t".join(names), "\t".join("2.5" for _ in names)]
+        below = [
+            "",
+            "Data Acquisition\t\t\t\tTime:\t320.0\ts",
+            "\t".join(names),
+            "\t".join("2.5" for _ in names),
+        ]
         path.write_text("\n".join([HEAD.replace(",", "\t"), rows.rstrip(), *below]) + "\n")
         with pytest.raises(RecordingError, match=r"row 404: another table begins here; .* a\.txt@2:402, or"):
             read_recording(path, radius="flat")
         assert len(read_recording(f"{path}@2:402", radius="flat")) == 400
+        later = read_recording(f"{path}@302:401", radius="flat")
+        assert later.history is not None
+        assert (len(later.history), len(later)) == (300, 100)
 
     def test_statistics_below_a_column_that_is_not_read(self, tmp_path: Path) -> None:
         m = pressed()

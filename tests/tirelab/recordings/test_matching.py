@@ -62,6 +62,24 @@ class TestColumns:
         np.testing.assert_allclose(found.time, time)
         np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
 
+    @pytest.mark.parametrize(("depth", "cell"), [("Sinkage", "Force"), ("Pd", "Fn"), ("Displacment", "Load")])
+    def test_a_plate_pressed_into_soil_and_an_indenter(self, depth: str, cell: str, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = f"Time (s),{depth} (cm),{cell} (N),FnRef (N),SegmentID"
+        path = write_rows(
+            tmp_path / "a.csv", header, time, deflection, force, 0.0 * force + 5.0, 0.0 * time + 1.0
+        )
+        found = read_recording(path, radius="flat")
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+
+    def test_the_gap_of_a_rheometer_is_proposed_with_its_sign(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(
+            tmp_path / "a.csv", "Time (s),Gap (cm),Normal Force (N)", time, 5.0 - deflection, force
+        )
+        assert "--columns 'deflection=-Gap (cm),force=+Normal Force (N)'" in refusal(path, radius="flat")
+
     @pytest.mark.parametrize(
         ("stroke", "cell"),
         [
