@@ -14,7 +14,7 @@ from rivals import looking_for, rivals
 from tirelab.cli import main
 from tirelab.errors import TirelabError
 from tirelab.identification.part_laws import fit_laws, reading_noise
-from tirelab.identification.part_tire import curve_advice, springless, tire_of
+from tirelab.identification.part_tire import best_writable, curve_advice, springless, tire_of
 from tirelab.recordings.recording import Recording
 from tirelab.recordings.writing import write_recording
 from tirelab.simulation.simulate import simulate
@@ -298,3 +298,18 @@ def test_a_pad_whose_gauge_counts_from_elsewhere_is_asked_for_its_zero() -> None
     fits = {fit.name: fit for fit in fit_laws([pad])}
     with pytest.raises(TirelabError, match=r"-25 to -5\.6 mm, .* --zero deflection="):
         tire_of(fits["power_gap"], [pad], "")
+
+
+def test_a_specimen_of_concrete_is_written_as_a_curve() -> None:
+    """3 GN/m, far more than a file holds: no power law is proposed, and not one without a spring either."""
+    way = np.abs(BOTH) * 4e-3
+    concrete = recording(way, 3e9 * way)
+    fits = fit_laws([concrete])
+    assert best_writable(fits, [concrete]) == "piecewise"
+    found = {fit.name: fit for fit in fits}
+    with pytest.raises(
+        TirelabError, match=r"A = 3e\+07 N/cm\^B, and a tire file holds 1e\+06: .* --part piecewise"
+    ):
+        tire_of(found["linear"], [concrete], "")
+    tire = tire_of(found["piecewise"], [concrete], "")
+    assert tire.curve is not None
