@@ -112,7 +112,7 @@ class TestColumns:
 
     def test_what_is_proposed_goes_by_the_units_before_the_sizes(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
-        header = "time [s],Cell 1 [kN],Displacment [mm],"
+        header = "time [s],Cell 1 [kN],Rod [mm],"
         path = write_rows(tmp_path / "a.csv", header, time, force / 1e3, 10.0 * deflection)
         lines = path.read_text(encoding="utf-8").splitlines()
         path.write_text("\n".join([lines[0], *(f"{line}," for line in lines[1:])]), encoding="utf-8")
