@@ -10,9 +10,9 @@ An effect is a pure response at one stage of the signal path from the measured d
     place "inertia"     force                -> force with what accelerates
     place "reading"     force                -> measured force (lag, zero, ceiling)
 
-Effects of one place act in the order of the catalogue. At "scale" a response multiplies its signal, at "law" and
-"parallel" it adds to it, whatever the signal is. After "parallel" a force below zero becomes zero, since the
-ground cannot pull; that of a part that is held at both ends (a damper, a bushing) stays.
+Effects of one place act in the order of the catalogue. At "scale" a response multiplies its signal, at "parallel" it
+adds to it, whatever the signal is. After "parallel" a force below zero becomes zero, since the ground cannot pull; that
+of a part that is held at both ends (a damper, a bushing) stays.
 """
 
 from __future__ import annotations

@@ -166,7 +166,7 @@ def test_its_place_says_how_it_changes_a_signal(effect: Effect) -> None:
     if effect.place == "scale":
         assert none == 0.0
         assert many == pytest.approx(250.0 * one, rel=1e-12)
-    elif effect.place in ("law", "parallel"):
+    elif effect.place == "parallel":
         assert one == pytest.approx(none + 1.0, rel=1e-12)
         assert many == pytest.approx(none + 250.0, rel=1e-12)
 

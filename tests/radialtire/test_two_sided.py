@@ -74,13 +74,13 @@ def test_the_preload_is_a_parameter_of_such_a_part_alone() -> None:
 
 
 def test_the_force_of_a_law_of_another_shape_is_continuous_at_no_deflection() -> None:
-    """F = (F0 + A x) exp(c2 l^2 + h1) with l = ln(x / xr), held below xr / 100; h is h1 below 0.4 xr."""
+    """F = F0 + A x exp(c2 l^2 + h1) with l = ln(x / xr), held below xr / 100; h is h1 below 0.4 xr."""
     values = values_of(CATALOGUE["elastic_shape"], bend=0.01, reference=2e-4, height_1=0.05)
     shaped = ((CATALOGUE["elastic_shape"], values),)
     tire = TireModel(PowerLaw(1000.0, 1.0), shaped, two_sided=True, preload=10.0)
     x = np.array([-1e-5, -1e-10, 0.0, 1e-10, 1e-5])
     log_ratio = np.log(np.maximum(np.abs(x) / 2e-4, 0.01))
-    expected = (10.0 + 1e5 * x) * np.exp(0.01 * log_ratio**2 + 0.05)
+    expected = 10.0 + 1e5 * x * np.exp(0.01 * log_ratio**2 + 0.05)
     assert drive(tire, np.arange(5.0), x) == pytest.approx(expected, rel=1e-12)
 
 

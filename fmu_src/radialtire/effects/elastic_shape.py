@@ -26,7 +26,7 @@ def hat(place: float, number: float) -> float:
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x))."""
+    """Multiply the force of the law by exp(c2 l^2 + c3 l^3 + h(x))."""
     bend, twist, reference, h1, h2, h3, h4, h5, h6, h7, h8, h9, h10 = values
     x = abs(instant.deflection) if instant.two_sided else instant.deflection
     if x <= 0.0 and not instant.two_sided:
@@ -59,7 +59,7 @@ def _height(number: int) -> Parameter:
 
 ELASTIC_SHAPE = Effect(
     name="elastic_shape",
-    place="scale",
+    place="law",
     parameters=(
         Parameter(
             "bend",

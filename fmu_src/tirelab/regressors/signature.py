@@ -37,8 +37,8 @@ FloatArray = NDArray[np.float64]
 LAW = REFITTED_LAW
 """The name under which a refitted law stands in a verdict."""
 
-PART_SHAPE, SHAPE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
-"""The effects in which a refitted law keeps its shape: the curve of a part; bend, twist and the heights of a tire."""
+SHAPE, PART_SHAPE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
+"""The effects in which a refitted law keeps its shape: bend, twist and the heights of a tire; the curve of a part."""
 
 FACTOR, EXPONENT, BEND, TWIST, KINK = 0.1, 0.07, 0.03, 0.01, 0.05
 """Standard deviations of a, b, c, d and each kink at the scale 1, a kink by what it changes over the whole span. Only

@@ -329,15 +329,15 @@ def test_a_part_that_begins_under_load_is_simulated_as_it_is_stepped() -> None:
     assert abs(stepped(tire, motion)[0] - stepped(relaxed, motion)[0]) > 1.0
 
 
-def test_a_shape_multiplies_the_preload_of_a_part_and_its_force_is_continuous() -> None:
-    """(F0 + A x^B) times the shape, also at x = 0."""
+def test_a_shape_is_of_the_law_alone_and_the_force_of_a_part_is_continuous() -> None:
+    """F0 and A x^B times the shape, also at x = 0."""
     effect = CATALOGUE["elastic_shape"]
     bent = {"bend": 0.01, "reference": 2e-4, "height_1": 0.05}
     values = tuple(bent.get(p.name, p.start) for p in effect.parameters)
     tire = TireModel(PowerLaw(1000.0, 1.0), ((effect, values),), two_sided=True, preload=10.0)
     x = np.array([-1e-5, -1e-10, 0.0, 1e-10, 1e-5])
     log_ratio = np.log(np.maximum(np.abs(x) / 2e-4, 0.01))
-    expected = (10.0 + 1e5 * x) * np.exp(0.01 * log_ratio**2 + 0.05)
+    expected = 10.0 + 1e5 * x * np.exp(0.01 * log_ratio**2 + 0.05)
     time = np.arange(5.0)
     recording = Recording.from_arrays(time, x, expected, "flat", name="part")
     assert simulation.simulate(tire, recording) == pytest.approx(expected, rel=1e-12)

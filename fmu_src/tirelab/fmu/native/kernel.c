@@ -54,8 +54,8 @@ typedef struct { double time; double interval; bool first; double deflection; do
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
-typedef struct { double v[12]; } Vector12;
 typedef struct { double v[13]; } Vector13;
+typedef struct { double v[12]; } Vector12;
 typedef struct { double v[5]; } Vector5;
 typedef struct { double a; Vector3 b; } Tuple14;
 typedef struct { double a; Vector1 b; } Tuple16;
@@ -569,6 +569,31 @@ static inline double elastic_shape_hat(double place, double number)
     return greater(1.0 - fabs(place - number), 0.0);
 }
 
+/* effects.elastic_shape.py: Multiply the force of the law by exp(c2 l^2 + c3 l^3 + h(x)). */
+static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector13 values)
+{
+    double log_ratio;
+    double bend = values.v[0], twist = values.v[1], reference = values.v[2], h1 = values.v[3], h2 = values.v[4], h3
+        = values.v[5], h4 = values.v[6], h5 = values.v[7], h6 = values.v[8], h7 = values.v[9], h8 = values.v[10], h9
+        = values.v[11], h10 = values.v[12];
+    double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
+    if (x <= 0.0 && !instant.two_sided) {
+        return (Tuple8){signal, state};
+    }
+    double exponent = 0.0;
+    if (bend != 0.0 || twist != 0.0) {
+        log_ratio = log(lesser(greater(x / reference, 0.01), 100.0));
+        exponent = log_ratio * log_ratio * (bend + twist * log_ratio);
+    }
+    double place = lesser(greater(5.0 * x / reference, 1.0), 10.0);
+    exponent += h1 * elastic_shape_hat(place, 1.0) + h2 * elastic_shape_hat(place, 2.0) + h3 *
+        elastic_shape_hat(place, 3.0) + h4 * elastic_shape_hat(place, 4.0);
+    exponent += h5 * elastic_shape_hat(place, 5.0) + h6 * elastic_shape_hat(place, 6.0) + h7 *
+        elastic_shape_hat(place, 7.0) + h8 * elastic_shape_hat(place, 8.0);
+    exponent += h9 * elastic_shape_hat(place, 9.0) + h10 * elastic_shape_hat(place, 10.0);
+    return (Tuple8){signal * exp(exponent), state};
+}
+
 /* effects.part_shape.py: Return g(x) [N] at a deflection [m]. */
 static inline double part_shape_curve(double x, Vector12 values)
 {
@@ -596,35 +621,14 @@ static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing 
 static inline double through_law(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[15] != 0.0) {
-        const Tuple8 t1 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 16));
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 16));
         signal = t1.a;
     }
+    if (p[29] != 0.0) {
+        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 30));
+        signal = t2.a;
+    }
     return signal;
-}
-
-/* effects.elastic_shape.py: Multiply the factor by exp(c2 l^2 + c3 l^3 + h(x)). */
-static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothing state, Vector13 values)
-{
-    double log_ratio;
-    double bend = values.v[0], twist = values.v[1], reference = values.v[2], h1 = values.v[3], h2 = values.v[4], h3
-        = values.v[5], h4 = values.v[6], h5 = values.v[7], h6 = values.v[8], h7 = values.v[9], h8 = values.v[10], h9
-        = values.v[11], h10 = values.v[12];
-    double x = instant.two_sided ? fabs(instant.deflection) : instant.deflection;
-    if (x <= 0.0 && !instant.two_sided) {
-        return (Tuple8){signal, state};
-    }
-    double exponent = 0.0;
-    if (bend != 0.0 || twist != 0.0) {
-        log_ratio = log(lesser(greater(x / reference, 0.01), 100.0));
-        exponent = log_ratio * log_ratio * (bend + twist * log_ratio);
-    }
-    double place = lesser(greater(5.0 * x / reference, 1.0), 10.0);
-    exponent += h1 * elastic_shape_hat(place, 1.0) + h2 * elastic_shape_hat(place, 2.0) + h3 *
-        elastic_shape_hat(place, 3.0) + h4 * elastic_shape_hat(place, 4.0);
-    exponent += h5 * elastic_shape_hat(place, 5.0) + h6 * elastic_shape_hat(place, 6.0) + h7 *
-        elastic_shape_hat(place, 7.0) + h8 * elastic_shape_hat(place, 8.0);
-    exponent += h9 * elastic_shape_hat(place, 9.0) + h10 * elastic_shape_hat(place, 10.0);
-    return (Tuple8){signal * exp(exponent), state};
 }
 
 /* effect.py: Return whether a channel was recorded: NOT_MEASURED is not equal to itself. */
@@ -732,35 +736,31 @@ static inline Tuple16 warm_up_respond(double signal, Instant instant, Vector1 st
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[28] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 29));
+    if (p[42] != 0.0) {
+        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[43], p[44], p[45]}});
         signal = t1.a;
     }
-    if (p[42] != 0.0) {
-        const Tuple8 t2 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[43], p[44], p[45]}});
+    if (p[46] != 0.0) {
+        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 47));
         signal = t2.a;
     }
-    if (p[46] != 0.0) {
-        const Tuple8 t3 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 47));
-        signal = t3.a;
-    }
     if (p[52] != 0.0) {
-        const Tuple14 t4 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
+        const Tuple14 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
             + 53));
-        signal = t4.a;
-        Vector3 after = t4.b;
+        signal = t3.a;
+        Vector3 after = t3.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
     if (p[60] != 0.0) {
-        const Tuple8 t5 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[61], p[62], p[63]}});
-        signal = t5.a;
+        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[61], p[62], p[63]}});
+        signal = t4.a;
     }
     if (p[64] != 0.0) {
-        const Tuple16 t6 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[65], p[66], p[67]}});
-        signal = t6.a;
-        Vector1 after = t6.b;
+        const Tuple16 t5 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[65], p[66], p[67]}});
+        signal = t5.a;
+        Vector1 after = t5.b;
         n[9] = after.v[0];
     }
     return signal;

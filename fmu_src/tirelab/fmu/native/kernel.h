@@ -2,7 +2,7 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "3f821348f7a12cd6" /* what stands where in p and s */
+#define LAYOUT "4530b7f272f3c103" /* what stands where in p and s */
 enum {
     PARAMETERS = 117,
     STATES = 182,
