@@ -4,7 +4,7 @@ A recording is suspected where its misfit differs from that of the others in the
 direction, deflection and speed. The others are then explained anew without it. It contradicts them if they are
 explained much better alone, and if their tire is far off it where it is driven as they are. It may be of another tire,
 pressure or zero, or have another past: another zero of a gauge or a factor on its force is named where that alone makes
-it agree.
+it agree. So may a held-out recording by which a set was refused.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from radialtire import TireModel
 from scipy.optimize import minimize_scalar
 
 from ..estimation.explanation import Explanation
-from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion
+from ..preprocessing.data_checks import compared
+from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import newtons, set_title
@@ -138,6 +139,34 @@ def contradiction_of(
         if not others.remainder.unexplained:
             break
     return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def contradiction_held_out(
+    explanation: Explanation, recordings: Sequence[Recorded], held_out: Sequence[Recorded]
+) -> Contradiction | None:
+    """Return the held-out recording by which a set was refused that would agree if one zero or factor of its own were
+    another; None where there is none.
+
+    explanation: by the refused set, fitted to `recordings`
+    """
+    every = [*recordings, *held_out]
+    motions = [motion_of(r.time, r.deflection) for r in every]
+    states, seen = _states(every, motions), compared(held_out)
+    level = float(np.sqrt(np.mean([floor.level**2 for floor in explanation.floors])))
+    for number, recording in enumerate(held_out):
+        own_number = len(recordings) + number
+        alike = _as_others(states, own_number) & seen[number]
+        if alike.mean() < NEGLIGIBLE:
+            continue
+        moved = smoothed_motion(recording, motions[own_number])
+        own = rmse([(recording.force - simulate(explanation.model.tire, recording))[alike]])
+        beyond = BEYOND_NOISE * float(np.hypot(level, explanation.model.missed(moved)))
+        if own > max(explanation.error / EXPLAINED, beyond):
+            as_if = _as_if(recording, moved, explanation.model.tire, alike, own)
+            if as_if:
+                names = explanation.model.names
+                return Contradiction((recording.name,), names, explanation.error, own, as_if)
+    return None
 
 
 DEPTHS = 24

@@ -20,6 +20,7 @@ from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_tim
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
 from .acceptance import (
+    CONSIDERED,
     HeldOut,
     Validate,
     accept,
@@ -29,7 +30,7 @@ from .acceptance import (
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of
 from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
-from .contradiction import ANEW, contradiction_of
+from .contradiction import ANEW, Contradiction, contradiction_held_out, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
@@ -111,6 +112,7 @@ def diagnose(
         data.before,
         lambda several: explain(several, lambda sentence: None, ANEW * MOST_WORK),
     )
+    contradiction = contradiction or _refused_by(candidates, accepted, fitted, kept)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
     missing = not_compared(fitted)
@@ -182,6 +184,16 @@ def _accepted(candidates: Explanation, validate: Validate) -> _Accepted:
     )
     doubted = tuple(e for name, e in considered.items() if name not in explanation.model.names)
     return _Accepted(explanation, validation, effects, doubted)
+
+
+def _refused_by(
+    candidates: Explanation, accepted: _Accepted, fitted: Sequence[Recorded], kept: Sequence[Recorded]
+) -> Contradiction | None:
+    """Return the held-out recording that refused the likeliest set, if it contradicts the fitted ones."""
+    likeliest = next((names for names in candidates.in_order(CONSIDERED) if names), ())
+    if not kept or accepted.effects or not likeliest:
+        return None
+    return contradiction_held_out(candidates.of(likeliest), fitted, kept)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

@@ -131,3 +131,25 @@ def test_its_message_says_what_to_do() -> None:
         "them apart."
     )
     assert two.to_dict()["recordings"] == ["a", "b"]
+
+
+def test_a_held_out_recording_of_another_tire_is_named_where_it_refuses_the_law() -> None:
+    """600 N/cm^B fitted and 500 held out, of a baseline of 550: a law for the first is twice as far off the second.
+
+    Against the first, the second has a sixth less force.
+    """
+    verdict = diagnose([pressed("a", 1, 600.0)], TIRE, held_out=[pressed("other", 2, 500.0)], catalogue=FEW)
+    assert verdict.effects == ()
+    found = verdict.contradiction
+    assert found is not None
+    assert (found.names, found.effects) == (("other",), ("recalibration",))
+    assert found.without == pytest.approx(NOISE, rel=0.1)
+    assert found.as_if == "It is as if the force of other were 17 % less, by another pressure or tire."
+    assert verdict.summary.startswith("Recording other contradicts the others.")
+
+
+def test_a_held_out_recording_that_no_zero_and_no_factor_reconciles_is_not_named() -> None:
+    """A correction for 3000 N s/m refused by a recording of 1000: neither a zero nor a factor makes a damper."""
+    fitted, kept = pressed("a", 1, damping=3000.0, period=2.0), pressed("b", 2, damping=1000.0, period=2.0)
+    verdict = diagnose([fitted], TIRE, held_out=[kept], catalogue=FEW)
+    assert verdict.contradiction is None
