@@ -167,19 +167,8 @@ def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
         high = math.log(high)
     low, high = (low - centre) / spread, (high - centre) / spread
     return FreeParameter(
-        name,
-        index,
-        p.name,
-        p.unit,
-        centre,
-        spread,
-        logarithm,
-        low,
-        high,
-        p.minimum,
-        p.maximum,
-        p.optional,
-        p.start,
+        *(name, index, p.name, p.unit, centre, spread, logarithm, low, high),
+        *(p.minimum, p.maximum, p.optional, p.start),
         signed=p.role == "strength" and not logarithm and centre == 0.0,
     )
 
@@ -325,8 +314,7 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
 def _heights(shape: str, kinks: Sequence[float]) -> list[float]:
     """Return the heights of a law's shape from its kinks, within their bounds."""
     last = CATALOGUE[shape].parameters[-1]
-    found: list[float] = np.clip(RAMPS @ kinks, last.minimum, last.maximum).tolist()
-    return found
+    return [min(max(float(h), last.minimum), last.maximum) for h in RAMPS @ kinks]
 
 
 DEFLECTION_HATS, SIGNED_HATS = HEIGHTS // 2 + 1, HEIGHTS // 4 + 1

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radialtire import CATALOGUE, PowerLaw, Recalibrated, TireModel
-from tirelab.estimation.problem import law_start, problem_of
+from tirelab.estimation.problem import EstimationProblem, law_start, problem_of
 from tirelab.preprocessing.noise import Noise
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of
@@ -89,19 +89,25 @@ def test_a_change_of_a_and_b_lies_in_the_span_of_the_laws_signature(dataset: Dat
     assert left_by(law_signature(dataset).columns, dataset.response(tire)) < 0.01
 
 
-def test_the_laws_signature_is_what_a_refitted_law_can_do(dataset: Dataset) -> None:
-    """Its columns are the derivatives of the delivered law by its parameters, on the axes of their priors.
+def slopes_of(problem: EstimationProblem) -> list[np.ndarray]:
+    """The derivatives of a refitted law by its parameters, on the axes of their priors.
 
-    The change of B acts on ln(x / 1 cm) there and on ln(x / x_ref) here: the rest is a change of A.
+    The change of B acts on ln(x / 1 cm) there and on ln(x / x_ref) in the signature: the rest is a change of A.
     """
-    problem = problem_of(dataset, {LAW: law_start(dataset)}, plain=False)
     origin, step = np.zeros(len(problem.parameters)), 1e-4
     slopes = [
         (problem.residual(origin) - problem.residual(origin + step * row)) / step
         for row in np.eye(origin.size)
     ]
-    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
+    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], problem.dataset.scales)
     slopes[1] = slopes[1] - EXPONENT * np.log(reference / 0.01) / FACTOR * slopes[0]
+    return slopes
+
+
+def test_the_laws_signature_is_what_a_refitted_law_can_do(dataset: Dataset) -> None:
+    """Its columns are the derivatives of the delivered law."""
+    problem = problem_of(dataset, {LAW: law_start(dataset)}, plain=False)
+    slopes = slopes_of(problem)
     signature = law_signature(dataset)
     unit = size_of(FACTOR * dataset.stacked([e.baseline for e in dataset.experiments]))
     np.testing.assert_allclose(signature.basis * unit, np.column_stack(slopes), atol=2e-3 * unit)
@@ -121,13 +127,7 @@ def test_of_a_part_it_is_a_curve_over_the_deflection_beside_its_preload() -> Non
     data = bushing()
     problem = problem_of(data, {LAW: law_start(data)}, plain=False)
     assert {p.unit for p in problem.parameters if p.label.startswith("slope change")} == {"N"}
-    origin, step = np.zeros(len(problem.parameters)), 1e-4
-    slopes = [
-        (problem.residual(origin) - problem.residual(origin + step * row)) / step
-        for row in np.eye(origin.size)
-    ]
-    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], data.scales)
-    slopes[1] = slopes[1] - EXPONENT * np.log(reference / 0.01) / FACTOR * slopes[0]
+    slopes = slopes_of(problem)
     preload = slopes[-1]
     # The curve adds nothing at no deflection: what it has there is the preload's.
     (e,) = data.experiments
