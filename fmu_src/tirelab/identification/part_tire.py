@@ -38,7 +38,7 @@ AT_REST, MOSTLY_HELD = 0.02, 0.9
 LEAST_SPRING = 1e-3
 """Least coefficient A [N/cm^B] that a tire file holds: a part without a spring, such as a damper, has this one."""
 
-MOST_SPRING = 1e6
+MOST_SPRING = PowerLaw.parameters[0].maximum
 """Largest coefficient A [N/cm^B] that a tire file holds. A is the force at 1 cm: of a specimen of concrete, or of a pad
 that is pressed by a tenth of a millimetre, far beyond all that was recorded."""
 
