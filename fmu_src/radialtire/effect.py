@@ -7,7 +7,7 @@ An effect is a pure response at one stage of the signal path from the measured d
     place "law"         force of A x^B       -> force of another law
     place "scale"       factor               -> factor on the elastic force (pressure, softening)
     place "parallel"    force                -> force with what is added beside the elastic law
-    place "inertia"     force                -> force with what accelerates
+    place "mass"        force                -> force with what accelerates
     place "reading"     force                -> measured force (lag, zero, ceiling)
 
 Effects of one place act in the order of the catalogue. At "scale" a response multiplies its signal, at "parallel" it
@@ -29,7 +29,7 @@ TRAITS = ("static", "rate", "loop", "localized", "slow", "reading", "law", "air"
 of the range only; changes with the time since the start; is of the instrument and not of the tire; is the elastic law's
 own shape; needs air that carries the load."""
 
-PLACES = ("deflection", "series", "law", "scale", "parallel", "inertia", "reading")
+PLACES = ("deflection", "series", "law", "scale", "parallel", "mass", "reading")
 
 State = tuple[float, ...]
 

@@ -4,7 +4,7 @@ The state before (s) and after (n) the step and the parameters (p) are flat rows
 copied, stored and restored by any host. Where the numbers of each effect stand says a `SignalPath`, a constant: the
 translation to C has every effect of the catalogue and skips those whose switch is 0.
 
-    deflection reading -> deflection of the tire -> elastic law -> factors -> parallel forces -> inertia
+    deflection reading -> deflection of the tire -> elastic law -> factors -> parallel forces -> masses
     -> force reading
 
 The factors act on A x^B, and on the preload of a part that air carries, for it is the force of that air. Without air
@@ -71,7 +71,7 @@ class SignalPath(NamedTuple):
     law: tuple[Stage, ...]
     scale: tuple[Stage, ...]
     parallel: tuple[Stage, ...]
-    inertia: tuple[Stage, ...]
+    mass: tuple[Stage, ...]
     reading: tuple[Stage, ...]
     track: int
     compression: int
@@ -98,8 +98,8 @@ def laid_out(
         )
     track = len(s)
     s += [0.0] * tracks
-    deflection, series, law, scale, parallel, inertia, reading = (tuple(stages[place]) for place in PLACES)
-    path = SignalPath(deflection, series, law, scale, parallel, inertia, reading, track, track + TRACK)
+    deflection, series, law, scale, parallel, mass, reading = (tuple(stages[place]) for place in PLACES)
+    path = SignalPath(deflection, series, law, scale, parallel, mass, reading, track, track + TRACK)
     return path, p, s
 
 
@@ -174,7 +174,7 @@ def step(
     force = through(path.parallel, pretension + elastic, at, p, s, n)
     if force < 0.0 and not held:
         force = 0.0
-    force = through(path.inertia, force, at, p, s, n)
+    force = through(path.mass, force, at, p, s, n)
     force = through(path.reading, force, at, p, s, n)
     n[TIME], n[DEFLECTION], n[RATE], n[ACCELERATION], n[STARTED], n[START] = (
         time,

@@ -22,7 +22,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
 
 INERTIA = Effect(
     name="inertia",
-    place="inertia",
+    place="mass",
     parameters=(
         Parameter(
             "mass",

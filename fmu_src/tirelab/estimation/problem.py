@@ -30,13 +30,13 @@ from ..regressors.dataset import Dataset, Scales, arranged
 from ..regressors.draws import at_reading, centre_and_spread
 from ..regressors.signature import (
     BEND,
+    CURVE,
     EXPONENT,
     FACTOR,
     HEIGHTS,
     KINK,
     LAW,
     MOST_SURFACES,
-    PART_SHAPE,
     PRELOAD,
     RAMPS,
     REFERENCE,
@@ -303,7 +303,7 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
             bend, twist, *kinks = shape
             twist = min(max(twist, -1.0), 1.0)
             if tire.two_sided and any(kinks):
-                effects.append((PART_SHAPE, (*span_of(dataset), *_heights(PART_SHAPE, kinks))))
+                effects.append((CURVE, (*span_of(dataset), *_heights(CURVE, kinks))))
                 kinks = [0.0] * KINKS
             if bend or twist or any(kinks):
                 reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)

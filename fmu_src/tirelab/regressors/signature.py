@@ -37,7 +37,7 @@ FloatArray = NDArray[np.float64]
 LAW = REFITTED_LAW
 """The name under which a refitted law stands in a verdict."""
 
-SHAPE, PART_SHAPE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
+SHAPE, CURVE = (name for name, effect in CATALOGUE.items() if "law" in effect.traits)
 """The effects in which a refitted law keeps its shape: bend, twist and the heights of a tire; the curve of a part."""
 
 FACTOR, EXPONENT, BEND, TWIST, KINK = 0.1, 0.07, 0.03, 0.01, 0.05
@@ -65,7 +65,7 @@ MOST_SURFACES = 8
 
 def candidates() -> tuple[str, ...]:
     """Return the names of the effects that may be missing; the law comes beside them."""
-    return tuple(name for name in CATALOGUE if name not in (SHAPE, PART_SHAPE))
+    return tuple(name for name in CATALOGUE if name not in (SHAPE, CURVE))
 
 
 def acts_on_signal(name: str) -> bool:

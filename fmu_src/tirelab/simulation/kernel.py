@@ -9,12 +9,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from radialtire.effect import Instant, State
-from radialtire.effects.deflection_offset import respond
 from radialtire.power_law import force as elastic_force
 from radialtire.power_law import two_sided as held_force
 from radialtire.tracking import acceleration, begin, follow, rate
 
 FloatArray = NDArray[np.float64]
+
+
+def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
+    """Stand for the response of an effect, which `compiled` puts in this place."""
+    return signal, state
 
 
 def respond_loop(

@@ -1,6 +1,6 @@
 """The force of a tire on a whole recording: the steps of `TireModel`, sample by sample, compiled.
 
-    measured deflection -> deflection of the tire -> elastic law -> factors -> parallel forces -> inertia -> force
+    measured deflection -> deflection of the tire -> elastic law -> factors -> parallel forces -> masses -> force
 
 `simulate` does it all. A search that tries many values calls the stages itself and keeps what lies upstream of the
 parameters it varies: `history_of` (the quantities that effects use), `respond_series` (one effect). With `signal` zero
@@ -151,7 +151,7 @@ def force_after_law(tire: TireModel, history: History, force: FloatArray, stages
 
     told = tuple((effect.name, values) for effect, values in beside)
     pressed = stages.once((told, tire.two_sided), (history, force), whole)
-    return downstream(tire, history, pressed, ("inertia", "reading"), stages)
+    return downstream(tire, history, pressed, ("mass", "reading"), stages)
 
 
 def learned_force(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> FloatArray:

@@ -202,7 +202,7 @@ def test_stages_can_be_kept_and_continued() -> None:
     motion = random_motion(8)
     history, force = elastic_stage(tire, motion)
     force = np.maximum(downstream(tire, history, force, ("parallel",)), 0.0)
-    assert np.array_equal(downstream(tire, history, force, ("inertia", "reading")), simulate(tire, motion))
+    assert np.array_equal(downstream(tire, history, force, ("mass", "reading")), simulate(tire, motion))
 
 
 @pytest.mark.parametrize(

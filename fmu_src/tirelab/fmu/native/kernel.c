@@ -1210,7 +1210,7 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
-static inline double through_inertia(double signal, Instant at, const double *p, const double *s, double *n)
+static inline double through_mass(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[103] != 0.0) {
         const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[104]}});
@@ -1525,7 +1525,7 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
     if (force < 0.0 && !held) {
         force = 0.0;
     }
-    force = through_inertia(force, at, p, s, n);
+    force = through_mass(force, at, p, s, n);
     force = through_reading(force, at, p, s, n);
     n[0] = time;
     n[1] = deflection;

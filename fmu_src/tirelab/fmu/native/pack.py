@@ -17,6 +17,8 @@ from xml.etree.ElementTree import Element, SubElement
 from bicycle_tire_fmu import BicycleTire
 from fmu_description import BASE_UNITS
 from radialtire import Flow, TireModel, flat_law, parameters_of, write_tire
+from radialtire.effect import PLACES
+from radialtire.flat_step import Stage
 from radialtire.tirefile import to_text
 
 from ...errors import TirelabError
@@ -92,7 +94,7 @@ def build_native_fmu(tire: TireModel, folder: Path, *, fmi: int = 2) -> NativeFm
 def continuous_states(tire: TireModel) -> list[ContinuousState]:
     """Return the states that a solver integrates in Model Exchange."""
     _, path, _, _ = kernel.universal()
-    stages = [*path.deflection, *path.series, *path.scale, *path.parallel, *path.inertia, *path.reading]
+    stages: list[Stage] = [stage for place in PLACES for stage in getattr(path, place)]
     found = []
     for effect, _ in tire.effects:
         flow: Flow | None = effect.flow
