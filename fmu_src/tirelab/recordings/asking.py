@@ -221,6 +221,12 @@ def rises(values: FloatArray) -> bool:
     return bool(steps.min() > 0.0) and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
 
 
+def _is_index(headers: Sequence[Header], index: int, values: FloatArray) -> bool:
+    """Whether a column without a name among named ones counts the rows, as a data frame that was written does."""
+    nameless = [header.text == f"#{i + 1}" for i, header in enumerate(headers)]
+    return nameless[index] and not all(nameless) and bool(np.all(np.diff(values) == 1.0))
+
+
 def may_count_time(header: Header) -> bool:
     """Whether a column may be a clock by what it states: it is no counter, and has no unit of anything else."""
     if counts_rows(header.name):
@@ -272,6 +278,7 @@ def _guessed_columns(
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
+    free = [i for i in free if not _is_index(headers, i, values[i])]
     free = [i for i in free if not is_strained(headers[i].name) or _states(headers[i], "deflection")]
     guessed: dict[str, int] = {}
     if "time" in missing:

@@ -70,6 +70,14 @@ def test_a_strain_that_is_a_length_may_be_the_deflection(tmp_path: Path) -> None
     assert proposed(path) == ["--columns", "deflection=#2"]
 
 
+def test_the_index_of_a_data_frame_is_no_deflection(tmp_path: Path) -> None:
+    """A gripper that closes on a fruit: the first column is the index that pandas writes, without a name."""
+    time, deflection, force = loading()
+    rows = (np.arange(float(len(time))), time, force, 2.0 + deflection)
+    path = write_rows(tmp_path / "a.csv", ",Time (s),Force (N),Finger", *rows)
+    assert proposed(path) == ["--columns", "deflection=#4", "--units", "deflection=mm"]
+
+
 AXES = "disp_x_mm,disp_y_mm,disp_z_mm,Rx_deg,Ry_deg,Rz_deg,Fx_N,Fy_N,Fz_N"
 
 
