@@ -42,7 +42,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("standard travel", "standard extension"),
         *("spostamento", "corsa", "deformazione", "schiacciamento", "freccia"),
         *("deslocamento", "deformacao", "verplaatsing", "indrukking"),
-        *("compressive displacement", "compressive extension", "extension", "position"),
+        *("compressive displacement", "compressive extension", "extension", "position", "pos"),
         *("machine extension", "disp", "displ", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
         *("linear pot", "linear potentiometer", "potentiometer"),
         *(

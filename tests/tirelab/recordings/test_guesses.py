@@ -76,6 +76,8 @@ def test_the_index_of_a_data_frame_is_no_deflection(tmp_path: Path) -> None:
     rows = (np.arange(float(len(time))), time, force, 2.0 + deflection)
     path = write_rows(tmp_path / "a.csv", ",Time (s),Force (N),Finger", *rows)
     assert proposed(path) == ["--columns", "deflection=#4", "--units", "deflection=mm"]
+    path = write_rows(tmp_path / "b.csv", ",Time (s),Force (N),Pos", *rows)
+    assert proposed(path) == ["--units", "deflection=mm"]
 
 
 AXES = "disp_x_mm,disp_y_mm,disp_z_mm,Rx_deg,Ry_deg,Rz_deg,Fx_N,Fy_N,Fz_N"
