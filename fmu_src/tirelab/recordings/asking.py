@@ -274,7 +274,7 @@ def _guessed_columns(
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz; of two columns without, the one that a drive moves evenly is the deflection, else
-    the smaller. A counter, a strain and a stress are neither.
+    the smaller. A counter, a strain and a stress are neither, nor is what was sampled another number of times.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -288,6 +288,9 @@ def _guessed_columns(
         if clocks:
             guessed["time"] = clocks[0]
             free = [i for i in free if i != clocks[0]]
+    known = [*guessed.values(), *(index for index in taken if index in values)]
+    if known:
+        free = [i for i in free if len(values[i]) == len(values[known[0]])]
     for name in ("deflection", "force"):
         fits = [i for i in free if _states(headers[i], name)]
         axes = {_axis(headers[matches[other].index]) for other in ("deflection", "force") if other in matches}

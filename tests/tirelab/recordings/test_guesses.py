@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 from house_form import loading, write_rows
 from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.choices import Choices
@@ -78,6 +79,14 @@ def test_the_index_of_a_data_frame_is_no_deflection(tmp_path: Path) -> None:
     assert proposed(path) == ["--columns", "deflection=#4", "--units", "deflection=mm"]
     path = write_rows(tmp_path / "b.csv", ",Time (s),Force (N),Pos", *rows)
     assert proposed(path) == ["--units", "deflection=mm"]
+
+
+def test_what_was_sampled_another_number_of_times_is_not_guessed(tmp_path: Path) -> None:
+    """A dynamometer: beside its readings a file holds what they should be, at other angles."""
+    time, deflection, force = loading()
+    run = {"time": time, "angle": deflection, "torque": force}
+    scipy.io.savemat(tmp_path / "a.mat", {"asked": force[::2], "run": run})
+    assert proposed(tmp_path / "a.mat")[1] == "time=#2,deflection=#3,force=#4"
 
 
 AXES = "disp_x_mm,disp_y_mm,disp_z_mm,Rx_deg,Ry_deg,Rz_deg,Fx_N,Fy_N,Fz_N"
