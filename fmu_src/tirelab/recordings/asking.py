@@ -273,8 +273,9 @@ def _guessed_columns(
     of their name ("forc"), else by their size.
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
-    other channel, disp_z beside Fz; of two columns without, the one that a drive moves evenly is the deflection, else
-    the smaller. A counter, a strain and a stress are neither, nor is what was sampled another number of times.
+    other channel, disp_z beside Fz, or of several the one that stands nearest to the other channel; of two columns
+    without, the one that a drive moves evenly is the deflection, else the smaller. A counter, a strain and a stress are
+    neither, nor is what was sampled another number of times.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -298,12 +299,17 @@ def _guessed_columns(
         if name in missing and len(fits) == 1:
             guessed[name] = fits[0]
             free.remove(fits[0])
+    stating = {name: [i for i in free if _states(headers[i], name)] for name in ("deflection", "force")}
     free = [i for i in free if headers[i].unit is None and not counts_rows(headers[i].name)]
     for name in ("deflection", "force"):
         alike = [i for i in free if begins_like(headers[i].text, name)]
         if name in missing and name not in guessed and len(alike) == 1:
             guessed[name] = alike[0]
             free.remove(alike[0])
+    for name, other in (("deflection", "force"), ("force", "deflection")):
+        if name in missing and name not in guessed and other in matches and len(stating[name]) > 1:
+            beside = matches[other].index
+            guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     if len(free) >= len(both):
         # Of many columns the first ones: of trials side by side those of one trial.

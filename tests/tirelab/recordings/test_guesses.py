@@ -81,6 +81,16 @@ def test_the_index_of_a_data_frame_is_no_deflection(tmp_path: Path) -> None:
     assert proposed(path) == ["--units", "deflection=mm"]
 
 
+def test_of_several_columns_in_millimetres_the_one_beside_the_force_is_the_deflection(tmp_path: Path) -> None:
+    """A switch pressed: its raw readings, and beside them the same worked out and sorted by the way."""
+    time, deflection, force = loading()
+    header = "t (s),Raw X (mm),Raw Force (N),Pressed,Corrected X (mm),Corrected force (N)"
+    path = write_rows(tmp_path / "a.csv", header, time, deflection, force, 0.0 * time, deflection, force)
+    with pytest.raises(IncompleteRecording) as caught:
+        understand(path, Choices(columns={"force": "#3"}, part=True))
+    assert caught.value.words() == ["--columns", "force=#3,deflection=#2"]
+
+
 def test_what_was_sampled_another_number_of_times_is_not_guessed(tmp_path: Path) -> None:
     """A dynamometer: beside its readings a file holds what they should be, at other angles."""
     time, deflection, force = loading()
