@@ -131,7 +131,14 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             1e-12,
             10.0,
             "breakaway distance: deflection over which the friction changes sign",
-            prior=Prior("log", 0.05, math.log(3), "travel"),
+            prior=Prior(
+                "log",
+                0.05,
+                math.log(8),
+                "travel",
+                "from 2 to 5 um between metals (B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30 "
+                "(1994) 1083), 1e-4 of a travel at three standard deviations, to millimetres in a casing",
+            ),
         ),
         Parameter(
             "memory",

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Effect, TireModel
+from scipy.interpolate import BSpline
 
 from ..names import REFITTED_LAW
 from ..simulation.simulate import UPSTREAM, preload_of
@@ -51,7 +52,7 @@ HEIGHTS = sum(p.name.startswith("height") for p in CATALOGUE[SHAPE].parameters)
 """Number of heights in the shape of a refitted law."""
 
 RAMPS = np.clip(np.subtract.outer(np.arange(HEIGHTS), np.arange(HEIGHTS - 1)), 0, None) / (HEIGHTS - 1.0)
-"""The heights (rows) that follow from a kink of size 1 at each height but the last (columns)."""
+"""The heights (rows) that follow from a kink of size 1 at each height but the last (columns); of a part the forces."""
 
 REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
 """Index of the reference deflection among the parameters of the shape."""
@@ -73,9 +74,10 @@ def acts_on_signal(name: str) -> bool:
     return name != LAW and CATALOGUE[name].place in (*UPSTREAM, "law", "scale", "reading")
 
 
-def form_error(name: str) -> float:
-    """Return the declared form error of an effect or of the law."""
-    return CATALOGUE[SHAPE if name == LAW else name].form_error
+def form_error(name: str, tire: TireModel | None = None) -> float:
+    """Return the declared form error of an effect, or of the refitted law of a tire or a part."""
+    law = CURVE if tire is not None and tire.two_sided else SHAPE
+    return CATALOGUE[law if name == LAW else name].form_error
 
 
 def kink_spread(dataset: Dataset) -> float:
@@ -112,6 +114,12 @@ def gap_spread(dataset: Dataset) -> float:
     return centre_and_spread(gap[0].parameters[0], dataset.scales)[1] if gap else 0.0
 
 
+def _spline(x: FloatArray, span: tuple[float, float], forces: FloatArray) -> FloatArray:
+    """Return the curve of a part along its forces, at deflections (m,) within the span."""
+    step = (span[1] - span[0]) / (HEIGHTS - 3.0)
+    return np.asarray(BSpline(span[0] + step * np.arange(-3.0, HEIGHTS + 1.0), forces, 3)(x))
+
+
 def law_signature(dataset: Dataset) -> Signature:
     """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload or gap where
     that is more.
@@ -125,11 +133,12 @@ def law_signature(dataset: Dataset) -> Signature:
     way = np.log(np.maximum((np.abs(x) if tire.two_sided else x) / reference, LEAST_RATIO))
     changes = [FACTOR + 0.0 * way, EXPONENT * way]
     columns = [force * part for part in (*changes, BEND * way**2, TWIST * way**3)]
-    places = np.linspace(*span_of(dataset), HEIGHTS)
-    if not tire.two_sided:
+    if tire.two_sided:
+        one = dataset.stacked([np.full(e.time.size, kink_spread(dataset)) for e in dataset.experiments])
+        columns += [one * _spline(x, span_of(dataset), forces) for forces in RAMPS.T]
+    else:
         places = 2.0 * reference * np.arange(1, HEIGHTS + 1) / HEIGHTS
-    bent = dataset.stacked([np.ones(e.time.size) for e in dataset.experiments]) if tire.two_sided else force
-    columns += [bent * kink_spread(dataset) * np.interp(x, places, heights) for heights in RAMPS.T]
+        columns += [force * kink_spread(dataset) * np.interp(x, places, heights) for heights in RAMPS.T]
     if len(dataset.radii) > 1:
         shapes = [np.sqrt(0.5) * force * part for part in changes]
         columns[: len(shapes)] = shapes

@@ -1,4 +1,4 @@
-"""A part's force that no power of the deflection follows: straight lines between forces, nothing at no deflection."""
+"""A part's force that no power of the deflection follows: a cubic spline along forces, nothing at no deflection."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from driving import drive, values_of
+from numpy.typing import NDArray
 from radialtire import CATALOGUE, PowerLaw, TireModel
+from scipy.interpolate import BSpline
 
 LAW = PowerLaw(200.0, 1.3)
 FORCES = np.random.default_rng(5).uniform(-80.0, 80.0, 10)
 
 
-def part(lowest: float, highest: float) -> TireModel:
-    values = {f"force_{i + 1}": float(force) for i, force in enumerate(FORCES)}
+def part(lowest: float, highest: float, forces: NDArray[np.float64] = FORCES) -> TireModel:
+    values = {f"force_{i + 1}": float(force) for i, force in enumerate(forces)}
     effect = CATALOGUE["part_shape"]
     shape = values_of(effect, lowest=lowest, highest=highest, **values)
     return TireModel(LAW, ((effect, shape),), two_sided=True, preload=30.0, inflated=False)
@@ -27,13 +29,17 @@ def added(tire: TireModel, x: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("lowest", "highest"), [(-0.006, 0.018), (0.0, 0.02), (0.004, 0.012)])
-def test_between_the_forces_are_straight_lines_and_beyond_them_the_last_one(
-    lowest: float, highest: float
-) -> None:
+def test_the_curve_is_a_cubic_spline_and_constant_beyond_its_ends(lowest: float, highest: float) -> None:
     x = np.linspace(-0.01, 0.025, 701)
-    curve = np.interp(x, np.linspace(lowest, highest, 10), FORCES)
-    at_zero = np.interp(0.0, np.linspace(lowest, highest, 10), FORCES)
+    spline = BSpline(lowest + (highest - lowest) / 7.0 * np.arange(-3.0, 11.0), FORCES, 3)
+    curve, at_zero = (spline(np.clip(where, lowest, highest)) for where in (x, 0.0))
     np.testing.assert_allclose(added(part(lowest, highest), x), curve - at_zero, atol=1e-9)
+
+
+def test_forces_on_a_line_make_a_line() -> None:
+    x = np.linspace(-0.005, 0.015, 41)
+    line = part(-0.005, 0.015, 30.0 * np.arange(10.0))
+    np.testing.assert_allclose(added(line, x), 30.0 * 7.0 * x / 0.02, atol=1e-9)
 
 
 def test_with_no_deflection_there_is_the_preload_alone() -> None:

@@ -594,18 +594,27 @@ static inline Tuple8 elastic_shape_respond(double signal, Instant instant, Nothi
     return (Tuple8){signal * exp(exponent), state};
 }
 
+/* effects.part_shape.py: Return the cubic B-spline b of unit spacing at a distance from its middle: 2/3 there, 0
+   from 2 on. */
+static inline double part_shape_bump(double distance)
+{
+    double far = greater(2.0 - fabs(distance), 0.0);
+    double near = greater(1.0 - fabs(distance), 0.0);
+    return (far * far * far - 4.0 * near * near * near) / 6.0;
+}
+
 /* effects.part_shape.py: Return g(x) [N] at a deflection [m]. */
 static inline double part_shape_curve(double x, Vector12 values)
 {
     double lowest = values.v[0], highest = values.v[1], g1 = values.v[2], g2 = values.v[3], g3 = values.v[4], g4 =
         values.v[5], g5 = values.v[6], g6 = values.v[7], g7 = values.v[8], g8 = values.v[9], g9 = values.v[10], g10
         = values.v[11];
-    double place = lesser(greater(1.0 + 9.0 * (x - lowest) / greater(highest - lowest, 1e-300), 1.0), 10.0);
-    double force = g1 * elastic_shape_hat(place, 1.0) + g2 * elastic_shape_hat(place, 2.0) + g3 *
-        elastic_shape_hat(place, 3.0) + g4 * elastic_shape_hat(place, 4.0);
-    force += g5 * elastic_shape_hat(place, 5.0) + g6 * elastic_shape_hat(place, 6.0) + g7 * elastic_shape_hat(place,
-        7.0) + g8 * elastic_shape_hat(place, 8.0);
-    return force + g9 * elastic_shape_hat(place, 9.0) + g10 * elastic_shape_hat(place, 10.0);
+    double place = 2.0 + lesser(greater(7.0 * (x - lowest) / greater(highest - lowest, 1e-300), 0.0), 7.0);
+    double force = g1 * part_shape_bump(place - 1.0) + g2 * part_shape_bump(place - 2.0) + g3 *
+        part_shape_bump(place - 3.0) + g4 * part_shape_bump(place - 4.0);
+    force += g5 * part_shape_bump(place - 5.0) + g6 * part_shape_bump(place - 6.0) + g7 * part_shape_bump(place -
+        7.0) + g8 * part_shape_bump(place - 8.0);
+    return force + g9 * part_shape_bump(place - 9.0) + g10 * part_shape_bump(place - 10.0);
 }
 
 /* effects.part_shape.py: Add g(x) - g(0) to the elastic force [N]. */
