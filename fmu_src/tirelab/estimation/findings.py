@@ -343,7 +343,9 @@ class FittedModel:
         """Return the root mean square [N] of the form errors of its effects on a motion."""
         values, dataset, whole = self.fit.values, self.fit.problem.dataset, simulate(self.tire, motion)
         without = {n: tire_of(dataset, {m: v for m, v in values.items() if m != n}) for n in values}
-        return math.hypot(*(form_error(n) * size_of(whole - simulate(t, motion)) for n, t in without.items()))
+        return math.hypot(
+            *(form_error(n, dataset.tire) * size_of(whole - simulate(t, motion)) for n, t in without.items())
+        )
 
 
 @dataclass(frozen=True)

@@ -15,16 +15,16 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..regressors.dataset import Dataset
-from ..regressors.signature import form_error, size_of
+from ..regressors.signature import LAW, form_error, size_of
 from ..selection.search import PRIOR_ODDS, Discrepancy
 from .minimise import Iterate, Objective, initial_iterate, minimise
-from .problem import EstimationProblem, Values, form_errors, problem_of, smooth_functions
+from .problem import EstimationProblem, Values, form_errors, law_start, problem_of, smooth_functions
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]
 
 
-LAW_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+LAW_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)
 """Scales of a group of the law's parameters that are tried (type II)."""
 
 PASSES = 2
@@ -56,6 +56,7 @@ class Linearised:
 @dataclass(frozen=True)
 class LaplaceEvidence:
     """log_likelihood: marginal; variance: V of the discrepancy; scales: of the form errors of each effect
+    law_scales: those of the groups of the law's parameters, by their numbers
     beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them.
     """
 
@@ -63,13 +64,14 @@ class LaplaceEvidence:
     variance: float
     scales: FloatArray
     beyond_forms: FloatArray
+    law_scales: Mapping[int, float]
 
 
 def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEvidence:
     """Return the evidence of a fit."""
     power = float(fit.residual @ fit.residual)
     gram = fit.slopes.T @ fit.slopes
-    width = fit.widths
+    width, law_scales = fit.widths, dict[int, float]()
     best = _parameter_evidence(power, gram, fit.positions, width, discrepancy)
     for _ in range(PASSES if fit.groups.any() else 0):
         for group in np.unique(fit.groups[fit.groups > 0]):
@@ -78,11 +80,12 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
                 value = _parameter_evidence(power, gram, fit.positions, trial, discrepancy)
                 if value[0] > best[0]:
                     best, width = value, trial
+                    law_scales[int(group)] = scale
     cost = _cost_of_scales(fit.widths)
     if not fit.forms:
-        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual)
+        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual, law_scales)
     found = _evidence_with_forms(fit, width, discrepancy)
-    return replace(found, log_likelihood=found.log_likelihood - cost)
+    return replace(found, log_likelihood=found.log_likelihood - cost, law_scales=law_scales)
 
 
 def _cost_of_scales(scales: FloatArray) -> float:
@@ -140,7 +143,7 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
         )
     likelihood, scales, index, coefficients = best
     beyond_forms = fit.residual - columns @ coefficients
-    return LaplaceEvidence(likelihood, float(variances[index]), scales, beyond_forms)
+    return LaplaceEvidence(likelihood, float(variances[index]), scales, beyond_forms, {})
 
 
 def _linear_gain(
@@ -165,10 +168,11 @@ def _linear_gain(
 
 
 LAW_LOOSE = 3.0
-"""Scale of the law's prior during the fit; afterwards the evidence finds the scale."""
+"""Least scale of the law's prior during the fit; the evidence finds the scale, and where it is more the fit is repeated
+with it."""
 
 REWEIGHTINGS = 4
-"""Number of times that a fit is repeated with the V found by the last one."""
+"""Number of times that a fit is repeated with the V and the scales of the law found by the last one."""
 
 OPTIONAL_GAIN = 60.0
 """Largest gain in log likelihood expected from optional parameters."""
@@ -188,6 +192,7 @@ class Fit:
     beyond_forms: sum of squares that form errors and refitted parameters leave
     sizes: root mean square of the response that each effect adds to the others, by its name
     evaluations: simulations of all dataset's blocks that it took, from all its starts
+    law_scales: of the groups of the law's parameters, where not that of their priors
     held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
     """
 
@@ -202,6 +207,7 @@ class Fit:
     beyond_forms: float
     sizes: Mapping[str, float]
     evaluations: int
+    law_scales: Mapping[int, float] = field(default_factory=dict)
     held_out_residual: FloatArray = field(default_factory=lambda: np.zeros(0))
     log_predictive: float = 0.0
 
@@ -244,7 +250,8 @@ class Fit:
     @property
     def form_error(self) -> float:
         """Root mean square of the form errors of all its effects, in units of the noise."""
-        return math.sqrt(sum((form_error(name) * size) ** 2 for name, size in self.sizes.items()))
+        tire = self.problem.dataset.tire
+        return math.sqrt(sum((form_error(name, tire) * size) ** 2 for name, size in self.sizes.items()))
 
     def with_discrepancy(self, discrepancy: Discrepancy) -> Fit:
         """Return the fit with its evidence under another discrepancy."""
@@ -255,6 +262,7 @@ class Fit:
             variance=evidence.variance,
             scales=evidence.scales,
             beyond_forms=float(evidence.beyond_forms @ evidence.beyond_forms),
+            law_scales=evidence.law_scales,
         )
 
 
@@ -263,6 +271,8 @@ def fitted(
 ) -> Fit:
     """Return a set fitted from several starts: first without the optional parameters, then the best of these with them.
 
+    The believed law of a part may be far from its own, as that of a tire is not: it is fitted with the usual V too, as
+    if nothing were left.
     variance: V at the start; the fit is repeated where it leads to another one; wanted: a log likelihood: a fit that is
     further below it than optional parameters may gain is not refined
     """
@@ -272,14 +282,16 @@ def fitted(
     has_optional = len(whole.parameters) > len(best.problem.parameters)
     if has_optional and best.log_likelihood >= wanted - OPTIONAL_GAIN:
         tried.append(_optimise(whole, best.values, discrepancy, best.variance))
-        best = max((best, tried[-1]), key=lambda f: f.log_likelihood)
+        if LAW in best.values and dataset.tire.two_sided:
+            anew = {**best.values, LAW: law_start(dataset)}
+            tried.append(_optimise(whole, anew, discrepancy, discrepancy.usual))
+        best = max((best, *tried[len(starts) :]), key=lambda f: f.log_likelihood)
     return replace(best, evaluations=sum(f.evaluations for f in tried))
 
 
 def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
-    loose = np.where(problem.groups > 0, LAW_LOOSE, 1.0)
     positions = problem.positions(start, off_bounds=True)
-    width = loose * problem.widths(positions)
+    width = _loose(problem, {}) * problem.widths(positions)
     objective = Objective(problem.residual, problem.low, problem.high, width, variance)
     found = initial_iterate(objective, positions)
     best: Fit | None = None
@@ -288,12 +300,18 @@ def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepanc
         fit = _with_evidence(problem, found, discrepancy)
         if best is None or fit.log_likelihood > best.log_likelihood:
             best = fit
-        width = loose * problem.widths(found.positions)
+        width = _loose(problem, fit.law_scales) * problem.widths(found.positions)
         if 0.7 < fit.variance / objective.variance < 1.5 and np.allclose(width, objective.width, rtol=0.5):
             break
         objective = replace(objective, variance=fit.variance, width=width)
     assert best is not None
     return best
+
+
+def _loose(problem: EstimationProblem, law_scales: Mapping[int, float]) -> FloatArray:
+    """Return the scales (k,) of the priors during a fit: those of the law found so far, LAW_LOOSE at least."""
+    known = [max(law_scales.get(int(group), 0.0), LAW_LOOSE) if group else 1.0 for group in problem.groups]
+    return np.array(known)
 
 
 def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Discrepancy) -> Fit:
@@ -306,7 +324,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         found.positions[~held],
         # Most of a fit's memory: seven digits are enough for what is known to one.
         tuple(f.astype(np.float32) for f in forms.values()),
-        tuple(form_error(name) for name in forms),
+        tuple(form_error(name, problem.dataset.tire) for name in forms),
         problem.groups[~held],
         problem.widths(found.positions)[~held],
     )

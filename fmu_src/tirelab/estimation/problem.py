@@ -354,7 +354,7 @@ def form_errors(
     curves (m,): response that each effect adds to the others
     """
     return {
-        name: form_error(name) * size_of(curve) * _of_law(dataset)
+        name: form_error(name, dataset.tire) * size_of(curve) * _of_law(dataset)
         if name == LAW
         else form_error(name) * curve[:, None] * functions
         for name, curve in curves.items()
