@@ -11,18 +11,23 @@ leaves on the same readings, over the size of the effect:
 0.001 at least, to which a calibrated force repeats (ISO 376, class 0.5). A draw counts where its readings show the
 motion: where a corner or the gauge hides rate or acceleration, the true tire itself leaves more than the noise.
 `Effect.form_error` states it, rounded to two digits.
+
+The rig has no parts. The refitted law of a part is fitted to closed forms of elastic laws (`concealed.part_laws`),
+where the believed one is a straight line of a stiffness up to a fifth off.
 """
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 import numpy as np
-from radialtire import TireModel, read_tire
+from concealed.part_laws import drawn_part_law
+from radialtire import PowerLaw, TireModel, read_tire
 
 from ..computing.workers import Cores, work
 from ..diagnosis.acceptance import noise_free_residual
@@ -30,11 +35,15 @@ from ..estimation.explanation import explain_misfit
 from ..names import REFITTED_LAW
 from ..preprocessing.motion import motion_of
 from ..recordings.recording import Recording, read_recording
+from ..regressors.signature import CURVE
 from .commitment import draw_and_commit
 from .folders import Folders, read_json
 
 REPEATS = 0.001
 """Part of a force to which its reading repeats."""
+
+LOUD, COUNT = (30.0, 1000.0), 4000
+"""Sizes over the noise of what a part's law is off, and the number of its samples."""
 
 HIDDEN = 2.0
 """A motion is hidden where the true tire leaves this much more power on the readings than on the motion itself."""
@@ -66,6 +75,27 @@ def form_error_of(folder: Path, seed: int, number: int, only: str | None) -> dic
     return {"name": name, "error": float(np.sqrt(max(left - read_floor, 0.0) / (before - floor)))}
 
 
+def form_error_of_part(seed: int, number: int) -> dict[str, Any]:
+    """Return the name of the effect that holds a part's refitted law, and its form error on one law."""
+    rng = np.random.default_rng([seed, number])
+    law, loudness = drawn_part_law(rng), float(np.exp(rng.uniform(*np.log(LOUD))))
+    time = np.arange(COUNT) / 200.0
+    over_stroke = np.where(
+        time < 10.0, np.sin(2.0 * np.pi * 0.3 * time), 1.0 - 2.0 * np.abs(1.0 - (0.6 * time + 0.5) % 2.0)
+    )
+    force = 1000.0 * law(over_stroke)
+    stiffness, preload = np.polyfit(over_stroke, force, 1)
+    believed = stiffness * float(np.exp(rng.uniform(-0.2, 0.2)))
+    tire = TireModel(PowerLaw(believed, 1.0), two_sided=True, preload=float(preload), inflated=False)
+    before = float(np.sqrt(np.mean((force - preload - believed * over_stroke) ** 2)))
+    noise = before / loudness
+    noisy = force + noise * rng.standard_normal(COUNT)
+    recording = Recording("part", time, 0.01 * over_stroke, np.full(COUNT, np.inf), noisy)
+    found = explain_misfit([recording], tire, [REFITTED_LAW], lambda stage: None).of([REFITTED_LAW])
+    left = _left(found.model.tire, replace(recording, force=force))
+    return {"name": CURVE, "error": left / before}
+
+
 def _left(tire: TireModel, recording: Recording) -> float:
     """Return what a tire leaves of a recording whose whole motion is known [N]: a tracker's errors are not a form's."""
     residual = noise_free_residual(tire, recording, motion_of(recording.time, recording.deflection))
@@ -89,11 +119,16 @@ def main(seed: int, draws: int, only: str | None) -> None:
     errors: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as name:
         tasks = {str(n): (Path(name), seed, n, only) for n in range(draws)}
-        for done in work(form_error_of, tasks, Cores(), "measuring forms"):
-            if done.value is None:
-                click.echo(f"draw {done.key} failed: {done.error}")
-            elif done.value:
-                errors.setdefault(done.value["name"], []).append(done.value["error"])
+        of_parts = {str(n): (seed, n) for n in range(draws)} if only in (None, CURVE) else {}
+        for what, numbers in (
+            (form_error_of, {} if only == CURVE else tasks),
+            (form_error_of_part, of_parts),
+        ):
+            for done in work(what, numbers, Cores(), "measuring forms"):
+                if done.value is None:
+                    click.echo(f"draw {done.key} failed: {done.error}")
+                elif done.value:
+                    errors.setdefault(done.value["name"], []).append(done.value["error"])
     for effect, error in form_errors_of(errors).items():
         own = np.array(errors[effect])
         title = "the refitted law" if effect == REFITTED_LAW else effect
