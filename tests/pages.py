@@ -48,6 +48,7 @@ SMALLER = {
     "python tests/benchmarks/bench_cases.py --seed 11": "nothing_on_a_press",
     "python -m tirelab.validation.form_errors --seed 1": "--draws 12",
     "python -m tirelab.validation.form_errors --seed 1 --draws 400 --only mullins_softening": "--draws 12",
+    "python -m tirelab.validation.form_errors --seed 1 --draws 100 --only part_shape": "--draws 3",
     "python -m tirelab.validation.plans --seed 20261122 --trials 12 --out FILE": "--trials 1",
     "python tests/sensitivity.py --seed 701408733 --trials 200 --each 6": "--trials 1 --each 1 "
     "--only selection/search.PRIOR_ODDS --out FILE",
