@@ -73,7 +73,7 @@ class FirstSets:
     def begun(self, quiet: Dataset) -> FittedSets:
         """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""
         signatures = tuple(in_other_noise(s, self.dataset, quiet) for s in self.signatures)
-        rough = discrepancy_of(quiet.misfit, usual_form_error())
+        rough = discrepancy_of(quiet.misfit, usual_form_error(quiet.tire))
         equations = normal_equations([s for s in signatures if not s.silent], quiet.misfit)
         likely = search(equations, rough).starts(BEGUN)
         starts = [(e.variance, parts_of(e, equations, rough)) for e in likely]

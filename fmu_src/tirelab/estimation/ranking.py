@@ -63,7 +63,7 @@ def held_out_of(recordings: Sequence[Recorded], baseline: TireModel) -> HeldOutR
     if not recordings:
         return None
     dataset = dataset_of(recordings, baseline)
-    law = discrepancy_of(dataset.misfit, usual_form_error()).blurred(dataset.rounding_error)
+    law = discrepancy_of(dataset.misfit, usual_form_error(baseline)).blurred(dataset.rounding_error)
     motions = samples_of([getattr(r, "whole", r) for r in recordings], baseline).motions
     return HeldOutRecordings(tuple(recordings), motions, dataset, law)
 

@@ -31,11 +31,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE
+from radialtire import TireModel
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import minimize
 
-from ..regressors.signature import Signature
+from ..regressors.signature import LAW, Signature, candidates, form_error
 
 FloatArray = NDArray[np.float64]
 
@@ -139,9 +139,11 @@ def discrepancy_of(misfit: FloatArray, missed: float) -> Discrepancy:
     return replace(law, usual=usual, highest=max(2.0 * power / law.effective, 2.0 * usual))
 
 
-def usual_form_error() -> float:
-    """Return the root mean square of all form errors: the usual one of a set before its effects are known."""
-    return float(np.sqrt(np.mean([effect.form_error**2 for effect in CATALOGUE.values()])))
+def usual_form_error(tire: TireModel) -> float:
+    """Return the root mean square of all form errors of what may be missing of a tire: the usual one of a set before
+    its effects are known.
+    """
+    return float(np.sqrt(np.mean([form_error(name, tire) ** 2 for name in (LAW, *candidates())])))
 
 
 SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)

@@ -29,7 +29,7 @@ import numpy as np
 from concealed.part_laws import drawn_part_law
 from radialtire import PowerLaw, TireModel, read_tire
 
-from ..computing.workers import Cores, work
+from ..computing.workers import Cores, Done, work
 from ..diagnosis.acceptance import noise_free_residual
 from ..estimation.explanation import explain_misfit
 from ..names import REFITTED_LAW
@@ -118,17 +118,18 @@ def main(seed: int, draws: int, only: str | None) -> None:
     """Print the form error of every effect that was drawn alone, and from how many draws."""
     errors: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as name:
-        tasks = {str(n): (Path(name), seed, n, only) for n in range(draws)}
-        of_parts = {str(n): (seed, n) for n in range(draws)} if only in (None, CURVE) else {}
-        for what, numbers in (
-            (form_error_of, {} if only == CURVE else tasks),
-            (form_error_of_part, of_parts),
-        ):
-            for done in work(what, numbers, Cores(), "measuring forms"):
-                if done.value is None:
-                    click.echo(f"draw {done.key} failed: {done.error}")
-                elif done.value:
-                    errors.setdefault(done.value["name"], []).append(done.value["error"])
+        found: list[Done[dict[str, Any]]] = []
+        if only != CURVE:
+            tasks = {str(n): (Path(name), seed, n, only) for n in range(draws)}
+            found += work(form_error_of, tasks, Cores(), "measuring forms")
+        if only in (None, CURVE):
+            parts = {str(n): (seed, n) for n in range(draws)}
+            found += work(form_error_of_part, parts, Cores(), "measuring the law of parts")
+    for done in found:
+        if done.value is None:
+            click.echo(f"draw {done.key} failed: {done.error}")
+        elif done.value:
+            errors.setdefault(done.value["name"], []).append(done.value["error"])
     for effect, error in form_errors_of(errors).items():
         own = np.array(errors[effect])
         title = "the refitted law" if effect == REFITTED_LAW else effect

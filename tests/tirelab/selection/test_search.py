@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from radialtire import CATALOGUE
+from radialtire import CATALOGUE, TireModel
 from scipy.optimize import minimize_scalar
 from scipy.stats import multivariate_normal, norm
 from tirelab.regressors.signature import Signature
@@ -86,7 +86,7 @@ def test_what_the_reading_adds_is_added_to_exact_forms_too() -> None:
 
 def test_the_usual_error_lies_between_the_least_and_the_largest_declared() -> None:
     declared = [effect.form_error for effect in CATALOGUE.values()]
-    assert min(declared) < usual_form_error() < max(declared)
+    assert min(declared) < usual_form_error(TireModel()) < max(declared)
 
 
 ROWS = 30

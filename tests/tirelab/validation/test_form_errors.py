@@ -26,7 +26,7 @@ def test_every_effect_declares_a_form_error_between_a_hundredth_of_a_percent_and
 
 
 def test_a_law_of_a_part_is_followed_however_far_it_is_from_the_believed_one() -> None:
-    """An exponential spring, 97 times stiffer at one end than at the other and a hundred times the noise: its fit
+    """An exponential spring, 79 times stiffer at one end than at the other, its misfit 97 times the noise: its fit
     ended at 0.79 of the misfit where it was begun with all of it left.
     """
     found = form_error_of_part(1, 10)
