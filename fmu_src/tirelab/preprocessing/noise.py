@@ -108,8 +108,8 @@ def noise_of(
     interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2]: motion at the samples, each (n,)
     """
     levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
-    signals = deflection, rate, acceleration
-    found = _noise_at_plateau(levels, deflection) or _noise_at_whole_variation(levels, signals)
+    found = _noise_at_plateau(levels, deflection)
+    found = found or _noise_at_whole_variation(levels, deflection, _signals(deflection, rate, acceleration))
     return found or Noise(white_level(residual), 1)
 
 
@@ -160,13 +160,23 @@ def _noise_at_plateau(levels: _Levels, deflection: FloatArray) -> Noise | None:
     )
 
 
+def _signals(deflection: FloatArray, rate: FloatArray, acceleration: FloatArray) -> tuple[FloatArray, ...]:
+    """Return what a misfit may follow: deflection, rate and all their products up to the third order, and acceleration.
+
+    A loop of any width and shape has the third harmonic of the motion, which is three times as quick.
+    """
+    place, speed = deflection - deflection.mean(), rate
+    powers = [(i, order - i) for order in (1, 2, 3) for i in range(order + 1)]
+    return (*(place**i * speed**j for i, j in powers), acceleration)
+
+
 def _noise_at_whole_variation(
-    levels: _Levels, signals: tuple[FloatArray, FloatArray, FloatArray]
+    levels: _Levels, deflection: FloatArray, signals: Sequence[FloatArray]
 ) -> Noise | None:
     """Return the noise whose level reaches the whole variation of the residual within a few lags; None without such.
 
-    signals: deflection, rate and acceleration; if one of them would reach its variation as well, the level may be that
-    of a misfit that follows it
+    signals: of the motion; if one of them would reach its variation as well, the level may be that of a misfit that
+    follows it
     """
     residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
@@ -175,7 +185,7 @@ def _noise_at_whole_variation(
         rises = any(_rises(levels.values)[last:])
         if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
             continue
-        visits = _seen_visits(signals[0], found.memory, lag, slow)
+        visits = _seen_visits(deflection, found.memory, lag, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
         if least * STAYS >= most and not any(_may_follow(signal, lag, slow, visits) for signal in signals):
             return Noise(least, found.memory)

@@ -221,6 +221,17 @@ def test_a_misfit_of_rate_or_acceleration_is_no_noise(order: int, motion: FloatA
     assert found.level == pytest.approx(1.0, rel=0.1)
 
 
+@pytest.mark.parametrize(("period", "count"), [(50, 300), (100, 400), (100, 600)])
+def test_the_third_harmonic_of_growing_cycles_is_no_noise(period: int, count: int) -> None:
+    """A damping that grows with the square of the deflection, in cycles that never come back to one place."""
+    number = np.arange(count)
+    motion = 0.01 * (0.3 + 0.7 * number / count) * np.sin(2.0 * np.pi * number / period)
+    misfit = motion**2 * np.gradient(motion)
+    found = noise_beside(50.0 * misfit / np.std(misfit) + WHITE[:count], motion)
+    assert found.memory == 1
+    assert found.level == pytest.approx(1.0, rel=0.15)  # the level of 300 white samples is known to 0.05
+
+
 @pytest.mark.parametrize("period", [4.6, 5.3, 9.7])
 def test_an_oscillation_of_its_own_frequency_is_no_noise(period: float) -> None:
     """A shaker next door: over some lags its differences are larger than all that varies, over others smaller."""
