@@ -20,7 +20,6 @@ from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_tim
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
 from .acceptance import (
-    CONSIDERED,
     HeldOut,
     Validate,
     accept,
@@ -30,7 +29,7 @@ from .acceptance import (
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of
 from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
-from .contradiction import ANEW, Contradiction, contradiction_held_out, contradiction_of
+from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
@@ -189,11 +188,14 @@ def _accepted(candidates: Explanation, validate: Validate) -> _Accepted:
 def _refused_by(
     candidates: Explanation, accepted: _Accepted, fitted: Sequence[Recorded], kept: Sequence[Recorded]
 ) -> Contradiction | None:
-    """Return the held-out recording that refused the likeliest set, if it contradicts the fitted ones."""
-    likeliest = next((names for names in candidates.in_order(CONSIDERED) if names), ())
-    if not kept or accepted.effects or not likeliest:
+    """Return the held-out recording that refused the set which explains the fitted ones, if it contradicts them."""
+    names = candidates.likeliest_fitted
+    if not kept or set(names) == set(accepted.explanation.model.names):
         return None
-    return contradiction_held_out(candidates.of(likeliest), fitted, kept)
+    refused = candidates.of(names)
+    if refused.error >= EXPLAINED * accepted.explanation.error:
+        return None
+    return contradiction_held_out(refused, fitted, kept)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

@@ -138,6 +138,11 @@ class Explanation:
         """Whether a set was fitted."""
         return self._ranking.of(frozenset(names)) is not None
 
+    @property
+    def likeliest_fitted(self) -> tuple[str, ...]:
+        """The set that is likeliest by the fitted recordings alone, whatever it makes of the held-out ones."""
+        return max(self._ranking.fits, key=lambda fit: fit.log_posterior - fit.log_predictive).names
+
     def is_near(self, names: Sequence[str], other: Sequence[str]) -> bool:
         """Whether a set was fitted and is nearly as likely as another one, or likelier."""
         ranking = self._ranking

@@ -153,3 +153,19 @@ def test_a_held_out_recording_that_no_zero_and_no_factor_reconciles_is_not_named
     fitted, kept = pressed("a", 1, damping=3000.0, period=2.0), pressed("b", 2, damping=1000.0, period=2.0)
     verdict = diagnose([fitted], TIRE, held_out=[kept], catalogue=FEW)
     assert verdict.contradiction is None
+
+
+def test_a_held_out_recording_that_refuses_one_of_two_effects_is_named() -> None:
+    """The dampers of both are alike and found. The law is 5 % more than believed in one and 5 % less in the other."""
+    fitted, kept = (
+        pressed(name, seed, A, damping=3000.0, period=2.0)
+        for name, seed, A in (("a", 1, 575.0), ("other", 2, 525.0))
+    )
+    verdict = diagnose([fitted], TIRE, held_out=[kept], catalogue=FEW)
+    assert [e.name for e in verdict.effects] == ["viscous_damping"]
+    found = verdict.contradiction
+    assert found is not None
+    assert (found.names, set(found.effects)) == (("other",), {"recalibration", "viscous_damping"})
+    # 525 of 575 is 8.7 % less.
+    assert "the force of other were 8." in found.as_if
+    assert verdict.summary.startswith("Recording other contradicts the others.")
