@@ -170,9 +170,15 @@ def hidden_effects(
     sizes_over_noise: tuple[float, float],
 ) -> tuple[Bench, dict[str, Size]]:
     """Hide effects of some forms, each in a size [noise] drawn evenly over the logarithm between two."""
-    effects: list[Effect] = [form.drawn(rng, conditions) for form in forms]
+    effects = [form.drawn(rng, conditions) for form in forms]
     least, most = np.log(sizes_over_noise)
-    wanted = np.exp(rng.uniform(least, most, len(effects))).tolist()
+    return in_sizes(bare, effects, conditions, np.exp(rng.uniform(least, most, len(effects))).tolist())
+
+
+def in_sizes(
+    bare: Bench, effects: list[Effect], conditions: Conditions, wanted: Sequence[float]
+) -> tuple[Bench, dict[str, Size]]:
+    """Hide effects, each in a size [noise]."""
     bench = Bench(bare.tire, tuple(effects))
     # a second round, because the size of each effect depends on the others
     for _ in range(min(len(effects), 2)):

@@ -63,7 +63,7 @@ def test_the_air_carries_its_share() -> None:
 
 def test_no_other_kind_is_drawn_otherwise_for_it() -> None:
     """The kinds that are drawn in turn stay in their order, and their recordings what they were."""
-    assert concealed.IN_TURN == ("loud", "press", "foreign", "outside")
+    assert concealed.IN_TURN[:4] == ("loud", "press", "foreign", "outside")
     for kind, (mean, spread) in BEFORE.items():
         record = draw(7, kind=kind).train[0]
         assert record.pressure is None

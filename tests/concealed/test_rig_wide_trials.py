@@ -35,8 +35,8 @@ def drawn() -> Drawn:
 
 
 def test_wide_kinds_are_never_drawn_unasked() -> None:
-    assert IN_TURN == ("loud", "press", "foreign", "outside")
-    assert (*IN_TURN, "pressure") == WIDE_KINDS
+    assert IN_TURN == ("loud", "press", "foreign", "outside", "beside")
+    assert WIDE_KINDS == ("loud", "press", "foreign", "outside", "pressure", "beside")
     assert not set(WIDE_KINDS) & set(KINDS)
     assert sum(KINDS.values()) == pytest.approx(1.0)
 
@@ -88,6 +88,18 @@ def test_outside_the_catalogue_no_name_is_right_but_unknown_and_another_tires(dr
         assert type(trial.bench.effects[0]) in OUTSIDE
         assert all("unknown" in names for names in trial.answer.right)
         assert set().union(*trial.answer.right) <= {"unknown", "recalibration"}
+
+
+def test_a_known_effect_stands_beside_an_unknown_one_of_at_most_its_size(drawn: Drawn) -> None:
+    for trial in drawn("beside"):
+        known, unknown = trial.bench.effects
+        assert type(known) in BY_NAME[known.name]
+        assert type(unknown) in OUTSIDE
+        assert all({known.name, "unknown"} <= set(names) for names in trial.answer.right)
+        sizes = trial.answer.sizes
+        assert sizes[unknown.name].raw >= 0.95 * 0.1 * 10.0
+        # sizes are of effects together, after two rounds of resizing
+        assert sizes[unknown.name].raw <= 1.2 * sizes[known.name].raw
 
 
 def test_a_first_file_is_one_file_of_few_triangles_at_one_speed(drawn: Drawn) -> None:

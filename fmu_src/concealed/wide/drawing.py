@@ -23,8 +23,8 @@ from ..trial import Answer, Parameters, Record, Trial, recorded
 from . import press, pressure
 from .worlds import WORLDS, World
 
-#: The kinds that are drawn only where they are asked for.
-WIDE_KINDS = (*WORLDS, pressure.KIND)
+#: The kinds that are drawn only where they are asked for; their places decide what their seeds mean.
+WIDE_KINDS = ("loud", "press", "foreign", "outside", pressure.KIND, "beside")
 #: Those of them of which a proof of all kinds draws in turn; which these are decides what its seeds mean.
 IN_TURN = tuple(WORLDS)
 #: Streams of random numbers of these trials stand apart from those of the other kinds by this key.
@@ -36,6 +36,8 @@ STANDS_FOR = 0.5
 #: Where its family leaves more than this part, one more name beside the family may be right too.
 COMPLETED = 0.15
 REFIT = "recalibration"
+#: The kinds in which something acts that no catalogue holds.
+UNKNOWN = ("outside", "beside")
 
 
 @dataclass(frozen=True)
@@ -137,21 +139,32 @@ def _recordings(rng: np.random.Generator, world: World) -> list[tuple[Record, tu
 def _is_fair(kind: str, world: World, linear: Explanations) -> bool:
     """Whether every hidden effect matters, and nothing outside the catalogue can be explained by a pair of names.
 
-    A first file is as it is: what does not matter in it need not be named.
+    A first file is as it is: what does not matter in it need not be named. Beside something unknown no other effect may
+    stand for a hidden one.
     """
     if kind == "press":
         return True
     base = set(world.names)
-    if kind == "outside":
-        whole, best = linear.loss(base), linear.best(base, 2)
-        return best > BEYOND_CATALOGUE and best > BEYOND_SHARE * whole
     truth = linear.loss(base)
+    if kind in UNKNOWN:
+        best = linear.best(base, 2)
+        if best <= BEYOND_CATALOGUE or best <= BEYOND_SHARE * truth:
+            return False
+    if kind == "outside":
+        return True
+    if kind == "beside" and any(linear.loss(s) - truth < VISIBLE for s in _exchanged(base)):
+        return False
     return all(linear.loss(base - {name}) - truth >= VISIBLE for name in base)
+
+
+def _exchanged(base: set[str]) -> list[set[str]]:
+    """All sets with another name in place of one of theirs."""
+    return [base - {name} | {other} for name in base for other in NAMES if other not in base]
 
 
 def _equivalent(kind: str, world: World, hidden: Hidden, linear: Explanations) -> Equivalent:
     truth = frozenset(world.names)
-    if kind == "outside":
+    if kind in UNKNOWN:
         return Equivalent({}, 0.0, 2.0 * linear.loss(()), 0, 0)
     # the baseline of a first file is fitted to it: whether its law is refitted too is a matter of taste
     base = frozenset({REFIT}) if kind == "press" else frozenset()
@@ -167,6 +180,8 @@ def _right(kind: str, world: World, linear: Explanations, found: Equivalent) -> 
     truth = frozenset(world.names)
     if kind == "outside":
         sets = [truth | {"unknown"}, frozenset({"unknown"})]
+    elif kind == "beside":
+        sets = [truth | {"unknown"}, truth - {REFIT} | {"unknown"}]
     elif kind == "press":
         matters = linear.loss(truth - {REFIT}) - linear.loss(truth) >= SAME_TIRE_LOSS
         sets = [truth if matters else truth - {REFIT}]

@@ -1,4 +1,4 @@
-"""The plan of a wide trial: tire, effects and tests of the kinds loud, press, foreign and outside."""
+"""The plan of a wide trial: tire, effects and tests of the kinds loud, press, foreign, outside and beside."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..bench import Bench
-from ..drawing import hidden_effects
+from ..drawing import hidden_effects, in_sizes
 from ..effects import BY_NAME, Conditions, Effect
 from ..measurement import Instrument, drawn_instrument
 from ..motion import Motion
+from ..regressors import NAMES
 from ..scenario import Plan, Setup, drawn_alike, drawn_setup, drawn_tests, planned
 from ..sizing import Size, misfit_size
 from ..tires import PowerTire, Tire, contact_patch_tire, deviating_tire, fitted_table
@@ -21,12 +22,14 @@ from .outside import OUTSIDE, StiffeningTread
 
 #: Sizes over the noise, between which each kind draws evenly over the logarithm.
 LOUD, PRESS, STRANGE, BEYOND = (30.0, 1000.0), (1.5, 30.0), (5.0, 300.0), (3.0, 100.0)
+#: Sizes over the noise of a known effect beside an unknown one, and the part of its size that the latter has.
+KNOWN, BESIDE = (10.0, 300.0), (0.1, 1.0)
 #: A loud trial is measured by an instrument as much quieter; a foreign or outside one by up to as much.
 QUIETER_LOUD, QUIETER = 1.0 / 30.0, 1.0 / 20.0
 #: How often a loud trial hides what.
 LOUD_KINDS: Mapping[str, float] = {"single": 0.4, "masked": 0.15, "pair": 0.3, "triple": 0.15}
-#: The law is what is foreign as often as this many forms together; how often an outside trial has another tire.
-LAWS, OUTSIDE_TIRE = 2, 0.2
+#: The law is what is foreign as often as this many forms together; how often outside and beside have another tire.
+LAWS, OUTSIDE_TIRE, BESIDE_TIRE = 2, 0.2, 0.35
 #: What a first file hides, as often as it is listed; "law": a law that is no power of x.
 FIRST_FILES = (
     *("rate_independent_hysteresis",) * 6,
@@ -91,6 +94,21 @@ def outside(rng: np.random.Generator, turn: int) -> World | None:
     return of_plan(rng, plan, setup, [form], (BEYOND, (QUIETER, 1.0)))
 
 
+def beside(rng: np.random.Generator, turn: int) -> World | None:
+    """A known effect and beside it one that the catalogue lacks, a tenth of it to as large, as on most real parts; one
+    time in three on another tire.
+    """
+    form = OUTSIDE[turn % len(OUTSIDE)]
+    known = str(rng.choice([name for name in NAMES if name != "recalibration"]))
+    other = ("recalibration",) if rng.random() < BESIDE_TIRE else ()
+    plan = Plan("open", (known, *other), form, False, False)
+    setup = as_baseline(drawn_setup(rng, plan), plan)
+    if form is StiffeningTread and len(setup.limits.surfaces) < 2:
+        return None
+    forms = [BY_NAME[known][int(rng.integers(len(BY_NAME[known])))], form]
+    return of_plan(rng, plan, setup, forms, (KNOWN, (QUIETER, 1.0)), BESIDE)
+
+
 def first_file(rng: np.random.Generator, turn: int) -> World | None:
     """An engineer's first file of a press; the baseline is what a power law fitted to it gives."""
     like = deviating_tire(rng)
@@ -119,6 +137,7 @@ WORLDS: Mapping[str, Callable[[np.random.Generator, int], World | None]] = {
     "press": first_file,
     "foreign": foreign,
     "outside": outside,
+    "beside": beside,
 }
 
 
@@ -128,8 +147,11 @@ def of_plan(
     setup: Setup,
     forms: list[type[Effect]],
     loudness: tuple[tuple[float, float], tuple[float, float]],
+    second: tuple[float, float] | None = None,
 ) -> World | None:
-    """Hide the forms; loudness: sizes over the noise, and factors between which the instrument is made quieter."""
+    """Hide the forms; loudness: sizes over the noise, and factors between which the instrument is made quieter; second:
+    parts of the first form's size, between which that of the second lies, where it has none of its own.
+    """
     sizes_over_noise, factors = loudness
     train, others = drawn_tests(rng, plan, setup.limits)
     heldout = (*others, drawn_alike(rng, train, setup.limits))
@@ -138,7 +160,13 @@ def of_plan(
     bare = Bench(setup.tire)
     elastic = tuple(bare.force(m) for m in train)
     conditions = Conditions(train, elastic, setup.tire, instrument.noise)
-    bench, sizes = hidden_effects(rng, bare, forms, conditions, sizes_over_noise)
+    if second is None:
+        bench, sizes = hidden_effects(rng, bare, forms, conditions, sizes_over_noise)
+    else:
+        first, part = (float(np.exp(rng.uniform(*np.log(own)))) for own in (sizes_over_noise, second))
+        effects = [form.drawn(rng, conditions) for form in forms]
+        bench, sizes = in_sizes(bare, effects, conditions, [first, first * part])
+        sizes_over_noise = second[0] * sizes_over_noise[0], sizes_over_noise[1]
     if any(size.raw < 0.95 * sizes_over_noise[0] for size in sizes.values()):
         return None
     if plan.another_tire:

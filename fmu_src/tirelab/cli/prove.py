@@ -26,14 +26,14 @@ TABLE_WIDTH = 110
     type=click.Choice(
         [
             *("none", "single", "masked", "pair", "triple", "open"),
-            *("loud", "press", "foreign", "outside", "pressure", "all"),
+            *("loud", "press", "foreign", "outside", "beside", "pressure", "all"),
         ]
     ),
     help="Draw only one kind of trial: nothing hidden, one effect, one effect on another tire, two effects, three, or "
     "an effect outside the catalogue. Worlds wider than the catalogue, drawn on request only: effects 30 to 1000 times "
     "the noise (loud), an engineer's first file (press), known physics in forms that the catalogue lacks (foreign), "
-    "other physics (outside), two or three measured pressures (pressure). all: the wide kinds but pressure and the "
-    "drawn kinds in turn.  [default: drawn from none to open]",
+    "other physics (outside), a known effect beside other physics (beside), two or three measured pressures "
+    "(pressure). all: the wide kinds but pressure and the drawn kinds in turn.  [default: drawn from none to open]",
 )
 def command(
     trials: int, seed: int, output: Output, jobs: int | None, dask: str | None, kind: str | None

@@ -1,4 +1,4 @@
-"""Figures of the wide kinds of trial (loud, press, foreign, outside, pressure), each with its interval and its limit.
+"""Figures of the wide kinds of trial (loud, press, foreign, outside, beside, pressure), with intervals and limits.
 
 A verdict may state a remainder beside its names in all of these kinds: "unknown" is left out of every comparison.
 """
@@ -47,13 +47,13 @@ def claimed(score: Score) -> Names:
 def sound(score: Score) -> bool:
     """Whether the verdict is right in the sense of its kind.
 
-    loud, pressure: the named effects are a right set; press: they are, whether or not the law is refitted; foreign:
-    they hold a right set, and nothing else is above a half; outside: nothing that is not there is above a half; else:
-    exact
+    loud, pressure: the named effects are a right set; press: they are, whether or not the law is refitted; foreign,
+    beside: they hold a right set, and nothing else is above a half; outside: nothing that is not there is above a half;
+    else: exact
     """
     if score.verdict is None:
         return False
-    if score.kind == "foreign":
+    if score.kind in ("foreign", "beside"):
         return any(right <= named(score) and claimed(score) <= right for right in _plain(score.right))
     if score.kind == "outside":
         return claimed(score) <= frozenset().union(*_plain(score.right))
@@ -82,7 +82,7 @@ def several_answers(score: Score) -> bool:
     """Whether more than one set counts as right; for a press the refitted law, a matter of taste, does not count."""
     if score.kind == "press":
         return len({names - {REFITTED_LAW} for names in _plain(score.right)}) > 1
-    if score.kind == "outside":
+    if score.kind in ("outside", "beside"):
         return False
     return not score.single_answer
 
@@ -135,6 +135,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         lambda score: bool(score.verdict) and sound(score),
         0.95,
     ),
+    ("beside", "the known effects named, nothing else above a half", sound, 0.90),
     ("pressure", "all hidden effects named and nothing else but a remainder", sound, 0.90),
     ("pressure", "held-out misfit at most a quarter", corrected, 0.90),
 )

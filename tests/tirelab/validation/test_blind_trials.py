@@ -326,7 +326,8 @@ def test_an_answer_that_is_gone_is_refused(undiagnosed: Folders) -> None:
 
 def test_all_kinds_come_in_turn(tmp_path: Path) -> None:
     trials = BlindTrials(Folders(tmp_path), SEED, 6, "all")
-    assert [trials.kind_of(n) for n in range(6)] == [None, "loud", "press", "foreign", "outside", None]
+    kinds = [None, "loud", "press", "foreign", "outside", "beside", None]
+    assert [trials.kind_of(n) for n in range(7)] == kinds
     assert BlindTrials(Folders(tmp_path), SEED, 6, "press").kind_of(3) == "press"
 
 

@@ -117,6 +117,20 @@ def test_outside_the_catalogue_nothing_that_is_not_there_is_above_a_half(score: 
     assert not found("lag unknown", lag=0.6)
 
 
+def test_beside_other_physics_the_known_effect_is_named_and_no_other_above_a_half(score: Make) -> None:
+    def found(named: str, **stated: float) -> bool:
+        right = {"also_right": ["gas unknown"], "probabilities": stated}
+        return sound(score("beside", "gas recalibration unknown", named, **right))
+
+    assert found("gas unknown", gas=0.4)
+    assert found("gas", gas=0.9)
+    assert found("gas recalibration", gas=0.9, recalibration=0.8)
+    assert found("gas lag unknown", gas=0.9, lag=0.5)
+    assert not found("gas lag unknown", gas=0.9, lag=0.6)
+    assert not found("recalibration unknown", recalibration=0.9)
+    assert not found("unknown")
+
+
 def test_each_kind_is_judged_apart_and_few_trials_are_not_judged(score: Make) -> None:
     few = kind_criteria([score("loud", "lag", "lag")] * 10)
     (loud,) = few
