@@ -23,7 +23,7 @@ from .outside import OUTSIDE, StiffeningTread
 #: Sizes over the noise, between which each kind draws evenly over the logarithm.
 LOUD, PRESS, STRANGE, BEYOND = (30.0, 1000.0), (1.5, 30.0), (5.0, 300.0), (3.0, 100.0)
 #: Sizes over the noise of a known effect beside an unknown one, and the part of its size that the latter has.
-KNOWN, BESIDE = (10.0, 300.0), (0.1, 1.0)
+KNOWN, BESIDE = (10.0, 300.0), (0.2, 2.0)
 #: A loud trial is measured by an instrument as much quieter; a foreign or outside one by up to as much.
 QUIETER_LOUD, QUIETER = 1.0 / 30.0, 1.0 / 20.0
 #: How often a loud trial hides what.
@@ -95,8 +95,8 @@ def outside(rng: np.random.Generator, turn: int) -> World | None:
 
 
 def beside(rng: np.random.Generator, turn: int) -> World | None:
-    """A known effect and beside it one that the catalogue lacks, a tenth of it to as large, as on most real parts; one
-    time in three on another tire.
+    """A known effect and beside it one that the catalogue lacks, a fifth of it to twice as large; one time in three on
+    another tire.
     """
     form = OUTSIDE[turn % len(OUTSIDE)]
     known = str(rng.choice([name for name in NAMES if name != "recalibration"]))
