@@ -16,7 +16,7 @@ from radialtire import TireModel
 
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
-from ..selection.search import PRIOR_ODDS, Discrepancy
+from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
 from .minimise import Iterate, Objective, initial_iterate, minimise
 from .problem import EstimationProblem, Values, form_errors, law_start, problem_of, smooth_functions
 
@@ -57,13 +57,15 @@ class Linearised:
 class LaplaceEvidence:
     """log_likelihood: marginal; variance: V of the discrepancy; scales: of the form errors of each effect
     law_scales: those of the groups of the law's parameters, by their numbers
-    beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them.
+    beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them
+    freedom: number of parameters and form errors that the data determine, sum of c / (c + V) over the curvatures c
     """
 
     log_likelihood: float
     variance: float
     scales: FloatArray
     beyond_forms: FloatArray
+    freedom: float
     law_scales: Mapping[int, float]
 
 
@@ -83,7 +85,8 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
                     law_scales[int(group)] = scale
     cost = _cost_of_scales(fit.widths)
     if not fit.forms:
-        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual, law_scales)
+        freedom = _freedom(gram * np.outer(width, width), best[1])
+        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual, freedom, law_scales)
     found = _evidence_with_forms(fit, width, discrepancy)
     return replace(found, log_likelihood=found.log_likelihood - cost, law_scales=law_scales)
 
@@ -142,8 +145,15 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
             (best, *(of(s) for s in own if s[i] <= most[i] and s[i] != best[1][i])), key=lambda f: f[0]
         )
     likelihood, scales, index, coefficients = best
-    beyond_forms = fit.residual - columns @ coefficients
-    return LaplaceEvidence(likelihood, float(variances[index]), scales, beyond_forms, {})
+    beyond_forms, variance = fit.residual - columns @ coefficients, float(variances[index])
+    wide = np.concatenate([width, np.repeat(scales, counts)])
+    freedom = _freedom(gram * np.outer(wide, wide), variance)
+    return LaplaceEvidence(likelihood, variance, scales, beyond_forms, freedom, {})
+
+
+def _freedom(gram: FloatArray, variance: float) -> float:
+    curvatures = np.maximum(np.linalg.eigvalsh(gram), 0.0)
+    return float(np.sum(curvatures / (curvatures + variance)))
 
 
 def _linear_gain(
@@ -189,7 +199,7 @@ class Fit:
     positions (k,): of its free parameters; log_likelihood: marginal (Laplace); variance: V of the discrepancy
     residual (m,), jacobian (m, k): in units of the noise; near: the linearisation from which the evidence is computed
     scales: of the form errors of each effect
-    beyond_forms: sum of squares that form errors and refitted parameters leave
+    beyond_forms: sum of squares that form errors and refitted parameters leave; slow: V of what is slow in it
     sizes: root mean square of the response that each effect adds to the others, by its name
     evaluations: simulations of all dataset's blocks that it took, from all its starts
     law_scales: of the groups of the law's parameters, where not that of their priors
@@ -205,6 +215,7 @@ class Fit:
     near: Linearised
     scales: FloatArray
     beyond_forms: float
+    slow: float
     sizes: Mapping[str, float]
     evaluations: int
     law_scales: Mapping[int, float] = field(default_factory=dict)
@@ -262,6 +273,9 @@ class Fit:
             variance=evidence.variance,
             scales=evidence.scales,
             beyond_forms=float(evidence.beyond_forms @ evidence.beyond_forms),
+            slow=slow_variance(
+                self.problem.dataset.apart(evidence.beyond_forms), discrepancy.effective, evidence.freedom
+            ),
             law_scales=evidence.law_scales,
         )
 
@@ -338,6 +352,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         near,
         np.ones(len(forms)),
         np.inf,
+        1.0,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
     )

@@ -157,7 +157,7 @@ class FittedSets:
     others: dict[frozenset[str], Mapping[str, Signature]] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
-    usual: float = 0.0
+    usual: FloatArray = field(default_factory=lambda: np.zeros(2))
     assessed_at: int = 0
     gained_at: int = 0
     work: int = 0
@@ -174,16 +174,18 @@ class FittedSets:
         return self.count - self.gained_at >= MOST_FITS or self.work >= self.most_work
 
     def update_discrepancy(self) -> bool:
-        """Compute the evidence of all sets with the usual form error of the best one; return whether that has changed.
+        """Compute the evidence of all sets with the usual form error of the best one, beside the slow noise that it
+        leaves; return whether these have changed.
 
         One form error serves all sets: their own would favour sets whose forms are declared to be good.
         """
-        usual = self.fits[self.best()].form_error
-        near = self.usual / USUAL_MOVED <= usual <= self.usual * USUAL_MOVED
+        best = self.fits[self.best()]
+        found = np.array([best.form_error, best.slow])
+        near = np.all((self.usual / USUAL_MOVED <= found) & (found <= self.usual * USUAL_MOVED))
         if self.assessed_at == self.count or (self.assessed_at and near):
             return False
-        self.usual, self.assessed_at = usual, self.count
-        self.discrepancy = self.noise.above(usual)
+        self.usual, self.assessed_at = found, self.count
+        self.discrepancy = self.noise.above(best.form_error).beside_slow(best.slow)
         self.fits = {names: fit.with_discrepancy(self.discrepancy) for names, fit in self.fits.items()}
         return True
 

@@ -96,6 +96,13 @@ class Discrepancy:
         """
         return replace(self.above(error), exact=self.exact + self._of(error))
 
+    def beside_slow(self, variance: float) -> Discrepancy:
+        """Return the discrepancy beside a slow noise of this V (see `slow_variance`), below which nothing is told."""
+        usual = max(self.usual, variance)
+        return replace(
+            self, usual=usual, exact=max(self.exact, variance), highest=max(self.highest, 2.0 * usual)
+        )
+
     def grid(self) -> FloatArray:
         """Variances V to try: from the lowest to the highest."""
         return np.geomspace(self.lowest, self.highest, GRID)
@@ -122,6 +129,20 @@ class Discrepancy:
     def _of(self, error: float) -> float:
         """Return the increase of V by an error, a root mean square in units of the noise."""
         return error**2 * self.samples / self.effective
+
+
+def slow_variance(residuals: Sequence[FloatArray], effective: float, freedom: float) -> float:
+    """Return the V of what is slow in residuals, in units of the noise: the mean square of their sums over as many
+    samples as one of `effective` stands for, over the root of that number; 1 for white noise.
+
+    freedom: of the model that left them, at most half of the sums: so many squares are missing from the mean
+    """
+    length = max(round(sum(r.size for r in residuals) / effective), 1)
+    every = np.concatenate(
+        [r[: r.size // length * length].reshape(-1, length).sum(axis=1) for r in residuals]
+    )
+    left = every.size - min(freedom, 0.5 * every.size)
+    return float(every @ every) / (length * left) if every.size else 1.0
 
 
 def beside_noise(samples: int) -> Discrepancy:

@@ -208,3 +208,17 @@ def test_the_shared_recordings_come_out_right(shared: Path):
 def read_csv(path: Path) -> Drive:
     values = np.genfromtxt(path, delimiter=",", skip_header=1)
     return Drive(path.name, values[:, 0], values[:, 1] / 100.0, values[:, 2] / 100.0, values[:, 3])
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_slow_noise_beside_a_hum_is_no_drift(seed):
+    """First-order noise of 2 s and the mains, whose differences look like white noise of more than all there is."""
+    numbers = np.random.default_rng([3, seed])
+    time = 0.01 * np.arange(3000)
+    deflection = 0.01 * (1.0 - np.cos(2.0 * np.pi * time / 3.0))
+    keep = np.exp(-0.01 / 2.0)
+    slow = lfilter([np.sqrt(1.0 - keep**2)], [1.0, -keep], numbers.normal(size=time.size))
+    force = flat_force(deflection) + 3.6 * slow + 3.2 * np.sin(2.0 * np.pi * 60.0 * time + 1.0)
+    verdict = diagnose([read("quiet", time, deflection, force, seed, noise=4.0)])
+    assert verdict.effects == ()
+    assert not verdict.unexplained_by
