@@ -17,7 +17,8 @@ with its maximum at V = (q - (n - e)) / e. A set is thus ranked by e ln(what it 
 The usual discrepancy f follows from the measured form errors. It may also be smaller: below f its prior density is
 constant, so that tau or less has the probability tau / f, by which a smaller V is penalised. A set that leaves far less
 than f is taken to have good forms, because wrong ones would hardly fit so well by chance. Discrepancies below the noise
-count alike.
+count alike. No V is tried below that of the slow noise, which the best set shows: its residual, summed over as many
+samples as one of the e stands for, would have the variance of white noise if V = 1 were right.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
