@@ -139,13 +139,20 @@ def insufficient_excitation(
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
     held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
     if timed and held < LONG_ENOUGH:
-        level = 1e3 * HOLD_DEPTH * dataset.max_deflection
-        lacks.append(f"no hold: hold 10 s at {level:.{'0f' if level >= 1.0 else '2g'}} mm")
+        lacks.append(f"no hold: hold 10 s at {_hold_level(dataset)}")
     if len({float(d) for e in dataset.experiments for d in np.unique(e.motion.direction)}) == 1:
         lacks.append("no way back: release it as slowly as it was loaded, and load it again")
     elif max(float(e.motion.cycle.max()) for e in dataset.experiments) < 1.0:
         lacks.append("no repeated cycle: drive each cycle twice")
     return lacks
+
+
+def _hold_level(dataset: RawDataset) -> str:
+    """Return a deflection to hold, with its unit; within the recorded ones where all of them are below 0."""
+    most = dataset.max_deflection
+    least = min(float(e.motion.deflection.min()) for e in dataset.experiments) if most < 0.0 else 0.0
+    level = 1e3 * (least + HOLD_DEPTH * (most - least))
+    return f"{level:.{'0f' if abs(level) >= 1.0 else '2g'}} mm".replace("-", "\N{MINUS SIGN}")
 
 
 def _another_speed(dataset: RawDataset, limits: Limits | None) -> str:

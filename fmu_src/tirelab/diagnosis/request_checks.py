@@ -44,11 +44,13 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                 )
 
 
-def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording]) -> None:
+def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_sided: bool = False) -> None:
     """Raise TirelabError for deflections that would fail when all is done: none above 0, or one beyond the wheel's
     radius.
+
+    two_sided: whether the part is held at both ends: a deflection below 0 loads it too
     """
-    if max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
+    if not two_sided and max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
         least = float(f"{min(float(recording.deflection.min()) for recording in fitted):.3g}")
         zero = f", such as --zero deflection={quantity_text('deflection', least)}" if least < 0.0 else ""
         raise TirelabError(

@@ -116,6 +116,16 @@ def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
         assert words in said
 
 
+def test_a_part_that_is_never_above_zero_is_held_within_its_own_deflections() -> None:
+    """From -527 to -500 mm, 0.65 of the way up: -509 mm."""
+    time, deflection = triangle(samples=180)
+    part = TireModel(two_sided=True, inflated=False)
+    below = deflection * 0.027 / float(deflection.max()) - 0.527
+    joint = raw_dataset_of([read("joint", time, below, 1e3 * below, 4)], part)
+    said = "; ".join(insufficient_excitation(explained_by_sets(("inertia", 0.0, 1.0)), joint))
+    assert "hold 10 s at \N{MINUS SIGN}509 mm" in said
+
+
 @pytest.mark.parametrize(("fastest", "faster"), [(10.0, True), (0.02, False)])
 def test_the_other_speed_is_one_that_the_rig_reaches(fastest: float, faster: bool) -> None:
     """The press goes 23 mm in 2 s, 11.5 mm/s: ten times that where the rig reaches it, else a tenth."""

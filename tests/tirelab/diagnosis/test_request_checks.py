@@ -39,6 +39,7 @@ def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
     check_depth([part(0.0, 1.0, 0.3)], [])
     with pytest.raises(TirelabError, match=r"no deflection is above 0.*--zero deflection=-10mm$"):
         check_depth([part(0.0, 1.0, -0.01)], [])
+    check_depth([part(0.0, 1.0, -0.01)], [], two_sided=True)
     with pytest.raises(
         TirelabError, match=r"the deflection is 0\.4 m at 1 s, and a tire takes 0\.33 m at most"
     ):
