@@ -100,7 +100,7 @@ CORRECTIONS = 3
 """Budget: number of times that a set is fitted again with the distortion by its blocks subtracted."""
 
 USUAL_MOVED = 1.2
-"""Factor between the usual form errors, old and new, from which on the evidence of all sets is computed again."""
+"""Factor between the usual form errors or slow variances, old and new, from which on all evidence is computed again."""
 
 GAIN_ERROR = 8.0
 """Error of a predicted gain, relative to another one: a candidate that is behind by more is not fitted."""
@@ -157,7 +157,7 @@ class FittedSets:
     others: dict[frozenset[str], Mapping[str, Signature]] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     count: int = 0
-    usual: FloatArray = field(default_factory=lambda: np.zeros(2))
+    assessed: FloatArray = field(default_factory=lambda: np.zeros(2))
     assessed_at: int = 0
     gained_at: int = 0
     work: int = 0
@@ -181,10 +181,10 @@ class FittedSets:
         """
         best = self.fits[self.best()]
         found = np.array([best.form_error, best.slow])
-        near = np.all((self.usual / USUAL_MOVED <= found) & (found <= self.usual * USUAL_MOVED))
+        near = np.all((self.assessed / USUAL_MOVED <= found) & (found <= self.assessed * USUAL_MOVED))
         if self.assessed_at == self.count or (self.assessed_at and near):
             return False
-        self.usual, self.assessed_at = found, self.count
+        self.assessed, self.assessed_at = found, self.count
         self.discrepancy = self.noise.above(best.form_error).beside_slow(best.slow)
         self.fits = {names: fit.with_discrepancy(self.discrepancy) for names, fit in self.fits.items()}
         return True
