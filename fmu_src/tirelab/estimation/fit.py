@@ -178,8 +178,7 @@ def _linear_gain(
 
 
 LAW_LOOSE = 3.0
-"""Least scale of the law's prior during the fit; the evidence finds the scale, and where it is more the fit is repeated
-with it."""
+"""Scale of the law's prior in the first round of a fit; with the scale that the evidence finds, the fit is repeated."""
 
 REWEIGHTINGS = 4
 """Number of times that a fit is repeated with the V and the scales of the law found by the last one."""
@@ -305,7 +304,7 @@ def fitted(
 
 def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
     positions = problem.positions(start, off_bounds=True)
-    width = _loose(problem, {}) * problem.widths(positions)
+    width = _scales(problem, {}, LAW_LOOSE) * problem.widths(positions)
     objective = Objective(problem.residual, problem.low, problem.high, width, variance)
     found = initial_iterate(objective, positions)
     best: Fit | None = None
@@ -314,7 +313,7 @@ def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepanc
         fit = _with_evidence(problem, found, discrepancy)
         if best is None or fit.log_likelihood > best.log_likelihood:
             best = fit
-        width = _loose(problem, fit.law_scales) * problem.widths(found.positions)
+        width = _scales(problem, fit.law_scales, 1.0) * problem.widths(found.positions)
         if 0.7 < fit.variance / objective.variance < 1.5 and np.allclose(width, objective.width, rtol=0.5):
             break
         objective = replace(objective, variance=fit.variance, width=width)
@@ -322,10 +321,13 @@ def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepanc
     return best
 
 
-def _loose(problem: EstimationProblem, law_scales: Mapping[int, float]) -> FloatArray:
-    """Return the scales (k,) of the priors during a fit: those of the law found so far, LAW_LOOSE at least."""
-    known = [max(law_scales.get(int(group), 0.0), LAW_LOOSE) if group else 1.0 for group in problem.groups]
-    return np.array(known)
+def _scales(problem: EstimationProblem, found: Mapping[int, float], other: float) -> FloatArray:
+    """Return the scales (k,) of the priors during a fit: those found for groups of the law's parameters, else `other`.
+
+    Where a law can follow what an effect does, a looser prior than that of the evidence would leave the fit anywhere
+    between the two, and the evidence would then call the law unlikely.
+    """
+    return np.array([found.get(int(group), other) if group else 1.0 for group in problem.groups])
 
 
 def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Discrepancy) -> Fit:

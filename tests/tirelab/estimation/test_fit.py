@@ -7,10 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from drives import flat_force, read, triangle
+from radialtire import CATALOGUE, TireModel
 from scipy.stats import multivariate_normal
-from tirelab.estimation.fit import FORM_SCALES, Linearised, laplace_evidence
+from tirelab.estimation.fit import FORM_SCALES, LEAST_GAIN, Linearised, fitted, laplace_evidence
 from tirelab.estimation.minimise import Objective, initial_iterate, minimise
-from tirelab.selection.search import Discrepancy
+from tirelab.estimation.problem import law_start, with_readings
+from tirelab.names import REFITTED_LAW
+from tirelab.regressors.dataset import dataset_of
+from tirelab.selection.search import Discrepancy, discrepancy_of
+from tirelab.simulation.simulate import simulate
 
 ROWS = 40
 RNG = np.random.default_rng(3)
@@ -214,3 +220,27 @@ def test_a_scale_of_the_laws_prior_is_found() -> None:
     assert gained == pytest.approx(expected, rel=1e-9)
     assert laplace_evidence(grouped, fixed(1.0)).law_scales == {1: 30.0}
     assert laplace_evidence(fit, fixed(1.0)).law_scales == {}
+
+
+def test_a_fit_stands_at_the_top_under_the_prior_of_its_evidence() -> None:
+    """Relaxation on one triangle, beside a law that can follow most of it: the scale of the law's prior decides.
+
+    The slope of the log posterior, in standard deviations of the prior, is no more than a fit may still gain.
+    """
+    name = "viscoelastic_relaxation"
+    parameters = CATALOGUE[name].parameters
+    start = tuple(p.start for p in parameters)
+    time, deflection = triangle()
+    bare = read("bare", time, deflection, flat_force(deflection), 1)
+    tire = TireModel(effects=((CATALOGUE[name], (0.03, 2.0, *start[2:])),))
+    dataset = dataset_of(
+        [read("relaxing", time, deflection, simulate(tire, bare), 2, noise=1.0)], TireModel()
+    )
+    starts = [{REFITTED_LAW: law_start(dataset), name: with_readings(name, start, dataset)}]
+    found = fitted(dataset, starts, discrepancy_of(dataset.misfit, 0.002), 10.0, -np.inf)
+    assert found.law_scales
+    scales = np.array([found.law_scales.get(int(g), 1.0) if g else 1.0 for g in found.problem.groups])
+    widths = scales * found.problem.widths(found.positions)
+    slope = found.jacobian.T @ found.residual / found.variance + found.positions / widths**2
+    inside = (found.positions > found.problem.low) & (found.positions < found.problem.high)
+    assert 0.5 * float(np.sum((slope * widths)[inside] ** 2)) < LEAST_GAIN
