@@ -32,7 +32,7 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     residual = problem.residual(positions)
     near = Linearised(residual, slopes, positions, (), (), problem.groups, problem.widths(positions))
     left = float(residual @ residual)
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), left, {}, 1)
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), left, 1.0, {}, 1)
 
 
 def model_of(effects: Mapping[str, Mapping[str, float]], radius: float = np.inf) -> FittedModel:
