@@ -48,6 +48,9 @@ that of pistons 100 to 200; with more than 30, larger sets often win over simple
 LIKE_NOISE = 1.0
 """Root mean square of a discrepancy, in units of the noise, up to which the forms of a set count as exact."""
 
+MOST_TAKEN = 0.5
+"""Largest part of a residual's slow sums that the parameters of its set are taken to have fitted away."""
+
 GRID = 40
 """Number of variances V that are tried."""
 
@@ -136,13 +139,13 @@ def slow_variance(residuals: Sequence[FloatArray], effective: float, freedom: fl
     """Return the V of what is slow in residuals, in units of the noise: the mean square of their sums over as many
     samples as one of `effective` stands for, over the root of that number; 1 for white noise.
 
-    freedom: of the model that left them, at most half of the sums: so many squares are missing from the mean
+    freedom: of the model that left them: so many squares are missing from the mean, MOST_TAKEN of them at most
     """
     length = max(round(sum(r.size for r in residuals) / effective), 1)
     every = np.concatenate(
         [r[: r.size // length * length].reshape(-1, length).sum(axis=1) for r in residuals]
     )
-    left = every.size - min(freedom, 0.5 * every.size)
+    left = every.size - min(freedom, MOST_TAKEN * every.size)
     return float(every @ every) / (length * left) if every.size else 1.0
 
 

@@ -28,7 +28,7 @@ from .overlap import RegionScore, region_scores
 from .page import Proof, numbers, page
 from .score import Score, discrimination, right_sets, sizes_over_noise
 
-SETTINGS_SCHEMA = 5
+SETTINGS_SCHEMA = 6
 """Version of the rig and of the scores; a folder of another version is not continued."""
 
 ALL_KINDS = "all"
