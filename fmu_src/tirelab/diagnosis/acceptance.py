@@ -139,7 +139,7 @@ def split(
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
     motions = [e.motion for e in dataset.experiments]
-    kept, by = _parts(recordings, motions, before, explanation.residuals)
+    kept, by = _parts(recordings, motions, before, explanation)
     refitted = explanation.refitted(kept)
     noise_free = [
         noise_free_residual(refitted.tire, r, e.motion)
@@ -212,25 +212,33 @@ def _parts(
     recordings: Sequence[Recorded],
     motions: Sequence[Motion],
     before: Sequence[FloatArray],
-    after: Sequence[FloatArray],
+    explanation: Explanation,
 ) -> tuple[list[BoolArray], str]:
-    """Return which samples stay fitted, and the name of the held-out part.
+    """Return which samples stay fitted, and the name of the held-out part, in which some samples are compared.
 
-    before, after [N]: what the baseline and the set leave of each recording
+    before [N]: what the baseline leaves of each recording; explanation: the set
     """
-    surfaces = _surfaces(recordings)
+    surfaces, seen = _surfaces(recordings), explanation.compared
     ways = _ways(recordings, motions, surfaces)
+    # A sample that is not compared shows nothing of either side.
+    before, after = (
+        [np.where(s, left, 0.0) for s, left in zip(seen, residuals, strict=True)]
+        for residuals in (before, explanation.residuals)
+    )
+
+    def within(kept: Sequence[BoolArray]) -> list[BoolArray]:
+        return [w & s for w, s in zip(_within(kept, motions, surfaces), seen, strict=True)]
+
     for number in reversed(range(len(recordings))) if len(recordings) > 1 else ():
         kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
-        if _shows_as_much(kept, before, after, ways, _within(kept, motions, surfaces)):
+        if _shows_as_much(kept, before, after, ways, within(kept)):
             return kept, f"recording {recordings[number].name}"
     kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
-    within = _within(kept, motions, surfaces)
-    if _shows_as_much(kept, before, after, ways, within):
-        kept = [k | ~w for k, w in zip(kept, within, strict=True)]
+    if _shows_as_much(kept, before, after, ways, within(kept)):
+        kept = [k | ~w for k, w in zip(kept, within(kept), strict=True)]
         return kept, _name_of(kept, recordings)
     ends = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
-    kept = [k | ~w for k, w in zip(ends, _within(ends, motions, surfaces), strict=True)]
+    kept = [k | ~w for k, w in zip(ends, within(ends), strict=True)]
     return ends if all(k.all() for k in kept) else kept, "the end of each motion"
 
 

@@ -227,3 +227,19 @@ def test_a_press_deeper_than_all_that_stays_fitted_refutes_nothing():
     assert deflection[other.chosen].max() < 0.027 < deflection[fitted.chosen].max()
     assert held_out.after == pytest.approx(5.0, rel=0.1)
     assert held_out.before > 10.0 * held_out.after
+
+
+def test_samples_at_the_end_of_the_gauges_travel_are_not_what_is_held_out():
+    """Most of the misfit is where the gauge stands and the force goes on: no error can be computed there."""
+    time = np.linspace(0.0, 13.5, 2700)
+    pressed = 0.0275 * np.sin(np.pi * time / 20.0) ** 2
+    gauge = np.minimum(pressed, 0.022)
+    press = [replace(read("press", time, pressed, 0.8 * flat_force(pressed), seed=8), deflection=gauge)]
+    found = explain_misfit(press, TireModel(), ["recalibration"], lambda stage: None).of(("recalibration",))
+    before = [p.force - flat_force(p.deflection) for p in press]
+    held_out = split(press, raw_dataset_of(press, TireModel()), before, found)
+    ((other,), (seen,)) = held_out.held_out, found.compared
+    assert not seen[gauge == 0.022].any()
+    assert other.chosen.any()
+    assert not (other.chosen & ~seen).any()
+    assert held_out.after == pytest.approx(5.0, rel=0.1)
