@@ -101,16 +101,42 @@ def white_level(residual: FloatArray) -> float:
 
 
 def noise_of(
-    residual: FloatArray, interval: float, deflection: FloatArray, rate: FloatArray, acceleration: FloatArray
+    residual: FloatArray,
+    interval: float,
+    deflection: FloatArray,
+    rate: FloatArray,
+    acceleration: FloatArray,
+    surface_radius: FloatArray,
 ) -> Noise:
     """Return the noise of a residual (n,), white or with a memory.
 
-    interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2]: motion at the samples, each (n,)
+    interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2] of the motion and radius of the
+    surface [m] at the samples, each (n,)
     """
     levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
-    found = _noise_at_plateau(levels, deflection)
-    found = found or _noise_at_whole_variation(levels, deflection, _signals(deflection, rate, acceleration))
+    places = _Places(deflection, _surfaces(surface_radius))
+    found = _noise_at_plateau(levels, places)
+    found = found or _noise_at_whole_variation(levels, places, _signals(deflection, rate, acceleration))
     return found or Noise(white_level(residual), 1)
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Where the tire is at each sample: its deflection [m] (n,), and the number of the surface (n,)."""
+
+    deflection: FloatArray
+    surface: IntArray
+
+
+Visits = tuple[IntArray, IntArray, FloatArray]
+"""Numbers of two samples of one place, pair by pair, and 1 where both go the same way, -1 where not: what depends on
+the place has third differences of the other sign on the way back."""
+
+
+def _surfaces(radius: FloatArray) -> IntArray:
+    """Return the number of the surface at each sample; one for all where there are too many to come again."""
+    found, numbers = np.unique(radius, return_inverse=True)
+    return np.zeros_like(numbers) if found.size * FEWEST_LAGS > radius.size else numbers
 
 
 @dataclass(frozen=True)
@@ -143,7 +169,7 @@ def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span:
     return _Levels(residual, tuple(lags), slow, tuple(_level_of(residual, lag, slow) for lag in lags))
 
 
-def _noise_at_plateau(levels: _Levels, deflection: FloatArray) -> Noise | None:
+def _noise_at_plateau(levels: _Levels, places: _Places) -> Noise | None:
     """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
     last = _plateau(levels.values)
     if last == 0:
@@ -153,7 +179,7 @@ def _noise_at_plateau(levels: _Levels, deflection: FloatArray) -> Noise | None:
         return Noise(white_level(levels.residual), 1)
     if levels.oscillates(found):
         return Noise(min(levels.values), 1)
-    visits = _seen_visits(deflection, found.memory, levels.lags[-1], levels.slow)
+    visits = _seen_visits(places, found.memory, levels.lags[-1], levels.slow)
     between = ([_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits)
     return min(
         (found, *(_noise_of_level(own, _plateau(own)) for own in between)), key=lambda noise: noise.level
@@ -171,7 +197,7 @@ def _signals(deflection: FloatArray, rate: FloatArray, acceleration: FloatArray)
 
 
 def _noise_at_whole_variation(
-    levels: _Levels, deflection: FloatArray, signals: Sequence[FloatArray]
+    levels: _Levels, places: _Places, signals: Sequence[FloatArray]
 ) -> Noise | None:
     """Return the noise whose level reaches the whole variation of the residual within a few lags; None without such.
 
@@ -185,16 +211,14 @@ def _noise_at_whole_variation(
         rises = any(_rises(levels.values)[last:])
         if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
             continue
-        visits = _seen_visits(deflection, found.memory, lag, slow)
+        visits = _seen_visits(places, found.memory, lag, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
         if least * STAYS >= most and not any(_may_follow(signal, lag, slow, visits) for signal in signals):
             return Noise(least, found.memory)
     return None
 
 
-def _seen_visits(
-    deflection: FloatArray, memory: int, lag: int, seen: BoolArray
-) -> list[tuple[IntArray, IntArray]]:
+def _seen_visits(places: _Places, memory: int, lag: int, seen: BoolArray) -> list[Visits]:
     """Return the pairs of each kind of visit (`_visits`) with both samples `seen`.
 
     No kind with too few of them, nor one whose pairs are all so near the ends that no difference over the lag is known.
@@ -202,16 +226,14 @@ def _seen_visits(
     inner = np.zeros_like(seen)
     _inner(inner, lag)[:] = True
     pairs = [
-        (one[both], other[both])
-        for one, other in _visits(deflection, memory)
+        (one[both], other[both], sign[both])
+        for one, other, sign in _visits(places, memory)
         for both in [seen[one] & seen[other]]
     ]
-    return [p for p in pairs if p[0].size >= FEWEST_LAGS * memory and np.any(inner[p[0]] & inner[p[1]])]
+    return [p for p in pairs if p[0].size >= FEWEST_EVENTS * memory and np.any(inner[p[0]] & inner[p[1]])]
 
 
-def _may_follow(
-    signal: FloatArray, lag: int, seen: BoolArray, visits: Sequence[tuple[IntArray, IntArray]]
-) -> bool:
+def _may_follow(signal: FloatArray, lag: int, seen: BoolArray, visits: Sequence[Visits]) -> bool:
     """Return whether a misfit in proportion to a signal of the motion could be taken for noise of this memory.
 
     The lag shows the part r of the variation of the signal, beside white noise. To rise by the factor STAYS, and to
@@ -260,31 +282,35 @@ def _rises(levels: Sequence[float]) -> list[bool]:
     return [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
 
 
-def _visits(deflection: FloatArray, memory: int) -> Iterator[tuple[IntArray, IntArray]]:
+def _visits(places: _Places, memory: int) -> Iterator[Visits]:
     """Return pairs of samples of two visits of one place, for three meanings of place: the same deflection; the same
-    deflection and direction; the same direction and distance from the last reversal.
+    deflection and direction; the same direction and distance from the last reversal; each on the same surface.
 
     Samples are of different visits if they are four memories apart, and at one place if they are at most half the path
     of one memory apart.
     """
+    deflection = places.deflection
     near = 0.5 * float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
     inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
     begin = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
     turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
-    # Added to a place, it keeps loading and unloading apart.
-    apart = 2.0 * float(np.ptp(deflection)) * inwards
-    for place in (deflection, deflection + apart, np.abs(deflection - deflection[turn]) + apart):
+    # Added to a place, they keep surfaces apart, and loading and unloading.
+    apart = 2.0 * float(np.ptp(deflection))
+    ground, way = 2.0 * apart * places.surface, apart * inwards
+    for own in (deflection, deflection + way, np.abs(deflection - deflection[turn]) + way):
+        place = own + ground
         order = np.argsort(place, kind="stable")
         one, other = order[:-1], order[1:]
         pairs = (np.abs(one - other) > 4 * memory) & (place[other] - place[one] <= near)
-        yield one[pairs], other[pairs]
+        one, other = one[pairs], other[pairs]
+        yield one, other, np.where(inwards[one] == inwards[other], 1.0, -1.0)
 
 
-def _level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArray) -> float:
+def _level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArray, sign: FloatArray) -> float:
     """Return the level as of `white_level`, of what differs between visits."""
     differences = np.full(residual.size, np.nan)
     _inner(differences, lag)[:] = _third_differences(residual, lag)
-    between = differences[one] - differences[other]
+    between = differences[one] - sign * differences[other]
     return _level(between[np.isfinite(between)]) / float(np.sqrt(2.0))
 
 

@@ -137,7 +137,9 @@ def experiment_in_blocks(
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
     misfit = recording.force - baseline
-    reading = reading or noise_of(misfit, interval, motion.deflection, motion.rate, motion.acceleration)
+    reading = reading or noise_of(
+        misfit, interval, motion.deflection, motion.rate, motion.acceleration, moved.surface_radius
+    )
     lone = spikes(misfit)
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & are_rare(lone[turns]))
@@ -152,6 +154,7 @@ def experiment_in_blocks(
         averaged.deflection,
         averaged.rate,
         averaged.acceleration,
+        averaged.surface_radius,
     )
     noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
     force_step = staircase_step(recording.force)

@@ -51,10 +51,11 @@ SLOW = 40.0 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0)
 MOTION = 0.02 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0 + 0.3)
 
 
-def noise_beside(residual: FloatArray, motion: FloatArray) -> Noise:
-    """Return the noise of a residual beside an exact motion of one sample a second."""
+def noise_beside(residual: FloatArray, motion: FloatArray, surface: FloatArray | None = None) -> Noise:
+    """Return the noise of a residual beside an exact motion of one sample a second; surface [m]: flat if None."""
     rate = np.gradient(motion)
-    return noise_of(residual, 1.0, motion, rate, np.gradient(rate))
+    flat = np.full(motion.size, np.inf)
+    return noise_of(residual, 1.0, motion, rate, np.gradient(rate), flat if surface is None else surface)
 
 
 def test_a_place_that_comes_again_at_the_very_end_says_nothing_of_long_lags() -> None:
@@ -107,6 +108,24 @@ def test_what_comes_again_with_the_other_sign_on_the_way_back_is_no_noise() -> N
     ripple = np.sin(2.0 * np.pi * MOTION / 1e-3) * np.sign(np.gradient(MOTION))
     found = noise_beside(0.1 * WHITE + ripple, MOTION)
     assert found.level < 0.2
+
+
+TRIANGLE = 0.02 * np.concatenate([np.linspace(0.0, 1.0, 80), np.linspace(1.0, 0.0, 80)])
+BENT = np.interp(TRIANGLE, np.linspace(0.0, 0.02, 9), [0.0, 1.0, -0.8, 0.6, 1.2, -1.0, 0.2, -0.6, 0.9])
+"""What a law of another shape leaves: bent at every eighth of the deflection."""
+
+
+def test_a_shape_of_the_law_that_comes_again_on_the_way_back_alone_is_no_noise() -> None:
+    """Of what depends on the deflection, third differences change their sign with the direction."""
+    found = noise_beside(0.05 * WHITE[:160] + BENT, TRIANGLE)
+    assert found.level == pytest.approx(0.05, rel=0.2)
+
+
+def test_a_shape_of_the_law_that_is_another_one_on_each_surface_is_no_noise() -> None:
+    motion, surface = np.tile(TRIANGLE, 3), np.repeat([np.inf, 0.3, 0.1], 160)
+    bent = np.concatenate([BENT, -1.5 * BENT, 0.5 * BENT])
+    found = noise_beside(0.05 * WHITE[:480] + bent, motion, surface)
+    assert found.level == pytest.approx(0.05, rel=0.2)
 
 
 def ride(stretched: float) -> FloatArray:
