@@ -15,7 +15,7 @@ from tirelab.estimation.fit import fitted
 from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
-from tirelab.regressors.signature import Signature, signatures_of
+from tirelab.regressors.signature import LAW, Signature, law_signature, signatures_of
 from tirelab.selection.search import Discrepancy, discrepancy_of
 from tirelab.simulation.simulate import simulate
 
@@ -23,6 +23,22 @@ from tirelab.simulation.simulate import simulate
 @pytest.fixture(scope="module")
 def ranking(dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy) -> Ranking:
     return ranked(begun(dataset, signatures, noise, []), lambda name: ())
+
+
+def test_a_refitted_law_is_fitted_whatever_was_predicted_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A prediction has one size for all its columns, a fit one for each group of them."""
+    monkeypatch.setattr(
+        "tirelab.estimation.ranking.predicted_gains",
+        lambda signatures, base, discrepancy: [0.0] * len(signatures),
+    )
+    deflection = 0.02 * np.abs(np.sin(np.linspace(0.0, 3.0 * np.pi, 900)))
+    force = flat_force(deflection) * (1.0 + 0.05 * np.sin(300.0 * deflection))
+    noise = 2.0 * np.random.default_rng(3).normal(size=900)
+    press = Recording("press", np.linspace(0.0, 9.0, 900), deflection, np.full(900, np.inf), force + noise)
+    dataset = dataset_of([press], TireModel())
+    law = law_signature(dataset)
+    found = ranked(begun(dataset, (law,), discrepancy_of(dataset.misfit, 0.05), []), lambda name: ())
+    assert found.best.names == (LAW,)
 
 
 def by_hand(*sets: tuple[str, float]) -> Ranking:
