@@ -231,8 +231,7 @@ class FittedSets:
 
     def additions(self, base: Fit, name: str) -> list[tuple[float, ...]]:
         """Return the values from which a candidate is added to a fitted set, the best first."""
-        signature = self.beside(base)[name]
-        return additions(signature, base.residual, base.slopes, base.variance, self.dataset)
+        return additions(self.beside(base)[name], base.residual, base.slopes, base.variance, self.dataset)
 
     def remove(self, base: Fit, name: str) -> None:
         """Fit a set without one of its candidates, from the optimum of the larger one."""
@@ -254,8 +253,7 @@ def begun(
     starts: the latter, the likeliest first: V, and what each candidate is to explain (m,) in units of the noise
     held_out: recordings that take part in the posterior; most_work: budget in place of MOST_WORK
     """
-    noise = discrepancy_of(dataset.misfit, 0.0)
-    known = {s.name: s for s in signatures}
+    noise, known = discrepancy_of(dataset.misfit, 0.0), {s.name: s for s in signatures}
     sets = FittedSets(dataset, known, noise, discrepancy, held_out, most_work=most_work)
     sets.fit([{}], discrepancy.highest)
     nothing_fitted = np.zeros((dataset.misfit.size, 0))
@@ -300,10 +298,8 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
 
 
 def _depends(name: str, beside: Sequence[str]) -> bool:
-    """Whether a candidate's response depends on the effects beside it: it acts on their signal, or one of them on its.
-
-    The law's is that of the baseline: what a ceiling or a lag makes of it is left to the fit.
-    """
+    """Whether a response depends on the effects beside it: it acts on their signal, or one of them on its."""
+    # The law's is that of the baseline: what a ceiling or a lag makes of it is left to the fit.
     return bool(beside) and name != LAW and any(map(acts_on_signal, (name, *beside)))
 
 
