@@ -63,15 +63,15 @@ def diagnose(
     catalogue: names of the effects that may be found, None for all (what an effect outside it does is something
     unknown); limits: of the rig that would drive the next test; progress: called with a sentence for each stage
 
-    Raises PoorRecording where the recordings are too short or too poor, RecordingError where the zero of a gauge is so
-    far off that no effect holds it, ValueError for an unknown name in `catalogue`.
+    Raises PoorRecording where recordings, also held-out ones, are too short or too poor, RecordingError where the zero
+    of a gauge is so far off that no effect holds it, ValueError for an unknown name in `catalogue`.
     """
     fitted, kept = [alone(r) for r in _several(recordings)], _several(held_out)
     report = progress or (lambda sentence: None)
     allowed = catalogue_names() if catalogue is None else tuple(catalogue)
     _check_names(allowed)
     refuse_far_zeros(fitted)
-    check_recordings(fitted, two_sided=baseline.two_sided)
+    check_recordings(fitted, kept, two_sided=baseline.two_sided)
     data = _Data(fitted, raw_dataset_of(fitted, baseline), [r.force - simulate(baseline, r) for r in fitted])
 
     def explain(

@@ -41,16 +41,19 @@ class PoorRecording(TirelabError):
     """The recordings are too short or too poor to say anything."""
 
 
-def check_recordings(recordings: Sequence[Recorded], *, two_sided: bool = False) -> None:
-    """Raise PoorRecording where there is no recording, or one of them shows no cycle.
+def check_recordings(
+    fitted: Sequence[Recorded], held_out: Sequence[Recorded] = (), *, two_sided: bool = False
+) -> None:
+    """Raise PoorRecording where there is no recording to fit, or one of all shows no cycle.
 
     two_sided: whether the part is held at both ends: a deflection below 0 loads it too
     """
-    if not recordings:
+    if not fitted:
         raise PoorRecording("no recording was given; name at least one to diagnose")
-    together = sum(r.time.size for r in recordings)
-    for r in recordings:
-        where = f"recording {r.name}"
+    together = sum(r.time.size for r in fitted)
+    kinds = *(("recording", r) for r in fitted), *(("held-out recording", r) for r in held_out)
+    for kind, r in kinds:
+        where = f"{kind} {r.name}"
         fewest = FEWEST_BESIDE if together >= FEWEST_SAMPLES else FEWEST_SAMPLES
         if r.time.size < fewest:
             raise PoorRecording(f"{where} has {r.time.size} samples; at least {fewest} are needed")

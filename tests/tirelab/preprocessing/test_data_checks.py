@@ -87,6 +87,13 @@ def test_nothing_is_refused() -> None:
 )
 def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason: str) -> None:
     assert f"recording a {reason}" in refused(recording(), recording(**channels))
+    with pytest.raises(PoorRecording, match=f"^held-out recording a {reason}"):
+        check_recordings([recording()], [recording(**channels)])
+
+
+def test_two_held_out_samples_judge_nothing() -> None:
+    with pytest.raises(PoorRecording, match=r"^held-out recording a has 2 samples; at least 24 are needed"):
+        check_recordings([recording()], [recording(**first(2))])
 
 
 @pytest.mark.parametrize(
