@@ -55,11 +55,15 @@ def test_a_ceiling_above_the_largest_force_of_the_baseline_is_found(zero):
     assert limit == pytest.approx(0.9 * force.max() + zero, abs=2.0)
 
 
-def test_an_effect_outside_the_catalogue_is_unknown_or_has_alternatives():
+def test_what_another_effect_follows_to_a_few_percent_passes_for_that_one_and_the_rest_is_told():
+    """A lag of the gauge is damping in proportion to the stiffness; the rest is within the errors of its form."""
     catalogue = [n for n in catalogue_names() if n != "viscous_damping"]
-    verdict = diagnose([damped(3)], catalogue=catalogue)
-    assert "viscous_damping" not in verdict.names
-    assert verdict.unexplained or verdict.alternatives
+    verdict = diagnose([damped(3, damping=2000.0)], catalogue=catalogue)
+    assert verdict.names == ("deflection_lag",)
+    noise, before, after = verdict.fit.noise, verdict.fit.before, verdict.fit.after
+    assert verdict.remainder.size == pytest.approx(np.sqrt(after**2 - noise**2) / noise, rel=0.05)
+    assert verdict.remainder.size > 1.0
+    assert verdict.remainder.share == pytest.approx((after**2 - noise**2) / (before**2 - noise**2), rel=0.1)
 
 
 def test_a_ripple_over_the_deflection_is_unknown_and_repeats(rippled_verdict):
