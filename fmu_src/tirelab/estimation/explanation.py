@@ -47,11 +47,11 @@ from .findings import (
 )
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
+from .held_out import held_out_of
 from .ranking import (
     MOST_WORK,
     Ranking,
     corrected,
-    held_out_of,
     ranked,
     with_parts,
 )

@@ -34,11 +34,11 @@ from ..selection.search import (
     search,
     usual_form_error,
 )
+from .held_out import HeldOutRecordings
 from .ranking import (
     BEGUN,
     MOST_WORK,
     FittedSets,
-    HeldOutRecordings,
     begun,
 )
 

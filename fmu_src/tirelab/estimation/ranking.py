@@ -14,10 +14,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
 
-from ..preprocessing.samples import Recorded
-from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
+from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn_beside
 from ..selection.search import (
     LOST,
@@ -25,47 +23,13 @@ from ..selection.search import (
     PRIOR_ODDS,
     Discrepancy,
     discrepancy_of,
-    usual_form_error,
 )
-from ..simulation.simulate import SmoothedMotion, simulate
 from .additions import additions, predicted_gains
 from .fit import LEAST_GAIN, Fit, fitted
+from .held_out import HeldOutRecordings, predicted
 from .problem import Values
 
 FloatArray = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class HeldOutRecordings:
-    """Recordings to which nothing is fitted, which take part in the posterior of each set.
-
-    log p(all) = log p(fitted) + log p(held out | fitted), the latter at the fitted parameters.
-    motions: from where each recording begins; dataset: of the recordings; law: of the discrepancy that forms usually
-    leave of their misfit
-    """
-
-    recordings: tuple[Recorded, ...]
-    motions: tuple[SmoothedMotion, ...]
-    dataset: Dataset
-    law: Discrepancy
-
-    def predicted(self, fit: Fit) -> Fit:
-        """Return a fit with its residual on these recordings and the log likelihood of that at the best V."""
-        pairs = zip(self.recordings, self.motions, strict=True)
-        left = [r.force - simulate(fit.tire, m, m)[-r.force.size :] for r, m in pairs]
-        residual = self.dataset.stacked(self.dataset.averaged(left))
-        likelihood, _ = self.law.profile(float(residual @ residual))
-        return replace(fit, held_out_residual=residual, log_predictive=likelihood)
-
-
-def held_out_of(recordings: Sequence[Recorded], baseline: TireModel) -> HeldOutRecordings | None:
-    """Return the held-out recordings with what the predictive likelihood needs; None where there are none."""
-    if not recordings:
-        return None
-    dataset = dataset_of(recordings, baseline)
-    law = discrepancy_of(dataset.misfit, usual_form_error(baseline)).blurred(dataset.rounding_error)
-    motions = samples_of([getattr(r, "whole", r) for r in recordings], baseline).motions
-    return HeldOutRecordings(tuple(recordings), motions, dataset, law)
 
 
 BEGUN = 3
@@ -179,15 +143,35 @@ class FittedSets:
 
         One form error serves all sets: their own would favour sets whose forms are declared to be good.
         """
-        best = self.fits[self.best()]
-        found = np.array([best.form_error, best.slow])
-        near = np.all((self.assessed / USUAL_MOVED <= found) & (found <= self.assessed * USUAL_MOVED))
-        if self.assessed_at == self.count or (self.assessed_at and near):
+        if self.assessed_at == self.count:
             return False
-        self.assessed, self.assessed_at = found, self.count
-        self.discrepancy = self.noise.above(best.form_error).beside_slow(best.slow)
+        before, self.assessed_at = self.assessed, self.count
+        self._assess(self.best_fit)
+        # What is slow in the rest of the best set is no noise where another set explains it.
+        quieter = (fit for fit in self.fits.values() if self._would_win(fit))
+        least = min(quieter, key=lambda fit: fit.slow, default=None)
+        if least is not None:
+            self._assess(least)
+            self._assess(self.best_fit)
+        return self.assessed is not before
+
+    def _assess(self, by: Fit) -> None:
+        found = np.array([by.form_error, by.slow])
+        if np.all((self.assessed / USUAL_MOVED <= found) & (found <= self.assessed * USUAL_MOVED)):
+            return
+        self.assessed, self.discrepancy = found, self._beside(by)
         self.fits = {names: fit.with_discrepancy(self.discrepancy) for names, fit in self.fits.items()}
-        return True
+
+    def _beside(self, fit: Fit) -> Discrepancy:
+        return self.noise.above(fit.form_error).beside_slow(fit.slow)
+
+    def _would_win(self, fit: Fit) -> bool:
+        """Whether a set would be ahead of the best one beside the slow noise that it leaves itself."""
+        best, most = self.best_fit, 0.5 * self.noise.effective * np.log(self.assessed[1] / fit.slow)
+        if fit.slow * USUAL_MOVED > self.assessed[1] or best.log_posterior - fit.log_posterior > most:
+            return False
+        own = self._beside(fit)
+        return fit.with_discrepancy(own).log_posterior > best.with_discrepancy(own).log_posterior
 
     def posterior(self, names: frozenset[str]) -> float:
         return self.fits[names].log_posterior
@@ -200,7 +184,7 @@ class FittedSets:
         best = self.fits[self.best()] if self.fits else None
         wanted = -np.inf if best is None else best.log_likelihood + PRIOR_ODDS * (len(key) - len(best.names))
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
-        found = _predicted(self.held_out, found)
+        found = predicted(self.held_out, found)
         self.count += 1
         self.work += found.evaluations * found.residual.size
         self.times[key] += 1
@@ -307,11 +291,6 @@ def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:
     return tuple(sorted(fits, key=lambda f: -f.log_posterior))
 
 
-def _predicted(held_out: HeldOutRecordings | None, fit: Fit) -> Fit:
-    """Return a fit with its residual on held-out recordings, where there are any."""
-    return fit if held_out is None else held_out.predicted(fit)
-
-
 def with_parts(ranking: Ranking, fit: Fit) -> Ranking:
     """Return the ranking with each set fitted that lacks one candidate of a fit, to know what the candidate explains.
 
@@ -322,7 +301,7 @@ def with_parts(ranking: Ranking, fit: Fit) -> Ranking:
         if ranking.of(frozenset(fit.names) - {name}) is None:
             start = {n: v for n, v in fit.values.items() if n != name}
             less = fitted(fit.problem.dataset, [start], ranking.discrepancy, fit.variance, -np.inf)
-            found.append(_predicted(ranking.held_out, less))
+            found.append(predicted(ranking.held_out, less))
     return replace(ranking, fits=_in_order([*ranking.fits, *found])) if found else ranking
 
 
@@ -335,7 +314,7 @@ def corrected(ranking: Ranking, samples: Samples) -> Ranking:
     """
     winning = [frozenset(f.names) for f in ranking.fits if ranking.behind(f) < LOST]
     found = (
-        _predicted(ranking.held_out, _corrected(f, samples, ranking.discrepancy))
+        predicted(ranking.held_out, _corrected(f, samples, ranking.discrepancy))
         if any(names.issuperset(f.names) for names in winning)
         else f
         for f in ranking.fits

@@ -12,7 +12,8 @@ import pytest
 from drives import flat_force
 from radialtire import CATALOGUE, TireModel
 from tirelab.estimation.fit import fitted
-from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, held_out_of, ranked, with_parts
+from tirelab.estimation.held_out import held_out_of
+from tirelab.estimation.ranking import TEMPERATURE, Ranking, begun, corrected, ranked, with_parts
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
 from tirelab.regressors.signature import LAW, Signature, law_signature, signatures_of
