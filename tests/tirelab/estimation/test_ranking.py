@@ -42,6 +42,21 @@ def test_a_refitted_law_is_fitted_whatever_was_predicted_of_it(monkeypatch: pyte
     assert found.best.names == (LAW,)
 
 
+def test_what_a_set_explains_is_no_slow_noise_though_nothing_is_likeliest_beside_it() -> None:
+    """One ramp on a law of another shape: where nothing is fitted, its whole misfit is slow."""
+    deflection = np.linspace(0.0005, 0.02, 300)
+    force = flat_force(deflection) + 30.0 * np.sin(500.0 * deflection)
+    noise = 0.5 * np.random.default_rng(3).normal(size=300)
+    ramp = Recording("ramp", np.linspace(0.0, 9.0, 300), deflection, np.full(300, np.inf), force + noise)
+    dataset = dataset_of([ramp], TireModel())
+    law = law_signature(dataset)
+    found = ranked(begun(dataset, (law,), discrepancy_of(dataset.misfit, 0.05), []), lambda name: ())
+    nothing = found.of(frozenset())
+    assert nothing is not None
+    assert found.best.names == (LAW,)
+    assert found.best.power < 0.25 * nothing.power
+
+
 def by_hand(*sets: tuple[str, float]) -> Ranking:
     fits: Any = [SimpleNamespace(names=tuple(n.split()), log_posterior=p) for n, p in sets]
     return Ranking(tuple(fits), Discrepancy(100, 30.0, 1.0, 2.0))
