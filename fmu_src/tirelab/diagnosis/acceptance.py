@@ -234,8 +234,9 @@ def _parts(
         if _shows_as_much(kept, before, after, ways, within(kept)):
             return kept, f"recording {recordings[number].name}"
     kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
-    if _shows_as_much(kept, before, after, ways, within(kept)):
-        kept = [k | ~w for k, w in zip(kept, within(kept), strict=True)]
+    inside = within(kept)
+    if _shows_as_much(kept, before, after, ways, inside):
+        kept = [k | ~w for k, w in zip(kept, inside, strict=True)]
         return kept, _name_of(kept, recordings)
     ends = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
     kept = [k | ~w for k, w in zip(ends, within(ends), strict=True)]

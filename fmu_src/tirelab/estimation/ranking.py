@@ -167,8 +167,9 @@ class FittedSets:
 
     def _would_win(self, fit: Fit) -> bool:
         """Whether a set would be ahead of the best one beside the slow noise that it leaves itself."""
-        best, most = self.best_fit, 0.5 * self.noise.effective * np.log(self.assessed[1] / fit.slow)
-        if fit.slow * USUAL_MOVED > self.assessed[1] or best.log_posterior - fit.log_posterior > most:
+        best, ratio = self.best_fit, self.assessed[1] / max(fit.slow, 1.0)
+        most = 0.5 * self.noise.effective * np.log(max(ratio, 1.0))
+        if ratio < USUAL_MOVED or best.log_posterior - fit.log_posterior > most:
             return False
         own = self._beside(fit)
         return fit.with_discrepancy(own).log_posterior > best.with_discrepancy(own).log_posterior

@@ -48,7 +48,8 @@ STANDS_OUT = 8.0
 stands still."""
 
 FEWEST_EVENTS = 10
-"""Fewest events (samples of a hold, changes that the next sample undoes) that are not taken for chance."""
+"""Fewest events that are not taken for chance: samples of a hold, changes that the next sample undoes, memories of
+noise between visits of a place."""
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
