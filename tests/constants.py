@@ -159,6 +159,7 @@ EFFORT = (
     "estimation/problem.START_OFFSET",
     "estimation/ranking.BEGUN",
     "estimation/ranking.CORRECTIONS",
+    "estimation/ranking.EVALUATION",
     "estimation/ranking.USUAL_MOVED",
     "estimation/ranking.GAIN_ERROR",
     "estimation/ranking.MOST_FITS",

@@ -44,9 +44,12 @@ REACH = TEMPERATURE * LOST
 MOST_FITS = 40
 """Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
 
-MOST_WORK = 6e7
+MOST_WORK = 8e7
 """Budget: number of simulated blocks of one ranking, after which it ends however much it still gains: some 20 s of a
 core of an x86-64 server, with which the whole command stays within 60 s."""
+
+EVALUATION = 2000
+"""Number of blocks in which a simulation takes as long as everything of an evaluation that does not grow with them."""
 
 REPEATS = 2
 """Budget: number of fits of one set, each from the optimum of another set."""
@@ -134,7 +137,7 @@ class FittedSets:
 
     @property
     def spent(self) -> bool:
-        """Whether as many sets as the budget allows were fitted since a decisive gain, or as many blocks simulated."""
+        """Whether as many sets as the budget allows were fitted since a decisive gain, or as much simulated."""
         return self.count - self.gained_at >= MOST_FITS or self.work >= self.most_work
 
     def update_discrepancy(self) -> bool:
@@ -187,7 +190,7 @@ class FittedSets:
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
         found = predicted(self.held_out, found)
         self.count += 1
-        self.work += found.evaluations * found.residual.size
+        self.work += found.evaluations * (EVALUATION + found.residual.size)
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count
