@@ -39,7 +39,7 @@ BESIDE = (
     "diagnosis/discriminating_test",
     "diagnosis/localization",
     "diagnosis/simulation_correction.FORCE_FROM",
-    "preprocessing/samples",
+    "preprocessing/samples.ROWS",
 )
 """Modules or numbers of these rooms that make what is shown beside a verdict: places, the next test, reasons."""
 
@@ -134,7 +134,7 @@ EFFORT = (
     "regressors/signature.COLUMNS",
     "regressors/signature.DRAWS",
     "regressors/signature.ENERGY",
-    "regressors/signature.MOST_SURFACES",
+    "preprocessing/samples.MOST_SURFACES",
     "regressors/signature.BLOCKS_OF_PART",
     "regressors/signature.PARTS",
     "regressors/signature.PROBED",

@@ -32,8 +32,14 @@ from ..names import REFITTED_LAW
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 from ..preprocessing.noise import NEGLIGIBLE, STILL
-from ..preprocessing.samples import RawDataset, RawExperiment, Recorded, is_timed, raw_dataset_of
-from ..regressors.signature import MOST_SURFACES
+from ..preprocessing.samples import (
+    RawDataset,
+    RawExperiment,
+    Recorded,
+    is_timed,
+    raw_dataset_of,
+    surface_numbers,
+)
 from ..simulation.channels import begun
 from ..simulation.simulate import simulate, smoothed_motion
 
@@ -152,14 +158,6 @@ def split(
     return HeldOut(by, *(tuple(p for p in side if p.chosen.any()) for side in (fitted, others)))
 
 
-def _surfaces(recordings: Sequence[Recorded]) -> list[IndexArray]:
-    """Return the number of the surface at each sample; one number for all where there are too many to tell apart."""
-    radii = np.unique(np.concatenate([np.unique(r.surface_radius) for r in recordings]))
-    if radii.size > MOST_SURFACES:
-        return [np.zeros(r.time.size, dtype=np.intp) for r in recordings]
-    return [np.searchsorted(radii, r.surface_radius) for r in recordings]
-
-
 def _ways(
     recordings: Sequence[Recorded], motions: Sequence[Motion], surfaces: Sequence[IndexArray]
 ) -> list[IndexArray]:
@@ -218,7 +216,8 @@ def _parts(
 
     before [N]: what the baseline leaves of each recording; explanation: the set
     """
-    surfaces, seen = _surfaces(recordings), explanation.compared
+    surfaces = surface_numbers([r.surface_radius for r in recordings])
+    seen = explanation.compared
     ways = _ways(recordings, motions, surfaces)
     # A sample that is not compared shows nothing of either side.
     before, after = (

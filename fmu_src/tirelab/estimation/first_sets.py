@@ -14,7 +14,7 @@ import numpy as np
 from radialtire import TireModel
 
 from ..preprocessing.noise import noise_of
-from ..preprocessing.samples import Recorded
+from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import Dataset, Samples, dataset_of
 from ..regressors.signature import (
     LAW,
@@ -112,8 +112,9 @@ def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Da
     left = dataset.apart(dataset.misfit - _saturated(equations))
     found = []
     for e, own in zip(dataset.experiments, left, strict=True):
-        motion = (e.deflection, e.rate, e.acceleration, e.surface_radius)
-        noise = noise_of(own, e.interval, *(v[e.counts] for v in motion))
+        x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
+        (surface,) = surface_numbers([e.surface_radius[e.counts]])
+        noise = noise_of(own, e.interval, x, rate, acceleration, surface)
         found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
     read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
     more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, Parameter, Recalibrated, TireModel
 
 from ..preprocessing.motion import branches
+from ..preprocessing.samples import MOST_SURFACES
 from ..regressors.dataset import Dataset, Scales, arranged
 from ..regressors.draws import at_reading, centre_and_spread
 from ..regressors.signature import (
@@ -36,7 +37,6 @@ from ..regressors.signature import (
     HEIGHTS,
     KINK,
     LAW,
-    MOST_SURFACES,
     PRELOAD,
     RAMPS,
     REFERENCE,

@@ -107,15 +107,15 @@ def noise_of(
     deflection: FloatArray,
     rate: FloatArray,
     acceleration: FloatArray,
-    surface_radius: FloatArray,
+    surface: IntArray,
 ) -> Noise:
     """Return the noise of a residual (n,), white or with a memory.
 
-    interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2] of the motion and radius of the
-    surface [m] at the samples, each (n,)
+    interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2] of the motion and number of the
+    surface at the samples, each (n,)
     """
     levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
-    places = _Places(deflection, _surfaces(surface_radius))
+    places = _Places(deflection, surface)
     found = _noise_at_plateau(levels, places)
     found = found or _noise_at_whole_variation(levels, places, _signals(deflection, rate, acceleration))
     return found or Noise(white_level(residual), 1)
@@ -132,12 +132,6 @@ class _Places:
 Visits = tuple[IntArray, IntArray, FloatArray]
 """Numbers of two samples of one place, pair by pair, and 1 where both go the same way, -1 where not: what depends on
 the place has third differences of the other sign on the way back."""
-
-
-def _surfaces(radius: FloatArray) -> IntArray:
-    """Return the number of the surface at each sample; one for all where there are too many to come again."""
-    found, numbers = np.unique(radius, return_inverse=True)
-    return np.zeros_like(numbers) if found.size * FEWEST_LAGS > radius.size else numbers
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,10 @@ from .motion import FloatArray, IndexArray, Motion, motion_of
 ROWS = 8000
 """Number of samples in which the misfit is located: evenly spaced, of all recordings together."""
 
+MOST_SURFACES = 8
+"""With more surfaces than these (terrain) none is told from the others, and a law is refitted with one change for all
+of them."""
+
 OF_TIME = frozenset({"time", "rate", "acceleration"})
 """Coordinates that need the times of the samples."""
 
@@ -131,6 +135,16 @@ def raw_dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> RawDa
         tuple(radii.tolist()),
         max(float(e.motion.deflection.max()) for e in experiments),
     )
+
+
+def surface_numbers(radii: Sequence[FloatArray]) -> list[IndexArray]:
+    """Return the number of the surface at each sample from the radii [m] of one or more recordings, each (n,), the same
+    number in all of them; one number for all where there are more than MOST_SURFACES.
+    """
+    known = np.unique(np.concatenate([np.unique(own) for own in radii]))
+    if known.size > MOST_SURFACES:
+        return [np.zeros(own.size, dtype=np.intp) for own in radii]
+    return [np.searchsorted(known, own) for own in radii]
 
 
 def alone(recording: R) -> R:

@@ -23,7 +23,7 @@ from ..preprocessing.data_checks import are_rare, compared, spikes
 from ..preprocessing.gauge import destepped, staircase_step
 from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
 from ..preprocessing.noise import SHARE_OF_STEP, STILL, Noise, NoiseFloor, Scalar, noise_floor, noise_of
-from ..preprocessing.samples import Recorded
+from ..preprocessing.samples import Recorded, surface_numbers
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 
 FloatArray = NDArray[np.float64]
@@ -137,9 +137,7 @@ def experiment_in_blocks(
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
     misfit = recording.force - baseline
-    reading = reading or noise_of(
-        misfit, interval, motion.deflection, motion.rate, motion.acceleration, moved.surface_radius
-    )
+    reading = reading or _noise_along(moved, misfit, interval)
     lone = spikes(misfit)
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & are_rare(lone[turns]))
@@ -148,14 +146,7 @@ def experiment_in_blocks(
     averaged = _averaged(moved, turns, blocks)
     averaged_misfit = blocks.mean(misfit)
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
-    of_blocks = noise_of(
-        averaged_misfit,
-        interval * blocks.size,
-        averaged.deflection,
-        averaged.rate,
-        averaged.acceleration,
-        averaged.surface_radius,
-    )
+    of_blocks = _noise_along(averaged, averaged_misfit, interval * blocks.size)
     noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
     force_step = staircase_step(recording.force)
     least_noise, resting = _rounding(recording.force, force_step, blocks.size)
@@ -179,6 +170,12 @@ def experiment_in_blocks(
         reading=reading,
         measured=averaged.measured,
     )
+
+
+def _noise_along(moved: SmoothedMotion, misfit: FloatArray, interval: float) -> Noise:
+    """Return the noise of a misfit [N] (n,) along a motion; interval [s]: between its samples."""
+    (surface,) = surface_numbers([moved.surface_radius])
+    return noise_of(misfit, interval, moved.deflection, moved.rate, moved.acceleration, surface)
 
 
 def _averaged(moved: SmoothedMotion, turns: BoolArray, blocks: Blocks) -> SmoothedMotion:

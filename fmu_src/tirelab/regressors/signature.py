@@ -28,6 +28,7 @@ from radialtire import CATALOGUE, Effect, TireModel
 from scipy.interpolate import BSpline
 
 from ..names import REFITTED_LAW
+from ..preprocessing.samples import MOST_SURFACES, surface_numbers
 from ..simulation.simulate import UPSTREAM, preload_of
 from .dataset import Dataset, arranged
 from .draws import at_reading, centre_and_spread, drawn, strengthened
@@ -59,9 +60,6 @@ REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
 
 LEAST_RATIO = 0.01
 """The least x / x_ref, as in the effect SHAPE."""
-
-MOST_SURFACES = 8
-"""With more surfaces than these (terrain) the law is refitted with one change for all of them."""
 
 
 def candidates() -> tuple[str, ...]:
@@ -226,12 +224,11 @@ def single_valued(signatures: Sequence[Signature], dataset: Dataset) -> frozense
     reversal, for instance.
 
     Of most drawn responses the standard deviation about a straight line in each part of the deflection, surface by
-    surface, is below the form error. More surfaces than MOST_SURFACES count as one, as they do for the law.
+    surface (see `surface_numbers`), is below the form error.
     """
     many = dataset.experiments
     x, radius = (dataset.gathered([getattr(e, c) for e in many]) for c in ("deflection", "surface_radius"))
-    radii, surface = np.unique(radius, return_inverse=True)
-    surface = surface if radii.size <= MOST_SURFACES else np.zeros_like(surface)
+    (surface,) = surface_numbers([radius])
     parts = max(min(PARTS, x.size // (BLOCKS_OF_PART * (int(surface.max()) + 1))), 1)
     place = np.minimum(parts * (x - x.min()) / max(float(np.ptp(x)), 1e-300), parts - 1).astype(int)
     part = surface * parts + place

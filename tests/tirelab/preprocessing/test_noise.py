@@ -9,6 +9,7 @@ from scipy.signal import butter, lfilter
 from tirelab.preprocessing.noise import Noise, noise_floor, noise_of, white_level
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
 DEPTH = 25e-3
 TIME = np.linspace(0.0, 10.0, 4001)
@@ -51,11 +52,11 @@ SLOW = 40.0 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0)
 MOTION = 0.02 * np.sin(2.0 * np.pi * np.arange(8000) / 900.0 + 0.3)
 
 
-def noise_beside(residual: FloatArray, motion: FloatArray, surface: FloatArray | None = None) -> Noise:
-    """Return the noise of a residual beside an exact motion of one sample a second; surface [m]: flat if None."""
+def noise_beside(residual: FloatArray, motion: FloatArray, surface: IntArray | None = None) -> Noise:
+    """Return the noise of a residual beside an exact motion of one sample a second, on one surface if None is given."""
     rate = np.gradient(motion)
-    flat = np.full(motion.size, np.inf)
-    return noise_of(residual, 1.0, motion, rate, np.gradient(rate), flat if surface is None else surface)
+    one = np.zeros(motion.size, dtype=np.intp)
+    return noise_of(residual, 1.0, motion, rate, np.gradient(rate), one if surface is None else surface)
 
 
 def test_a_place_that_comes_again_at_the_very_end_says_nothing_of_long_lags() -> None:
@@ -122,7 +123,7 @@ def test_a_shape_of_the_law_that_comes_again_on_the_way_back_alone_is_no_noise()
 
 
 def test_a_shape_of_the_law_that_is_another_one_on_each_surface_is_no_noise() -> None:
-    motion, surface = np.tile(TRIANGLE, 3), np.repeat([np.inf, 0.3, 0.1], 160)
+    motion, surface = np.tile(TRIANGLE, 3), np.repeat([0, 1, 2], 160)
     bent = np.concatenate([BENT, -1.5 * BENT, 0.5 * BENT])
     found = noise_beside(0.05 * WHITE[:480] + bent, motion, surface)
     assert found.level == pytest.approx(0.05, rel=0.2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from radialtire import TireModel, power_law
-from tirelab.preprocessing.samples import ROWS, raw_dataset_of
+from tirelab.preprocessing.samples import MOST_SURFACES, ROWS, raw_dataset_of, surface_numbers
 from tirelab.recordings.recording import Recording
 
 BASELINE = TireModel()
@@ -57,3 +57,17 @@ def test_the_largest_deflection_and_the_surfaces_are_those_of_all_recordings() -
     )
     assert dataset.max_deflection == pytest.approx(22e-3, rel=1e-4)
     assert set(dataset.radii) == {np.inf, 0.3, -0.5}
+
+
+def test_a_surface_has_one_number_in_all_recordings() -> None:
+    convex, flat, concave = 0.3, np.inf, -0.5
+    one, other = surface_numbers([np.array([flat, convex]), np.array([concave, flat, convex, flat])])
+    np.testing.assert_array_equal(other[[2, 1]], one[[1, 0]])
+    assert other[1] == other[3]
+    assert len({*one.tolist(), *other.tolist()}) == 3
+
+
+def test_no_surface_of_a_terrain_is_told_from_the_others() -> None:
+    radii = np.linspace(0.2, 0.9, MOST_SURFACES + 1)
+    assert not np.any(surface_numbers([radii])[0])
+    assert np.all(np.diff(surface_numbers([radii[1:]])[0]) == 1)
