@@ -119,6 +119,10 @@ def read_corrected(path: Path, *, with_remainder: bool = False) -> TireModel | C
         raise DiagnosisFileError(f"{path} is no diagnosis ({what_is_wrong(error)}); diagnose again") from None
 
 
+def _repeats(r2: float | None) -> str:
+    return "visited once" if r2 is None else f"repeats {r2:.2f}"
+
+
 def _learned(path: Path, content: Mapping[str, Any]) -> LearnedRemainder:
     """Return the learned remainder that repeats best."""
     found = content["verdict"].get("corrections", [])
@@ -128,12 +132,13 @@ def _learned(path: Path, content: Mapping[str, Any]) -> LearnedRemainder:
         )
     packed = [c for c in found if c["by"] in COORDINATES and (c["repeats"] or 0.0) > 0.0]
     if not packed:
-        which = ", ".join(f"over the {c['by']}, repeats {c['repeats'] or 0.0:.2f}" for c in found)
+        which = ", ".join(f"over the {c['by']}, {_repeats(c['repeats'])}" for c in found)
         raise DiagnosisFileError(
             f"{path}: the remainder ({which}) does not repeat, or depends on the time alone, so it holds for these "
             "recordings only; leave out --with-remainder"
         )
-    best = max(packed, key=lambda c: float(c["repeats"]))
+    # Of two that repeat alike, as over the deflection and over the law's force, the first one depends on it more.
+    best = max(packed, key=lambda c: round(float(c["repeats"]), 2))
     if "at" not in best:
         raise DiagnosisFileError(
             f"{path}: was written before the remainder's curve was in it; diagnose again"

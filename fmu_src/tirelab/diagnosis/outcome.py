@@ -174,7 +174,9 @@ def split_reason(reason: str) -> tuple[str, str]:
 
 
 def _regression(found: ResidualModel) -> dict[str, Any]:
-    if found.r2 > 0.0:
+    if math.isnan(found.r2):
+        repeats = "Most of its values were there once: whether it repeats is not known."
+    elif found.r2 > 0.0:
         repeats = (
             f"It repeats: it explains {100.0 * found.r2:.0f} % of the remainder on held-out blocks of time."
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..estimation.findings import UNEXPLAINED_SHARE, UNEXPLAINED_SIZE, Remainder
-from ..preprocessing.motion import FloatArray
+from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment
 from .acceptance import HeldOut, rmse
 from .localization import Span
@@ -20,6 +20,12 @@ height (root mean square), so that a ripple with a period of a fifteenth of the 
 
 FOLDS = 5
 """Number of blocks of time in the cross-validation; each is predicted from the others."""
+
+CLASSES = 10 * FOLDS
+"""Number of classes of a coordinate's values. One in which samples of two blocks of time are was visited again."""
+
+MAJORITY = 0.5
+"""Least part of the samples in such classes with which it can be told whether a regression repeats."""
 
 Coordinate = Callable[[RawExperiment], FloatArray]
 
@@ -36,8 +42,8 @@ COORDINATES: dict[str, tuple[str, Coordinate]] = {
 class ResidualModel:
     """A regression of a residual that no effect explains: force [N] over one coordinate, and whether it repeats.
 
-    by: coordinate; at: its values in `unit`; force [N]; r2: cross-validated R^2 over blocks of time, negative where the
-    curve does not repeat
+    by: coordinate; at: its values in `unit`; force [N]; r2: cross-validated R^2 over blocks of time where they have the
+    same values, negative where the curve does not repeat, NaN where most values were there once
     after, held_out_after: RMSE [N] of the corrected tire with the force added, on fitted and on held-out data
     """
 
@@ -101,13 +107,24 @@ def _regressed(
         ]
     )
     knots = _knots(at)
+    again = _visited_again(at, part)
     predicted = np.zeros_like(force)
     for fold in range(FOLDS):
         predicted[part == fold] = _curve(at[part != fold], force[part != fold], knots, at[part == fold])
-    r2 = 1.0 - float(np.sum((force - predicted) ** 2) / np.sum(force**2))
+    missed = np.sum((force - predicted)[again] ** 2)
+    r2 = float(1.0 - missed / np.sum(force[again] ** 2)) if again.mean() > MAJORITY else float("nan")
     curve = _curve(at, force, knots, knots)
     left = force - np.interp(at, knots, curve)
     return ResidualModel(by, unit, knots, curve, r2, rmse([left]), _held_out_error(coordinate, validation))
+
+
+def _visited_again(at: FloatArray, part: IndexArray) -> BoolArray:
+    """Return which values (n,) were there in another block of time too; part: number of the block of each."""
+    low, span = float(at.min()), max(float(np.ptp(at)), 1e-300)
+    own = np.minimum((CLASSES * (at - low) / span).astype(int), CLASSES - 1)
+    held = np.zeros((CLASSES, FOLDS), dtype=bool)
+    held[own, part] = True
+    return np.asarray(held.sum(axis=1)[own] > 1)
 
 
 def _held_out_error(coordinate: Coordinate, validation: HeldOut) -> float:

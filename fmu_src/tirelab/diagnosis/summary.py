@@ -98,7 +98,10 @@ def _errors(
 def _remainder(regressions: Sequence[ResidualModel]) -> str:
     """Return what the unexplained remainder depends on, and how far its best regression reduces the error."""
     by = listed([dependence(c.by) for c in regressions])
-    best = max(regressions, key=lambda c: c.r2)
+    asked = [c for c in regressions if math.isfinite(c.r2)]
+    if not asked:
+        return f"The remainder depends on {by}. Whether it repeats is not known: drive the motion twice."
+    best = max(asked, key=lambda c: c.r2)
     if best.r2 < REPEATS:
         return f"The remainder depends on {by}, but no regression of it repeats on held-out blocks of time."
     over = "it" if len(regressions) == 1 else dependence(best.by)

@@ -100,7 +100,9 @@ def _regressions(corrections: Sequence[Mapping[str, Any]]) -> Table:
     )
     for c in corrections:
         errors = (words.number(c["after"]), words.number(c["held_out_after"]))
-        regressed.add_row(titles.dependence(c["by"]), *errors, words.percent(max(c["repeats"], 0.0)))
+        repeats = c["repeats"]
+        explained = "not known" if repeats is None else words.percent(max(repeats, 0.0))
+        regressed.add_row(titles.dependence(c["by"]), *errors, explained)
     return regressed
 
 

@@ -142,6 +142,11 @@ def test_what_does_not_repeat_is_not_packed(rippled: Rippled, tmp_path: Path) ->
     done = build("--from", tmp_path, "--with-remainder", "--out", tmp_path)
     assert done.exit_code == 2
     assert "does not repeat" in done.output
+    content["verdict"]["corrections"][0]["repeats"] = None
+    (tmp_path / "diagnosis.json").write_text(json.dumps(content), encoding="utf-8")
+    done = build("--from", tmp_path, "--with-remainder", "--out", tmp_path)
+    assert done.exit_code == 2
+    assert "visited once" in " ".join(done.output.split())
 
 
 def test_a_correction_is_built_from_its_diagnosis(tmp_path: Path) -> None:

@@ -104,6 +104,7 @@ def test_the_page_shows_evidence_reasons_and_the_motion():
             "explains 88 % of the remainder on held-out blocks of time. With it the RMS error is 6.40 N, and ",
         ),
         (0.88, 6.4, math.nan, "With it the RMS error is 6.40 N."),
+        (math.nan, 6.4, math.nan, "whether it repeats is not known. With it the RMS error is 6.40 N."),
         (-0.1, math.nan, math.nan, "It does not repeat on held-out blocks of time: do not use it."),
     ],
 )

@@ -48,6 +48,27 @@ def test_noise_does_not_repeat():
     assert found.held_out_after > found.after
 
 
+def over_a_ramp(times: int):
+    """Regress a ripple over the deflection of a ramp that is driven so many times."""
+    time = np.arange(6000) * 0.005
+    deflection = 0.02 * (times * time / 30.0 % 1.0)
+    own = 25.0 * np.sin(2.0 * np.pi * deflection / 0.007) + np.random.default_rng(1).normal(0.0, LEVEL, 6000)
+    dataset = raw_dataset_of([read("ramp", time, deflection, flat_force(deflection), 3)], TireModel())
+    parts = [(Part(e, own, own, own, np.ones(6000, dtype=bool)),) for e in dataset.experiments * 2]
+    (found,) = residual_models(("deflection",), dataset, [own], HeldOut("the end of each motion", *parts))
+    return found
+
+
+def test_of_a_ramp_that_is_driven_once_nothing_is_known_to_repeat():
+    assert np.isnan(over_a_ramp(1).r2)
+    # As above, where the same waves are there again.
+    assert 0.90 < over_a_ramp(2).r2 < 0.93
+
+
+def test_what_depends_on_the_time_is_not_known_to_repeat():
+    assert np.isnan(regressed("time", lambda t, x: np.where(t > 12.0, 20.0, 0.0)).r2)
+
+
 def test_a_coordinate_without_a_name_is_time():
     found = regressed("jump", lambda t, x: np.where(t > 12.0, 20.0, 0.0))
     assert found.unit == "s"

@@ -90,6 +90,13 @@ def test_a_curve_that_does_not_repeat_is_not_offered():
     assert "6.40 N" not in told
 
 
+def test_whether_a_curve_repeats_is_not_known_of_what_was_driven_once():
+    told = summarise((), (), (regressed("time", float("nan")),), 0.85, STAYED)
+    assert "Whether it repeats is not known: drive the motion twice." in told
+    told = summarise((), (), (regressed("time", float("nan")), regressed("rate", 0.9)), 0.85, STAYED)
+    assert "A regression over the rate of deflection reduces" in told
+
+
 def test_of_several_regressions_the_one_that_repeats_best_is_stated():
     found = (regressed("rate", 0.2, 20.0, 21.0), regressed("deflection", 0.9))
     told = summarise((), (), found, 0.85, STAYED)

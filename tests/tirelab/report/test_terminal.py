@@ -52,6 +52,8 @@ def test_a_regression_is_printed_with_its_errors(kinds: dict[str, Any]) -> None:
     regression = {"by": "deflection", "unit": "m", "repeats": 0.88, "after": 6.4, "held_out_after": None}
     content = {**diagnosis, "verdict": {**diagnosis["verdict"], "corrections": [regression]}}
     assert "the deflection 6.40 – 88 %" in printed(content)
+    regression["repeats"] = None
+    assert "the deflection 6.40 – not known" in printed(content)
 
 
 def test_without_places_and_held_out_data_their_tables_are_left_out(kinds: dict[str, Any]) -> None:
