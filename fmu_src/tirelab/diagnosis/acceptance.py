@@ -31,7 +31,7 @@ from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
-from ..preprocessing.noise import NEGLIGIBLE, STILL
+from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE, STILL
 from ..preprocessing.samples import (
     RawDataset,
     RawExperiment,
@@ -212,7 +212,7 @@ def _parts(
     before: Sequence[FloatArray],
     explanation: Explanation,
 ) -> tuple[list[BoolArray], str]:
-    """Return which samples stay fitted, and the name of the held-out part, in which some samples are compared.
+    """Return which samples stay fitted, and the name of the held-out part, in which enough samples are compared.
 
     before [N]: what the baseline leaves of each recording; explanation: the set
     """
@@ -239,7 +239,8 @@ def _parts(
         return kept, _name_of(kept, recordings)
     ends = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
     kept = [k | ~w for k, w in zip(ends, within(ends), strict=True)]
-    return ends if all(k.all() for k in kept) else kept, "the end of each motion"
+    few = sum(int(np.sum(~k)) for k in kept) < FEWEST_EVENTS
+    return ends if few else kept, "the end of each motion"
 
 
 def _name_of(kept: Sequence[BoolArray], recordings: Sequence[Recorded]) -> str:
@@ -279,7 +280,7 @@ def _shows_as_much(
     alike = 4.0 * each >= other
     whole = np.maximum(all_of_it, 0.0).sum()
     return bool(
-        np.any(~fits & inside)
+        np.sum(~fits & inside) >= FEWEST_EVENTS
         and changed[~fits].sum() >= NEGLIGIBLE * changed.sum()
         and np.maximum(held_out, 0.0)[alike].sum() >= FITTED * whole
     )

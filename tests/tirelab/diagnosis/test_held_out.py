@@ -243,3 +243,21 @@ def test_samples_at_the_end_of_the_gauges_travel_are_not_what_is_held_out():
     assert other.chosen.any()
     assert not (other.chosen & ~seen).any()
     assert held_out.after == pytest.approx(5.0, rel=0.1)
+
+
+def test_a_few_samples_alone_are_not_what_is_held_out():
+    """Of one deep press, without a clock, the end is deeper than all that stays fitted but for three samples of a slip:
+    the whole end is held out.
+    """
+    time = np.linspace(0.0, 20.0, 240)
+    deflection = 0.015 + 0.0004 * time
+    deflection[220:223] -= 0.003
+    drive = read("press", time, deflection, 0.8 * flat_force(deflection), seed=9)
+    samples = (np.arange(240.0), drive.deflection, drive.surface_radius, drive.force)
+    press = [Recording("untimed", *samples, timed=False)]
+    found = explain_misfit(press, TireModel(), ["recalibration"], lambda stage: None).of(("recalibration",))
+    before = [p.force - flat_force(p.deflection) for p in press]
+    held_out = split(press, raw_dataset_of(press, TireModel()), before, found)
+    (other,) = held_out.held_out
+    assert other.chosen.mean() == pytest.approx(0.2, abs=0.05)
+    assert held_out.after < 0.1 * held_out.before
