@@ -160,6 +160,7 @@ EFFORT = (
     "estimation/ranking.BEGUN",
     "estimation/ranking.CORRECTIONS",
     "estimation/ranking.EVALUATION",
+    "estimation/ranking.FIRST_PART",
     "estimation/ranking.USUAL_MOVED",
     "estimation/ranking.GAIN_ERROR",
     "estimation/ranking.MOST_FITS",

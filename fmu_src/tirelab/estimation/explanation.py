@@ -49,6 +49,7 @@ from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .held_out import held_out_of
 from .ranking import (
+    FIRST_PART,
     MOST_WORK,
     Ranking,
     corrected,
@@ -216,8 +217,7 @@ def explain_misfit(
     """Return what explains the misfit of the `baseline` tire on `recordings`.
 
     catalogue: names of the effects that may be found, of `catalogue_names`; progress: called with a sentence for each
-    stage; held_out: recordings to which nothing is fitted, which judge what is; most_work: budget of each ranking (see
-    `ranking.MOST_WORK`)
+    stage; held_out: recordings to which nothing is fitted, which judge what is; most_work: budget in place of MOST_WORK
     """
     dataset = dataset_of(recordings, baseline)
     excitation = excitation_of(dataset, timed=is_timed(recordings))
@@ -237,14 +237,16 @@ def explain_misfit(
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
     samples, others = samples_of(recordings, baseline), held_out_of(held_out, baseline)
-    blocks = FirstSets(dataset, raw, samples, others, most_work)
+    blocks = FirstSets(dataset, raw, samples, others, FIRST_PART * most_work)
     alike = partial(_alike, excitation)
     sets = blocks.begun(quiet)
     sets = blocks.less_distorted(sets, sets.best_fit.tire)
     ranking = ranked(sets, alike)
     again = blocks.less_distorted(sets, ranking.best.tire)
-    if again is not sets:
-        sets, ranking = again, ranked(again, alike)
+    left = most_work - sets.work if again is not sets else most_work
+    if again is not sets or sets.work >= sets.most_work:
+        sets = again.with_work(left)
+        ranking = ranked(sets, alike)
     ranking = corrected(ranking, blocks.samples)
     like_law = _like_law(tuple(sets.signatures.values()), sets.dataset.misfit, ranking.best.variance)
     return _explanation(blocks.samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)

@@ -37,7 +37,6 @@ from ..selection.search import (
 from .held_out import HeldOutRecordings
 from .ranking import (
     BEGUN,
-    MOST_WORK,
     FittedSets,
     begun,
 )
@@ -68,7 +67,7 @@ class FirstSets:
     signatures: tuple[Signature, ...]
     samples: Samples
     held_out: HeldOutRecordings | None
-    most_work: float = MOST_WORK
+    most_work: float
 
     def begun(self, quiet: Dataset) -> FittedSets:
         """Return the sets that the signatures find likely, fitted; quiet: the dataset in units of another noise."""

@@ -44,9 +44,12 @@ REACH = TEMPERATURE * LOST
 MOST_FITS = 40
 """Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
 
-MOST_WORK = 8e7
-"""Budget: number of simulated blocks of one ranking, after which it ends however much it still gains: some 20 s of a
-core of an x86-64 server, with which the whole command stays within 60 s."""
+MOST_WORK = 1.2e8
+"""Budget: number of simulated blocks of one explanation, after which it ends however much it still gains: some 30 s of
+a core of an x86-64 server, with which the whole command stays within 60 s."""
+
+FIRST_PART = 0.5
+"""Budget: part of it in which the set is found whose distortion by the blocks is subtracted."""
 
 EVALUATION = 2000
 """Number of blocks in which a simulation takes as long as everything of an evaluation that does not grow with them."""
@@ -123,6 +126,7 @@ class FittedSets:
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
     others: dict[frozenset[str], Mapping[str, Signature]] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
+    followed: set[frozenset[str]] = field(default_factory=set)
     count: int = 0
     assessed: FloatArray = field(default_factory=lambda: np.zeros(2))
     assessed_at: int = 0
@@ -139,6 +143,10 @@ class FittedSets:
     def spent(self) -> bool:
         """Whether as many sets as the budget allows were fitted since a decisive gain, or as much simulated."""
         return self.count - self.gained_at >= MOST_FITS or self.work >= self.most_work
+
+    def with_work(self, most_work: float) -> FittedSets:
+        """Return the sets with another budget of simulated blocks."""
+        return replace(self, most_work=most_work)
 
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one, beside the slow noise that it
@@ -262,17 +270,16 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
     alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
     them in its place
     """
-    followed: set[frozenset[str]] = set()
     while not sets.spent:
         best = sets.posterior(sets.best())
-        open_sets = [n for n in sets.fits if n not in followed and sets.posterior(n) > best - REACH]
+        open_sets = [n for n in sets.fits if n not in sets.followed and sets.posterior(n) > best - REACH]
         if not open_sets:
             break
         names = max(open_sets, key=sets.posterior)
-        followed.add(names)
+        sets.followed.add(names)
         _fit_neighbours(sets, names)
         if sets.update_discrepancy():
-            followed.clear()
+            sets.followed.clear()
     _refit_below_subsets(sets)
     best_names = sets.best()
     for name in sorted(best_names - {LAW}):

@@ -9,7 +9,7 @@ import pytest
 from drives import damped
 from radialtire import TireModel
 from tirelab.estimation.first_sets import FirstSets, in_quiet_units, with_signatures
-from tirelab.estimation.ranking import FittedSets
+from tirelab.estimation.ranking import MOST_WORK, FittedSets
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import arranged, dataset_of, samples_of
 from tirelab.simulation.simulate import simulate
@@ -21,7 +21,7 @@ def first_of(recording: Recording) -> tuple[FirstSets, FittedSets]:
     dataset, raw, quiet = with_signatures(
         dataset_of([recording], TireModel()), [recording], NAMES, ("recalibration", *NAMES)
     )
-    first = FirstSets(dataset, raw, samples_of([recording], TireModel()), None)
+    first = FirstSets(dataset, raw, samples_of([recording], TireModel()), None, MOST_WORK)
     return first, first.begun(quiet)
 
 
