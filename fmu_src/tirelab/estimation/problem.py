@@ -324,8 +324,7 @@ deflection times the sign of the direction and of the path since the last revers
 
 def smooth_functions(dataset: Dataset) -> FloatArray:
     """Return the functions phi (m, k) of the module's docstring at the counted blocks, of mean square 1 together."""
-    many = dataset.experiments
-    x = dataset.gathered([e.deflection for e in many])
+    many, x = dataset.experiments, dataset.deflection
     rate = dataset.gathered([e.rate for e in many])
     time = dataset.gathered([(e.time - e.time[0]) / max(e.time[-1] - e.time[0], 1e-300) for e in many])
     radius = dataset.gathered([e.surface_radius for e in many])
@@ -363,8 +362,7 @@ def form_errors(
 
 def _of_law(dataset: Dataset) -> FloatArray:
     """Return the law times hats over the deflection, common to all surfaces and on each, of mean square 1 together."""
-    many = dataset.experiments
-    x = dataset.gathered([e.deflection for e in many])
+    many, x = dataset.experiments, dataset.deflection
     radius = dataset.gathered([e.surface_radius for e in many])
     force = dataset.stacked([e.baseline for e in many])
     hats = force[:, None] * _hats((x - x.min()) / max(float(np.ptp(x)), 1e-300), DEFLECTION_HATS)

@@ -19,7 +19,7 @@ from ..preprocessing.motion import motion_of
 from ..preprocessing.noise import Noise
 from ..preprocessing.samples import Recorded
 from ..simulation.kept_stages import KeptStages
-from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
+from ..simulation.simulate import SmoothedMotion, elastic_stage, simulate, smoothed_motion
 from .experiment import Experiment, experiment_in_blocks, read_deflection
 
 __all__ = ["BLOCKS", "Dataset", "Experiment", "Samples", "Scales", "arranged", "dataset_of", "samples_of"]
@@ -32,7 +32,8 @@ BoolArray = NDArray[np.bool_]
 class Scales:
     """The scales of the recordings, by which priors are scaled; all positive.
 
-    force [N]: peak, of a part without air beside its preload; travel [m]: span of the deflection; duration [s]: of the
+    force [N]: peak, of a part without air beside its preload; travel [m]: span of the tire's own deflection, which
+    begins beyond the gap of a part; duration [s]: of the
     longest recording; interval [s]: between samples; rate [m/s], acceleration [m/s^2]: root mean squares over the
     counted blocks; gauge [m]: noise of the deflection reading; channels: level of each channel in its SI unit, by its
     name
@@ -97,6 +98,11 @@ class Dataset:
         read = self.misfit if self.tire.two_sided else 0.0
         elastic = self.stacked([e.baseline - zero_of(self.tire) for e in self.experiments])
         return float(np.sqrt(np.mean((elastic + read) ** 2)))
+
+    @cached_property
+    def deflection(self) -> FloatArray:
+        """The baseline tire's own deflection [m] (see `own_deflection`), counted blocks in a row (m,)."""
+        return self.gathered([own_deflection(self.tire, e) for e in self.experiments])
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -228,6 +234,12 @@ def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) 
     return replace(tire, effects=tuple(order))
 
 
+def own_deflection(tire: TireModel, experiment: Experiment) -> FloatArray:
+    """Return the tire's own deflection [m] (n,), after the effects that change what was read; 0 in the air."""
+    own = elastic_stage(tire, experiment, experiment)[0].deflection
+    return own if tire.two_sided else np.maximum(own, 0.0)
+
+
 def zero_of(tire: TireModel) -> float:
     """Return the force [N] that counts for nothing: the preload of a part without air may be a load cell's zero."""
     return 0.0 if tire.inflated else tire.preload
@@ -237,7 +249,7 @@ def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded], b
     rate = np.concatenate([e.rate[e.counts] for e in experiments])
     acceleration = np.concatenate([e.acceleration[e.counts] for e in experiments])
     force = np.concatenate([np.abs(r.force - zero_of(baseline)) for r in recordings])
-    deflection = np.concatenate([e.deflection for e in experiments])
+    deflection = np.concatenate([own_deflection(baseline, e) for e in experiments])
     return Scales(
         force=max(float(np.quantile(force, 0.999)), 1e-12),
         travel=max(float(np.ptp(deflection)), 1e-9),

@@ -30,7 +30,7 @@ from scipy.interpolate import BSpline
 from ..names import REFITTED_LAW
 from ..preprocessing.samples import MOST_SURFACES, surface_numbers
 from ..simulation.simulate import UPSTREAM, preload_of
-from .dataset import Dataset, arranged
+from .dataset import Dataset, arranged, own_deflection
 from .draws import at_reading, centre_and_spread, drawn, strengthened
 
 FloatArray = NDArray[np.float64]
@@ -84,9 +84,8 @@ def kink_spread(dataset: Dataset) -> float:
 
 
 def span_of(dataset: Dataset) -> tuple[float, float]:
-    """Return the lowest and the highest deflection [m] of the recordings."""
-    x = dataset.gathered([e.deflection for e in dataset.experiments])
-    return float(x.min()), float(x.max())
+    """Return the lowest and the highest deflection [m] of the part itself in the recordings."""
+    return float(dataset.deflection.min()), float(dataset.deflection.max())
 
 
 def preload_spread(dataset: Dataset) -> float:
@@ -122,11 +121,10 @@ def law_signature(dataset: Dataset) -> Signature:
     """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload or gap where
     that is more.
     """
-    gather = dataset.gathered
-    x = gather([e.deflection for e in dataset.experiments])
-    radius = gather([e.surface_radius for e in dataset.experiments])
+    x, radius = dataset.deflection, dataset.gathered([e.surface_radius for e in dataset.experiments])
     tire = dataset.tire  # what it is without a deflection, and its curve, are no factor's
-    force = dataset.stacked([e.baseline - preload_of(tire, e.deflection) for e in dataset.experiments])
+    preload = [preload_of(tire, own_deflection(tire, e)) for e in dataset.experiments]
+    force = dataset.stacked([e.baseline - p for e, p in zip(dataset.experiments, preload, strict=True)])
     reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
     way = np.log(np.maximum((np.abs(x) if tire.two_sided else x) / reference, LEAST_RATIO))
     changes = [FACTOR + 0.0 * way, EXPONENT * way]

@@ -155,6 +155,38 @@ def test_a_part_that_is_stiffer_when_pressed_lies_in_the_span_of_its_signature()
     assert left_by(law_signature(data).columns, pressed) < 0.02
 
 
+def two_springs(x: np.ndarray) -> np.ndarray:
+    """Return the force [N] at deflections [m]: from 12 mm on 9 kN/m, from 15 mm on 12 kN/m."""
+    return 9e3 * np.maximum(x - 0.012, 0.0) + 3e3 * np.maximum(x - 0.015, 0.0)
+
+
+def beyond_a_gap() -> Dataset:
+    """The two springs pressed 20 mm; the part's law begins beyond their gap."""
+    time = np.arange(0.0, 12.0, 0.01)
+    x = 0.01 * (1.0 - np.cos(2.0 * np.pi * 0.5 * time))
+    offset = ((CATALOGUE["deflection_offset"], (-0.012,)),)
+    part = TireModel(PowerLaw(100.0, 1.1), effects=offset, inflated=False, tested_range=None)
+    noisy = two_springs(x) + NOISE * np.random.default_rng(9).normal(size=time.size)
+    return dataset_of([Recording("press", time, x, np.full(time.size, np.inf), noisy)], part)
+
+
+def test_of_a_part_with_a_gap_it_is_a_law_over_the_deflection_beyond_it() -> None:
+    """As above, but for the gap's own column; the kinks are spread over the 8 mm in contact, not over 20 mm."""
+    data = beyond_a_gap()
+    assert data.scales.travel == pytest.approx(0.008, rel=0.01)
+    problem = problem_of(data, {LAW: law_start(data)}, plain=False)
+    slopes = np.column_stack(slopes_of(problem)[:-1])
+    basis = law_signature(data).basis[:, :-1]
+    unit = size_of(slopes[:, 0]) / size_of(basis[:, 0])
+    np.testing.assert_allclose(basis * unit, slopes, atol=5e-3 * unit)
+
+
+def test_a_law_that_is_steeper_beyond_a_depth_lies_in_the_span_beyond_a_gap() -> None:
+    data = beyond_a_gap()
+    missed = data.stacked([two_springs(e.deflection) - e.baseline for e in data.experiments])
+    assert left_by(law_signature(data).columns, missed) < 0.01
+
+
 def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) -> None:
     """What no change of A and B follows: heights of opposite signs."""
     shape = (0.0, 0.0, at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales))
