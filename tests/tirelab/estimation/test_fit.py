@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import flat_force, read, triangle
-from radialtire import CATALOGUE, TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from scipy.stats import multivariate_normal
 from tirelab.estimation.fit import FORM_SCALES, LEAST_GAIN, Linearised, fitted, laplace_evidence
 from tirelab.estimation.minimise import Objective, initial_iterate, minimise
@@ -244,3 +244,17 @@ def test_a_fit_stands_at_the_top_under_the_prior_of_its_evidence() -> None:
     slope = found.jacobian.T @ found.residual / found.variance + found.positions / widths**2
     inside = (found.positions > found.problem.low) & (found.positions < found.problem.high)
     assert 0.5 * float(np.sum((slope * widths)[inside] ** 2)) < LEAST_GAIN
+
+
+def test_a_law_that_is_no_power_beyond_a_gap_is_followed_to_the_noise() -> None:
+    """A part that grows softer, 6 of the 20 mm in contact; its believed law is a power from 0.7 mm before there."""
+    time = np.arange(0.0, 30.0, 0.005)
+    x = 0.01 * (1.0 - np.cos(2.0 * np.pi * 0.2 * time))
+    force = 900.0 * np.tanh(250.0 * np.maximum(x - 0.014, 0.0))
+    offset = ((CATALOGUE["deflection_offset"], (-0.0133,)),)
+    part = TireModel(PowerLaw(1350.0, 1.3), effects=offset, inflated=False, tested_range=None)
+    dataset = dataset_of([read("press", time, x, force, 4, noise=0.5)], part)
+    starts = [{REFITTED_LAW: law_start(dataset)}]
+    found = fitted(dataset, starts, discrepancy_of(dataset.misfit, 0.002), 1e4, -np.inf)
+    # In units of the noise; ten heights over the contact may leave something of the first touch.
+    assert found.power / found.residual.size < 1.5
