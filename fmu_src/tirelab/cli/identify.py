@@ -140,14 +140,14 @@ def _part(
     part, name = chosen
     recordings = list(found.values())
     from ..computing.staging import staged
-    from ..identification.misfit import misfit_sentence
+    from ..identification.misfit import MISFIT, misfit_sentence
     from ..identification.part_laws import fit_laws, reading_noise
     from ..identification.part_tire import CURVE, best_writable, curve_advice, springless, tire_of
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
     tire = None if part == "compare" else output.out
-    written = ""
+    noise, written, named = reading_noise(recordings), "", "the law"
     if tire is not None:
         law = next(fit for fit in fits if fit.name == part)
         model = tire_of(law, recordings, name)
@@ -155,8 +155,10 @@ def _part(
         with staged(tire.parent) as folder:
             write_tire(model, folder / tire.name)
     else:
-        law = min(fits, key=lambda fit: fit.rmse)
-    misfit = misfit_sentence(law.rmse, reading_noise(recordings), words.diagnose(output.out))
+        best = best_writable(fits, recordings)
+        law = next((fit for fit in fits if fit.name == best), None) or min(fits, key=lambda fit: fit.rmse)
+        named = f"the law {law.name}"
+    misfit = misfit_sentence(law.rmse, noise, words.diagnose(output.out), named)
     if tire is not None:
         reason = curve_advice(model, recordings) if misfit else ""
         if reason:
@@ -177,11 +179,19 @@ def _part(
         if misfit:
             console.print(f"- {misfit}", markup=False, soft_wrap=True)
         console.print(f"tire: {tire}", soft_wrap=True)
-    elif best := best_writable(fits, recordings):
+    elif best:
         command = words.identify(words.recordings, best, output.out)
         console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
         if misfit:
             console.print(f"- {misfit} then", markup=False, soft_wrap=True)
+        curve = next(fit for fit in fits if fit.name == CURVE)
+        if misfit and law.rmse > MISFIT * curve.rmse:
+            own = words.identify(words.recordings, CURVE, output.out)
+            console.print(
+                f"- a curve leaves {curve.rmse:.2g} N, if loading and unloading are alike: `{own}`",
+                markup=False,
+                soft_wrap=True,
+            )
 
 
 def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:

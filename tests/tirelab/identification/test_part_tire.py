@@ -313,3 +313,23 @@ def test_a_specimen_of_concrete_is_written_as_a_curve() -> None:
         tire_of(found["linear"], [concrete], "")
     tire = tire_of(found["piecewise"], [concrete], "")
     assert tire.curve is not None
+
+
+def test_what_is_said_of_a_law_is_of_the_one_that_is_proposed(tmp_path: Path) -> None:
+    """From 4 mm on a second spring bears: no power law follows it, a curve does, and its command runs."""
+    time = np.arange(0.0, 20.0, 0.005)
+    x = 0.01 * (1.0 - np.abs(1.0 - time / 10.0))
+    force = 2e4 * x + 6e4 * np.maximum(x - 0.004, 0.0) + np.random.default_rng(8).standard_normal(x.size)
+    write_recording(recording(x, force), tmp_path / "part.csv")
+    out = tmp_path / "part.json"
+    words = ["identify", str(tmp_path / "part.csv"), "--part", "compare", "--out", str(out)]
+    lines = CliRunner().invoke(main, words).output.splitlines()
+    left = {fit.name: fit.rmse for fit in fit_laws([recording(x, force)])}
+    (best,) = [row for row in lines if "a tire file holds" in row]
+    law = best.split("--part ")[1].split()[0]
+    assert left[law] > 10.0
+    assert any(f"the law {law} leaves {left[law]:.2g} N beside " in row for row in lines)
+    (curve,) = [row for row in lines if f"a curve leaves {left['piecewise']:.2g} N" in row]
+    done = CliRunner().invoke(main, shlex.split(curve.split("`")[1])[1:])
+    assert done.exit_code == 0, done.output
+    assert read_tire(out).curve is not None
