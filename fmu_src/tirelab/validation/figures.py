@@ -164,9 +164,9 @@ def _held_out(axes: Axes, scores: Sequence[Score]) -> None:
     for outside, alike, colour, label in (
         (False, False, LIGHT_BLUE, "tests of another kind"),
         (False, True, BLUE, "tests of the diagnosed kinds"),
-        (True, True, ORANGE, "the same, outside the catalogue"),
+        (True, True, ORANGE, "the same, with something outside the catalogue"),
     ):
-        held = [s.held_out for s in scores if s.open is outside and s.held_out is not None]
+        held = [s.held_out for s in scores if s.beyond_catalogue is outside and s.held_out is not None]
         found = [h.alike if alike else h.other for h in held]
         if found:
             before, after = (

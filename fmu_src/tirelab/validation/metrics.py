@@ -111,7 +111,7 @@ def recognised(scores: Sequence[Score]) -> Rate:
 
 def wrongly_unknown(scores: Sequence[Score]) -> Rate:
     """How often the verdict was "unknown" where every hidden effect is in the catalogue."""
-    return Rate.of(s.recognised for s in scores if not s.open)
+    return Rate.of(s.recognised for s in scores if not s.beyond_catalogue)
 
 
 def near_floor(scores: Sequence[Score], within: float, *, alike: bool, noise_free: bool = False) -> Rate:
@@ -125,7 +125,7 @@ def near_floor(scores: Sequence[Score], within: float, *, alike: bool, noise_fre
         s.held_out is not None
         and (s.held_out.alike if alike else s.held_out.other).near(within, noise_free=noise_free)
         for s in scores
-        if not s.open
+        if not s.beyond_catalogue
     )
 
 

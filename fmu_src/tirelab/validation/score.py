@@ -93,8 +93,13 @@ class Score:
 
     @property
     def open(self) -> bool:
-        """Whether something outside the catalogue was hidden."""
+        """Whether something outside the catalogue was hidden, and nothing else."""
         return self.kind in OPEN
+
+    @property
+    def beyond_catalogue(self) -> bool:
+        """Whether something outside the catalogue was hidden, alone or beside known effects."""
+        return any(UNKNOWN in names for names in self.right)
 
     @property
     def recognised(self) -> bool:

@@ -82,7 +82,7 @@ def several_answers(score: Score) -> bool:
     """Whether more than one set counts as right; for a press the refitted law, a matter of taste, does not count."""
     if score.kind == "press":
         return len({names - {REFITTED_LAW} for names in _plain(score.right)}) > 1
-    if score.kind in ("outside", "beside"):
+    if score.beyond_catalogue:
         return False
     return not score.single_answer
 

@@ -57,11 +57,12 @@ def test_rates_take_the_trials_they_are_about(score: Make) -> None:
         score("open", "unknown", "unknown lag"),
         score("open", "unknown", "lag"),
         score("single", "lag", "unknown"),
+        score("beside", "lag unknown", "lag unknown"),
     ]
     assert summary.false_alarms(scores) == Rate(1, 2)
     assert summary.recognised(scores) == Rate(1, 2)
     assert summary.wrongly_unknown(scores) == Rate(1, 3)
-    assert summary.exact(scores) == Rate(1, 5)
+    assert summary.exact(scores) == Rate(2, 6)
 
 
 FAR = Errors(before=9.0, after=9.0, noise_free=9.0, noise_floor=1.0, reading_noise_floor=1.0)
@@ -69,13 +70,14 @@ FAR = Errors(before=9.0, after=9.0, noise_free=9.0, noise_floor=1.0, reading_noi
 
 
 def test_near_the_floor_is_ten_percent_inside_the_catalogue(score: Make) -> None:
-    def with_rmse(kind: str, after: float) -> Score:
-        return score(kind, "lag", "lag", held_out=HeldOut(Errors(9.0, after, 1.0, 1.0, 1.0), FAR, None))
+    def with_rmse(kind: str, after: float, hidden: str = "lag") -> Score:
+        return score(kind, hidden, "lag", held_out=HeldOut(Errors(9.0, after, 1.0, 1.0, 1.0), FAR, None))
 
     scores = [
         with_rmse("single", 1.09),
         with_rmse("single", 1.11),
-        with_rmse("open", 1.0),
+        with_rmse("open", 1.0, "unknown"),
+        with_rmse("beside", 1.0, "lag unknown"),
         score("pair", "lag", None),
     ]
     assert summary.near_floor(scores, 0.10, alike=True) == Rate(1, 3)
