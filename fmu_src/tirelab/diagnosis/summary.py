@@ -40,13 +40,7 @@ def summarise(
     left = more_than_noise(fit.left, fit.noise)
     undecided = bool(alternatives) and whole_percent(confidence) < DECIDED
     doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
-    alternative_is_likelier = any(
-        whole_percent(a.probability) > whole_percent(confidence)
-        for a in alternatives
-        if math.isfinite(a.probability)
-    )
-    likeliest = "no explanation is likely" if alternative_is_likelier else "this is the likeliest explanation"
-    said = [f"Undecided; {likeliest}."] if undecided else []
+    said = [_undecided(effects, alternatives, confidence)] if undecided else []
     said.append(headline(names, bool(regressions), doubted, left, [e.name for e in effects if e.in_baseline]))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit, alternatives)
@@ -58,6 +52,21 @@ def summarise(
     if test is not None and not test.sufficient:
         said.append(test.sentence)
     return " ".join(said)
+
+
+def _undecided(effects: Sequence[NamedEffect], alternatives: Sequence[Alternative], confidence: float) -> str:
+    """Return what is sure all the same, or else whether the verdict is likelier than each alternative."""
+    sure_ones = [e.name for e in effects if confidence_word(e.probability) == SURE]
+    if sure_ones:
+        verb = "is" if len(sure_ones) == 1 else "are"
+        return f"{_capital(set_title(sure_ones))} {verb} sure; what else acts is undecided."
+    alternative_is_likelier = any(
+        whole_percent(a.probability) > whole_percent(confidence)
+        for a in alternatives
+        if math.isfinite(a.probability)
+    )
+    likeliest = "no explanation is likely" if alternative_is_likelier else "this is the likeliest explanation"
+    return f"Undecided; {likeliest}."
 
 
 AMPLIFIED = 1.1

@@ -78,10 +78,18 @@ def test_an_alternative_that_would_reduce_the_error_is_told_where_nothing_is_nam
 
 def test_an_undecided_verdict_is_not_called_the_likeliest_beside_a_likelier_one():
     others = [Alternative(("inertia",), -3.0, "one speed", 0.14)]
-    assert summarise((FRICTION,), others, (), 0.06, STAYED).startswith(
-        "Undecided; no explanation is likely. "
-    )
-    assert summarise((FRICTION,), others, (), 0.3, STAYED).startswith("Undecided; this is the likeliest ")
+    unsure = replace(FRICTION, probability=0.6)
+    assert summarise((unsure,), others, (), 0.06, STAYED).startswith("Undecided; no explanation is likely. ")
+    assert summarise((unsure,), others, (), 0.3, STAYED).startswith("Undecided; this is the likeliest ")
+
+
+def test_what_is_sure_is_said_where_what_acts_beside_it_is_undecided():
+    others = [Alternative(("rate_independent_hysteresis", "force_lag"), -3.0, "one speed", 0.14)]
+    unsure = replace(FRICTION, name="inertia", probability=0.6)
+    told = summarise((FRICTION, unsure), others, (), 0.09, STAYED)
+    assert told.startswith("Friction loop is sure; what else acts is undecided. Left out: friction loop ")
+    both = (FRICTION, replace(unsure, probability=0.95))
+    assert summarise(both, others, (), 0.09, STAYED).startswith("Friction loop and inertia are sure; what ")
 
 
 def test_a_curve_that_does_not_repeat_is_not_offered():
@@ -150,7 +158,7 @@ def test_alternatives_are_told_as_differences_from_the_verdict():
 
 def test_where_the_recordings_do_not_decide_that_is_said_first():
     other = [Alternative(("force_lag",), 2.0, "one rate", 0.3)]
-    told = summarise((NamedEffect("inertia", {}, 1.0, 0.9),), other, (), 0.43, FELL)
+    told = summarise((NamedEffect("inertia", {}, 1.0, 0.6),), other, (), 0.43, FELL)
     assert told.startswith("Undecided; this is the likeliest explanation. Left out: inertia. ")
     assert "Undecided" not in summarise((NamedEffect("inertia", {}, 1.0, 0.9),), other, (), 0.496, FELL)
 
