@@ -103,11 +103,11 @@ def _parameter_evidence(
     power: float, gram: FloatArray, positions: FloatArray, width: FloatArray, discrepancy: Discrepancy
 ) -> tuple[float, float]:
     """Return the evidence at given standard deviations of the prior, without form errors, at the best V."""
-    variances = discrepancy.grid()
+    variances = discrepancy.grid
     curvatures = np.maximum(np.linalg.eigvalsh(gram * np.outer(width, width)), 0.0) if width.size else width
     determinant = np.log1p(curvatures[:, None] / variances).sum(axis=0)
     prior = float(np.sum((positions / width) ** 2))
-    values = -0.5 * (power / variances + prior + determinant) + discrepancy.terms_of(variances)
+    values = -0.5 * (power / variances + prior + determinant) + discrepancy.terms
     best = int(np.argmax(values))
     return float(values[best]), float(variances[best])
 
@@ -117,14 +117,14 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
 
     One scale for all effects is found first, then those of the effects one after the other.
     """
-    variances = discrepancy.grid()
+    variances = discrepancy.grid
     k, counts = width.size, [f.shape[1] for f in fit.forms]
     columns = np.concatenate([fit.slopes, *fit.forms], axis=1)
     gram, moment = columns.T @ columns, columns.T @ fit.residual
     # The slopes are those of the residual: a step along them takes the positions the other way.
     pull = np.concatenate([-fit.positions / width, np.zeros(sum(counts))])
     power = float(fit.residual @ fit.residual)
-    fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.terms_of(variances)
+    fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.terms
     # The gain that the parameters alone could still make is not counted: a fit that stopped early must not win by it.
     alone, _, _ = _linear_gain(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
     most = 1.0 / np.array(fit.errors)

@@ -29,6 +29,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,9 +108,15 @@ class Discrepancy:
             self, usual=usual, exact=max(self.exact, variance), highest=max(self.highest, 2.0 * usual)
         )
 
+    @cached_property
     def grid(self) -> FloatArray:
         """Variances V to try: from the lowest to the highest."""
         return np.geomspace(self.lowest, self.highest, GRID)
+
+    @cached_property
+    def terms(self) -> FloatArray:
+        """The terms of the log likelihood (see `terms_of`) on the grid."""
+        return self.terms_of(self.grid)
 
     def profile(self, power: float) -> tuple[float, float]:
         """Return the log likelihood of a sum of squares left at its best V, and that V.
@@ -244,9 +251,9 @@ def evidence_of(
     """
     known = dict(zip(start.names, start.sizes, strict=True)) if start is not None else {}
     if not names:
-        likelihoods = [discrepancy.likelihood(equations.power, float(v)) for v in discrepancy.grid()]
+        likelihoods = [discrepancy.likelihood(equations.power, float(v)) for v in discrepancy.grid]
         best = int(np.argmax(likelihoods))
-        return Evidence((), float(likelihoods[best]), (), float(discrepancy.grid()[best]))
+        return Evidence((), float(likelihoods[best]), (), float(discrepancy.grid[best]))
     unit = math.sqrt(equations.power / discrepancy.samples)
     begin = start.variance if start is not None else 0.25 * discrepancy.highest
     tries = []

@@ -110,9 +110,9 @@ def test_what_a_model_takes_from_slow_noise_is_given_back() -> None:
 
 def test_beside_slow_noise_no_smaller_variance_is_tried() -> None:
     quiet = discrepancy_of(np.full(600, 1.01), 0.01)
-    assert quiet.grid()[0] < 1.1
+    assert quiet.grid[0] < 1.1
     slow = quiet.beside_slow(9.0)
-    assert slow.grid()[0] == pytest.approx(9.0)
+    assert slow.grid[0] == pytest.approx(9.0)
     assert slow.profile(600.0)[1] == pytest.approx(9.0)
     loud = discrepancy_of(np.full(600, 100.0), 0.3)
     assert loud.beside_slow(9.0) == loud
