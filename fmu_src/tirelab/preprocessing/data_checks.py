@@ -46,6 +46,7 @@ def check_recordings(
 ) -> None:
     """Raise PoorRecording where there is no recording to fit, or one of all shows no cycle.
 
+    A held-out part of a file is driven as what was recorded before it and itself: it may be a hold.
     two_sided: whether the part is held at both ends: a deflection below 0 loads it too
     """
     if not fitted:
@@ -57,13 +58,15 @@ def check_recordings(
         fewest = FEWEST_BESIDE if together >= FEWEST_SAMPLES else FEWEST_SAMPLES
         if r.time.size < fewest:
             raise PoorRecording(f"{where} has {r.time.size} samples; at least {fewest} are needed")
-        if np.ptp(r.deflection) <= 0.0:
+        before = getattr(r, "history", None)
+        driven = np.concatenate([*(() if before is None else (before.deflection,)), r.deflection])
+        if np.ptp(driven) <= 0.0:
             raise PoorRecording(f"{where} has one constant deflection; record at least one full cycle")
         if np.ptp(r.force) <= 0.0:
             raise PoorRecording(f"{where} has one constant force; check that the load cell was connected")
-        if float(r.deflection.max()) <= 0.0 and not two_sided:
+        if float(driven.max()) <= 0.0 and not two_sided:
             raise PoorRecording(f"{where} never loads the tire: its deflection stays at or below 0 m")
-        distinct = np.unique(np.round(r.deflection / (1e-3 * np.ptp(r.deflection)))).size
+        distinct = np.unique(np.round(driven / (1e-3 * np.ptp(driven)))).size
         if distinct < FEWEST_STEPS:
             raise PoorRecording(
                 f"{where} has only {distinct} distinct deflections; sample each cycle at {FEWEST_STEPS} or more points"

@@ -91,6 +91,14 @@ def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason:
         check_recordings([recording()], [recording(**channels)])
 
 
+def test_a_held_out_hold_is_driven_as_what_was_recorded_before_it() -> None:
+    """A range of a file: the ramp to the hold is its history. Alone the same hold is refused."""
+    hold = recording(deflection=np.where(TIME < 10.0, 0.01, 0.01001))
+    with pytest.raises(PoorRecording, match="distinct deflections"):
+        check_recordings([recording()], [hold])
+    check_recordings([recording()], [replace(hold, history=recording())])
+
+
 def test_two_held_out_samples_judge_nothing() -> None:
     with pytest.raises(PoorRecording, match=r"^held-out recording a has 2 samples; at least 24 are needed"):
         check_recordings([recording()], [recording(**first(2))])
