@@ -79,7 +79,7 @@ def _errors(
     """Return what the correction does to the error, or what the alternative that leaves least would do."""
     noise = f"the noise is {newtons(fit.noise)}"
     if not corrected:
-        stays = ", and no known effect reduces it" if unexplained else ""
+        stays = ", and no known effect was found to reduce it" if unexplained else ""
         nearest = min(alternatives, key=lambda a: a.left if a.left >= 0.0 else math.inf, default=None)
         if unexplained and nearest is not None and nearest.left < NO_WORSE * fit.before:
             stays = (

@@ -54,7 +54,7 @@ def test_a_held_out_error_that_grows_is_not_said_to_fall():
 def test_where_no_effect_helps_the_error_stays_and_the_regression_is_stated():
     told = summarise((), (), (regressed("deflection", 0.95),), 0.85, STAYED)
     assert "falls from" not in told
-    assert "The RMS error is 32.5 N, and no known effect reduces it; the noise is 6.00 N." in told
+    assert "The RMS error is 32.5 N, and no known effect was found to reduce it; the noise is 6.00 N." in told
     assert "A regression over it reduces the RMS error to 6.40 N, and to 6.50 N on held-out data" in told
     assert "the deflection" in told
 
@@ -71,7 +71,7 @@ def test_an_alternative_that_would_reduce_the_error_is_told_where_nothing_is_nam
         "would leave 10.5 N; the noise is 6.00 N." in told
     )
     hardly = [replace(other, left=32.0) for other in others]
-    assert "no known effect reduces it" in summarise(
+    assert "no known effect was found to reduce it" in summarise(
         (), hardly, (regressed("deflection", 0.95),), 0.9, STAYED
     )
 
