@@ -147,7 +147,7 @@ def _part(
 
     fits = fit_laws(recordings)
     tire = None if part == "compare" else output.out
-    noise, written, named = reading_noise(recordings), "", "the law"
+    written, named = "", "the law"
     if tire is not None:
         law = next(fit for fit in fits if fit.name == part)
         model = tire_of(law, recordings, name)
@@ -158,7 +158,7 @@ def _part(
         best = best_writable(fits, recordings)
         law = next((fit for fit in fits if fit.name == best), None) or min(fits, key=lambda fit: fit.rmse)
         named = f"the law {law.name}"
-    misfit = misfit_sentence(law.rmse, noise, words.diagnose(output.out), named)
+    misfit = misfit_sentence(law.rmse, reading_noise(recordings), words.diagnose(output.out), named)
     if tire is not None:
         reason = curve_advice(model, recordings) if misfit else ""
         if reason:

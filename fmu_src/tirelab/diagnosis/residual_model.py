@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..estimation.findings import UNEXPLAINED_SHARE, UNEXPLAINED_SIZE, Remainder
+from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment
 from .acceptance import HeldOut, rmse
@@ -23,9 +24,6 @@ FOLDS = 5
 
 CLASSES = 10 * FOLDS
 """Number of classes of a coordinate's values. One in which samples of two blocks of time are was visited again."""
-
-MAJORITY = 0.5
-"""Least part of the samples in such classes with which it can be told whether a regression repeats."""
 
 Coordinate = Callable[[RawExperiment], FloatArray]
 

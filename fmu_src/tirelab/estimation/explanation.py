@@ -7,7 +7,7 @@ the effects' own equations, and the sets are ranked by those fits.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -245,7 +245,7 @@ def explain_misfit(
     again = blocks.less_distorted(sets, ranking.best.tire)
     left = most_work - sets.work if again is not sets else most_work
     if again is not sets or sets.work >= sets.most_work:
-        sets = again.with_work(left)
+        sets = replace(again, most_work=left)
         ranking = ranked(sets, alike)
     ranking = corrected(ranking, blocks.samples)
     like_law = _like_law(tuple(sets.signatures.values()), sets.dataset.misfit, ranking.best.variance)

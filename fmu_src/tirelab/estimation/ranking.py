@@ -144,10 +144,6 @@ class FittedSets:
         """Whether as many sets as the budget allows were fitted since a decisive gain, or as much simulated."""
         return self.count - self.gained_at >= MOST_FITS or self.work >= self.most_work
 
-    def with_work(self, most_work: float) -> FittedSets:
-        """Return the sets with another budget of simulated blocks."""
-        return replace(self, most_work=most_work)
-
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one, beside the slow noise that it
         leaves; return whether these have changed.

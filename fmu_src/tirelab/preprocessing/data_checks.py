@@ -15,6 +15,7 @@ from radialtire.tracking import PAUSE
 from scipy.stats import binom, t
 
 from ..errors import TirelabError
+from ..simulation.channels import begun
 from .gauge import deflection_noise
 from .noise import FEWEST_EVENTS, STANDS_OUT, white_level
 from .samples import RawDataset, Recorded
@@ -58,8 +59,7 @@ def check_recordings(
         fewest = FEWEST_BESIDE if together >= FEWEST_SAMPLES else FEWEST_SAMPLES
         if r.time.size < fewest:
             raise PoorRecording(f"{where} has {r.time.size} samples; at least {fewest} are needed")
-        before = getattr(r, "history", None)
-        driven = np.concatenate([*(() if before is None else (before.deflection,)), r.deflection])
+        driven = begun(r)[0].deflection
         if np.ptp(driven) <= 0.0:
             raise PoorRecording(f"{where} has one constant deflection; record at least one full cycle")
         if np.ptp(r.force) <= 0.0:
@@ -132,7 +132,7 @@ before), above which the gauge did not follow; a progressive tire is stiffer the
 
 MAJORITY = 0.5
 """A majority: of the samples near the largest reading (the motion is then hardly more than its noise), and of the stays
-in which the gauge is found at the end of its travel."""
+in which the gauge is found at the end of its travel, of a remainder's samples whose values are there again."""
 
 ONWARDS = 0.5
 """Rate of the force in the first fifth of a stay over that before it: halfway between going on (1) and stopping (0)."""

@@ -49,7 +49,7 @@ stands still."""
 
 FEWEST_EVENTS = 10
 """Fewest events that are not taken for chance: samples of a hold, changes that the next sample undoes, memories of
-noise between visits of a place."""
+noise between visits of a place, held-out samples."""
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

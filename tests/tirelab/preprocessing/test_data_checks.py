@@ -96,7 +96,7 @@ def test_a_held_out_hold_is_driven_as_what_was_recorded_before_it() -> None:
     hold = recording(deflection=np.where(TIME < 10.0, 0.01, 0.01001))
     with pytest.raises(PoorRecording, match="distinct deflections"):
         check_recordings([recording()], [hold])
-    check_recordings([recording()], [replace(hold, history=recording())])
+    check_recordings([recording()], [replace(hold, history=recording(time=TIME - 20.0))])
 
 
 def test_two_held_out_samples_judge_nothing() -> None:
