@@ -15,7 +15,6 @@ from radialtire.tracking import PAUSE
 from scipy.stats import binom, t
 
 from ..errors import TirelabError
-from ..simulation.channels import begun
 from .gauge import deflection_noise
 from .noise import FEWEST_EVENTS, STANDS_OUT, white_level
 from .samples import RawDataset, Recorded
@@ -59,7 +58,8 @@ def check_recordings(
         fewest = FEWEST_BESIDE if together >= FEWEST_SAMPLES else FEWEST_SAMPLES
         if r.time.size < fewest:
             raise PoorRecording(f"{where} has {r.time.size} samples; at least {fewest} are needed")
-        driven = begun(r)[0].deflection
+        before = getattr(r, "history", None)
+        driven = r.deflection if before is None else np.concatenate([before.deflection, r.deflection])
         if np.ptp(driven) <= 0.0:
             raise PoorRecording(f"{where} has one constant deflection; record at least one full cycle")
         if np.ptp(r.force) <= 0.0:
