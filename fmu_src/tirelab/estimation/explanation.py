@@ -81,7 +81,7 @@ class Explanation:
     """What explains the misfit: all fitted sets of effects, and one of them that is chosen, by default the likeliest.
 
     effects: of the set, the largest share first; probability: of the set
-    evidence: all sets, this one first, then the likeliest
+    evidence: all sets within the effects' valid ranges, this one first, then the likeliest
     confounded: sets that can still win and differ from this one by an effect that this motion cannot distinguish from
     the one it replaces, or by the refitted law in place of the effects that a law of another shape can imitate
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
@@ -136,8 +136,12 @@ class Explanation:
         return float(np.sqrt(np.mean(np.concatenate(own) ** 2)))
 
     def was_fitted(self, names: Sequence[str]) -> bool:
-        """Whether a set was fitted."""
-        return self._ranking.of(frozenset(names)) is not None
+        """Whether a set was fitted, its effects within their valid ranges."""
+        return self._fit(names) is not None
+
+    def _fit(self, names: Sequence[str]) -> Fit | None:
+        fit = self._ranking.of(frozenset(names))
+        return None if fit is None or fit.out_of_range else fit
 
     @property
     def likeliest_fitted(self) -> tuple[str, ...]:
@@ -146,17 +150,16 @@ class Explanation:
 
     def is_near(self, names: Sequence[str], other: Sequence[str]) -> bool:
         """Whether a set was fitted and is nearly as likely as another one, or likelier."""
-        ranking = self._ranking
-        fits = [ranking.of(frozenset(n)) for n in (names, other)]
+        fits = [self._fit(n) for n in (names, other)]
         if fits[0] is None or fits[1] is None:
             return False
-        return ranking.behind(fits[0]) - ranking.behind(fits[1]) < NEAR
+        return self._ranking.behind(fits[0]) - self._ranking.behind(fits[1]) < NEAR
 
     def of(self, names: Sequence[str]) -> Explanation:
-        """Return the explanation by another set that was fitted; raises ValueError where it was not."""
-        fit = self._ranking.of(frozenset(names))
+        """Return the explanation by another set that was fitted; raises ValueError where it was not (`was_fitted`)."""
+        fit = self._fit(names)
         if fit is None:
-            raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made")
+            raise ValueError(f"no fit of {', '.join(names) or 'no effect'} was made within valid ranges")
         return self._by(fit, self._ranking)
 
     def with_parts(self) -> Explanation:
@@ -175,7 +178,7 @@ class Explanation:
         M. M. Barbieri, J. O. Berger, "Optimal predictive model selection", Ann. Stat. 32 (2004) 870-897.
         """
         ranking = self._ranking
-        likely = [fit.names for fit in ranking.fits[:most]]
+        likely = [fit.names for fit in ranking.fits[:most] if not fit.out_of_range]
         median = ranking.of(frozenset(n for n, p in ranking.inclusion().items() if p > 0.5))
         if median is not None and ranking.behind(median) < NEAR:
             likely = [median.names, *(names for names in likely if names != median.names)]
@@ -196,7 +199,7 @@ class Explanation:
 
     def alternative_model(self, names: Sequence[str]) -> FittedModel | None:
         """Return the fit of another set; None where it was not fitted."""
-        fit = self._ranking.of(frozenset(names))
+        fit = self._fit(names)
         return None if fit is None else FittedModel(fit)
 
 
@@ -292,6 +295,7 @@ def _explanation(
                 weight,
             )
             for (fit, weight), i in zip(pairs, order, strict=True)
+            if fit is chosen or not fit.out_of_range
         ),
         _confounded(chosen, ranking, excitation),
         hidden,

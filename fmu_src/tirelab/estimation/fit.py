@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
@@ -203,6 +203,7 @@ class Fit:
     evaluations: simulations of all dataset's blocks that it took, from all its starts
     law_scales: of the groups of the law's parameters, where not that of their priors
     held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
+    out_of_range: whether the recordings ask of an effect more than it can be, such as a lag of seconds of a load cell
     """
 
     problem: EstimationProblem
@@ -220,10 +221,13 @@ class Fit:
     law_scales: Mapping[int, float] = field(default_factory=dict)
     held_out_residual: FloatArray = field(default_factory=lambda: np.zeros(0))
     log_predictive: float = 0.0
+    out_of_range: bool = False
 
     @property
     def log_posterior(self) -> float:
-        """Log posterior of the set, not normalised."""
+        """Log posterior of the set, not normalised; what is out of range is another effect's."""
+        if self.out_of_range:
+            return -np.inf
         return self.log_likelihood + self.log_predictive - PRIOR_ODDS * len(self.names)
 
     @property
@@ -357,6 +361,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         1.0,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
+        out_of_range=_out_of_range(problem, held, found.positions),
     )
     return fit.with_discrepancy(discrepancy)
 
@@ -366,3 +371,16 @@ def _held(problem: EstimationProblem, found: Iterate) -> NDArray[np.bool_]:
     uphill = found.jacobian.T @ found.residual
     at_low, at_high = found.positions <= problem.low, found.positions >= problem.high
     return np.asarray((at_low & (uphill > 0.0)) | (at_high & (uphill < 0.0)))
+
+
+def _out_of_range(problem: EstimationProblem, held: NDArray[np.bool_], positions: FloatArray) -> bool:
+    """Return whether a strength is held (k,) at a limit of its valid range, other than where its effect vanishes."""
+    for i in np.flatnonzero(held):
+        free = problem.parameters[i]
+        if free.owner == LAW:
+            continue
+        parameter = CATALOGUE[free.owner].parameters[free.index]
+        limit = parameter.minimum if positions[i] <= free.low else parameter.maximum
+        if parameter.role == "strength" and parameter.neutral != limit:
+            return True
+    return False

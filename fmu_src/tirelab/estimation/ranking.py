@@ -198,7 +198,7 @@ class FittedSets:
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count
-        if key not in self.fits or found.log_likelihood > self.fits[key].log_likelihood:
+        if key not in self.fits or _order(found) > _order(self.fits[key]):
             self.fits[key] = found
         return found
 
@@ -292,6 +292,10 @@ def _depends(name: str, beside: Sequence[str]) -> bool:
     """Whether a response depends on the effects beside it: it acts on their signal, or one of them on its."""
     # The law's is that of the baseline: what a ceiling or a lag makes of it is left to the fit.
     return bool(beside) and name != LAW and any(map(acts_on_signal, (name, *beside)))
+
+
+def _order(fit: Fit) -> tuple[bool, float]:
+    return not fit.out_of_range, fit.log_likelihood
 
 
 def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:

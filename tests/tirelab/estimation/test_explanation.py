@@ -258,3 +258,32 @@ def test_the_deflection_of_a_tire_may_have_another_zero_whatever_the_baseline_ha
         RIDES, believed, (REFITTED_LAW, "deflection_offset", "viscous_damping"), lambda stage: None
     )
     assert "deflection_offset" not in dict(found.hidden)
+
+
+def late(lag: float) -> Recording:
+    """A slow ride whose force follows with a time constant [s] of our own low-pass, under 1 N of noise."""
+    time = np.arange(0.0, 120.0, 0.05)
+    deflection = 0.008 * (1.0 - np.cos(2.0 * np.pi * time / 20.0) * np.cos(2.0 * np.pi * time / 57.0))
+    force, left = flat_force(deflection), np.exp(-0.05 / lag)
+    reading = [force[0]]
+    for value in force[1:]:
+        reading.append(left * reading[-1] + (1.0 - left) * value)
+    noisy = np.array(reading) + np.random.default_rng(4).normal(size=time.size)
+    return Recording("late", time, deflection, np.full(time.size, np.inf), noisy)
+
+
+def test_an_effect_that_would_have_to_be_out_of_its_valid_range_is_not_named() -> None:
+    """A force channel lags by a second at most; what follows four seconds later is no force channel."""
+    within, beyond = (
+        explain_misfit([late(lag)], TireModel(), ["force_lag"], lambda stage: None) for lag in (0.4, 4.0)
+    )
+    assert [e.name for e in within.effects] == ["force_lag"]
+    assert within.effects[0].parameters["lag"].value == pytest.approx(0.4, rel=0.1)
+    assert beyond.effects == ()
+    assert beyond.remainder.unexplained
+    assert not beyond.was_fitted(("force_lag",))
+    assert [e.names for e in beyond.evidence] == [()]
+    assert np.isfinite(beyond.evidence[0].log_evidence)
+    assert beyond.in_order(6) == ((),)
+    with pytest.raises(ValueError, match="within valid ranges"):
+        beyond.of(("force_lag",))
