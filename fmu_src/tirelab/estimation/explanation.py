@@ -73,7 +73,8 @@ LIKE_GAP = "it is the same as another gap of the part, a constant of the refitte
 """The same of a part, whose law begins beyond a gap."""
 
 NEAR = 4.0
-"""Log posterior odds of a set over the median set, or over a part of it, up to which the latter is preferred."""
+"""Log posterior odds of a set over the one that stands best for all, or over a part of it, up to which that is
+preferred."""
 
 
 @dataclass(frozen=True)
@@ -172,17 +173,10 @@ class Explanation:
         return _explanation(*own)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
-        """Return the likeliest sets; before them the median set, of all effects above one half, if it is nearly as
-        likely.
-
-        M. M. Barbieri, J. O. Berger, "Optimal predictive model selection", Ann. Stat. 32 (2004) 870-897.
-        """
-        ranking = self._ranking
-        likely = [fit.names for fit in ranking.fits[:most] if not fit.out_of_range]
-        median = ranking.of(frozenset(n for n, p in ranking.inclusion().items() if p > 0.5))
-        if median is not None and ranking.behind(median) < NEAR:
-            likely = [median.names, *(names for names in likely if names != median.names)]
-        return tuple(likely)
+        """Return the likeliest sets; before them the one that stands best for all, if it is nearly as likely."""
+        central = self._ranking.central(NEAR).names
+        likely = (fit.names for fit in self._ranking.fits[:most] if not fit.out_of_range)
+        return (central, *(names for names in likely if names != central))
 
     def refitted(self, kept: Sequence[BoolArray]) -> Refitted:
         """Return the set fitted to the samples `kept` of each recording only; the motion of the others stays known."""

@@ -17,13 +17,7 @@ from numpy.typing import NDArray
 
 from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn_beside
-from ..selection.search import (
-    LOST,
-    MOST_CANDIDATES,
-    PRIOR_ODDS,
-    Discrepancy,
-    discrepancy_of,
-)
+from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
 from .additions import additions, predicted_gains
 from .fit import LEAST_GAIN, Fit, fitted
 from .held_out import HeldOutRecordings, predicted
@@ -106,6 +100,21 @@ class Ranking:
         """Return the probability of each fit, tempered."""
         weights = np.exp((np.array(self.posteriors) - self.posteriors[0]) / TEMPERATURE)
         return np.asarray(weights / weights.sum())
+
+    def central(self, most_behind: float) -> Fit:
+        """Return the likeliest set, or in its place one with further or fewer effects whose response is nearer to the
+        mean of all sets, weighted by their probabilities; none is further behind the best than `most_behind`.
+
+        Of effects unlike all others it has those above one half, of effects that may replace each other one of them
+        (M. M. Barbieri, J. O. Berger, "Optimal predictive model selection", Ann. Stat. 32 (2004) 870-897).
+        """
+        left = np.stack([fit.residual for fit in self.fits])
+        away = np.sum((left - self.weights() @ left) ** 2, axis=1).tolist()
+        near = [pair for pair in zip(self.fits, away, strict=True) if self.behind(pair[0]) < most_behind]
+        chosen = near[0]
+        while nearer := [pair for pair in near if pair[1] < chosen[1] and _nested(pair[0], chosen[0])]:
+            chosen = nearer[0]
+        return chosen[0]
 
     def inclusion(self) -> dict[str, float]:
         """Return the probability of each candidate, over all fits."""
@@ -198,7 +207,8 @@ class FittedSets:
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count
-        if key not in self.fits or _order(found) > _order(self.fits[key]):
+        orders = [(not fit.out_of_range, fit.log_likelihood) for fit in (found, self.fits.get(key, found))]
+        if key not in self.fits or orders[0] > orders[1]:
             self.fits[key] = found
         return found
 
@@ -294,8 +304,8 @@ def _depends(name: str, beside: Sequence[str]) -> bool:
     return bool(beside) and name != LAW and any(map(acts_on_signal, (name, *beside)))
 
 
-def _order(fit: Fit) -> tuple[bool, float]:
-    return not fit.out_of_range, fit.log_likelihood
+def _nested(fit: Fit, other: Fit) -> bool:
+    return set(fit.names) <= set(other.names) or set(other.names) <= set(fit.names)
 
 
 def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:

@@ -101,10 +101,10 @@ def test_without_a_time_nothing_that_depends_on_it_is_found() -> None:
     assert {n for e in found.evidence for n in e.names} <= {"force_offset"}
 
 
-def test_the_sets_come_in_the_order_of_their_probability_but_for_the_median_one(found: Explanation) -> None:
+def test_the_sets_come_in_the_order_of_their_probability_but_for_the_central_one(found: Explanation) -> None:
     order = found.in_order(4)
     likely = [e.names for e in found.evidence[:4]]
-    # Damping alone is likelier than not: here the set of what is so, and the likeliest set, are one.
+    # Damping alone is likelier than not: here the likeliest set also stands best for all.
     assert set(order[0]) == {"viscous_damping"}
     assert list(order) == likely
 

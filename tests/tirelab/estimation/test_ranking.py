@@ -79,6 +79,50 @@ def test_odds_are_those_of_the_posteriors_tempered() -> None:
     assert [ranking.behind(fit) for fit in ranking.fits] == [0.0, 2.0, 6.0]
 
 
+def by_response(*sets: tuple[str, float, tuple[float, ...]]) -> Ranking:
+    """Sets with their probability, the largest first, and what they leave of a misfit of some samples."""
+    fits: Any = [
+        SimpleNamespace(
+            names=tuple(n.split()), log_posterior=TEMPERATURE * np.log(p), residual=np.array(left)
+        )
+        for n, p, left in sets
+    ]
+    return Ranking(tuple(fits), Discrepancy(100, 30.0, 1.0, 2.0))
+
+
+ANYWHERE = 10.0
+"""Log posterior odds within which all sets of these tests lie."""
+
+
+def test_of_effects_unlike_each_other_those_above_one_half_stand_for_all() -> None:
+    """The median set: a is in all, b and c in fewer than half. What each does is at right angles to the others."""
+    ranking = by_response(
+        ("a b", 0.4, (0.0, 0.0, 1.0)), ("a", 0.35, (0.0, 1.0, 1.0)), ("a c", 0.25, (0.0, 1.0, 0.0))
+    )
+    assert ranking.central(ANYWHERE).names == ("a",)
+
+
+def test_of_effects_alike_one_stands_for_all_though_neither_is_above_one_half() -> None:
+    """Nothing is likelier than either of two that do the same, and less likely than both together."""
+    ranking = by_response(("", 0.4, (1.0, 1.0)), ("a", 0.35, (0.0, 1.0)), ("b", 0.25, (0.0, 1.1)))
+    assert ranking.central(ANYWHERE).names == ("a",)
+    unlike = by_response(("", 0.4, (1.0, 1.0)), ("a", 0.35, (0.0, 1.0)), ("b", 0.25, (1.0, 0.0)))
+    assert unlike.central(ANYWHERE).names == ()
+
+
+def test_a_set_far_behind_the_best_does_not_stand_for_all() -> None:
+    ranking = by_response(("", 0.4, (1.0, 1.0)), ("a", 0.35, (0.0, 1.0)), ("b", 0.25, (0.0, 1.1)))
+    behind = ranking.behind(ranking.fits[1])
+    assert ranking.central(0.9 * behind).names == ()
+    assert ranking.central(1.1 * behind).names == ("a",)
+
+
+def test_only_what_is_nested_takes_the_place_of_the_likeliest() -> None:
+    """The mean of a and b lies nearest to c, which is neither: what is named should be likely too."""
+    ranking = by_response(("a", 0.45, (0.0, 1.0)), ("b", 0.4, (1.0, 0.0)), ("c", 0.15, (0.5, 0.5)))
+    assert ranking.central(ANYWHERE).names == ("a",)
+
+
 def test_a_set_is_found_by_its_names_in_any_order() -> None:
     ranking = by_hand(("a b", 2.0), ("", 1.0))
     assert ranking.of(frozenset(("b", "a"))) is ranking.best
