@@ -48,6 +48,8 @@ class Contradiction:
     names: its name, or both names where there are two recordings; effects: what explains the others; without [N]: error
     that this leaves of them; own [N]: error that it leaves of the recording, where it is driven as they are
     as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
+    among_themselves: whether they all differ from each other: then names are those of all, effects what explains them
+    with the difference taken out, `without` the error that is left then, and `own` the one that is left otherwise
     """
 
     names: tuple[str, ...]
@@ -55,10 +57,13 @@ class Contradiction:
     without: float
     own: float
     as_if: str = ""
+    among_themselves: bool = False
 
     @property
     def headline(self) -> str:
         """The message about it without figures."""
+        if self.among_themselves:
+            return "The recordings differ among themselves"
         if len(self.names) > 1:
             return f"Recordings {' and '.join(self.names)} contradict each other"
         return f"Recording {self.names[0]} contradicts the others"
@@ -68,6 +73,9 @@ class Contradiction:
         """What shows it, in sentences."""
         explained = set_title(self.effects) if self.effects else "the baseline"
         left, own = newtons(self.without), newtons(self.own)
+        if self.among_themselves:
+            verb = "explain" if len(self.effects) > 1 else "explains"
+            return f"{self.as_if} With that taken out, {explained} {verb} them to {left}, otherwise to {own}."
         if len(self.names) > 1:
             whom, missed, where = "one", "the other", "they are driven alike"
         else:
@@ -79,6 +87,8 @@ class Contradiction:
     @property
     def action(self) -> str:
         """What to do about it, as a sentence."""
+        if self.among_themselves:
+            return "Check specimen, pressure and zero of each, or diagnose them one by one."
         apart = "them" if len(self.names) > 1 else self.names[0]
         return (
             f"Check tire, pressure and zero of each, and what it had been through, or diagnose {apart} apart."
@@ -117,7 +127,7 @@ def contradiction_of(
     if len(recordings) < 2 or not explanation.remainder.unexplained:
         return None
     together = min(e.error for e in (explanation, *map(explanation.of, explanation.in_order(1))))
-    states = _states(recordings, motions)
+    states = states_of(recordings, motions)
     apart = _apart(before, states)
     found: list[tuple[float, Contradiction]] = []
     for number in np.argsort(-apart)[:SUSPECTED].tolist():
@@ -151,7 +161,7 @@ def contradiction_held_out(
     """
     every = [*recordings, *held_out]
     motions = [motion_of(r.time, r.deflection) for r in every]
-    states, seen = _states(every, motions), compared(held_out)
+    states, seen = states_of(every, motions), compared(held_out)
     level = float(np.sqrt(np.mean([floor.level**2 for floor in explanation.floors])))
     for number, recording in enumerate(held_out):
         own_number = len(recordings) + number
@@ -176,7 +186,7 @@ SPEEDS_PER_OCTAVE = 4
 """Number of parts of a factor of two of the speed; two speeds of one part differ by a tenth on average."""
 
 
-def _states(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
+def states_of(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[IndexArray]:
     """Return the number of the state of motion of each sample: of surface, direction, deflection and, where the times
     are known, speed; below STILL of the largest speed the tire rests.
     """

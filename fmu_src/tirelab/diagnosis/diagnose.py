@@ -28,6 +28,7 @@ from .acceptance import (
     without_unlikely,
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of
+from .between_recordings import difference_between
 from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
@@ -104,13 +105,12 @@ def diagnose(
     where = data.shown(localize(fitted, data.samples, located, levels, noise))
 
     motions = [e.motion for e in data.samples.experiments]
-    contradiction = contradiction_of(
-        explanation,
-        fitted,
-        motions,
-        data.before,
-        lambda several: explain(several, lambda sentence: None, ANEW * MOST_WORK),
-    )
+
+    def explain_anew(several: Sequence[Recorded]) -> Explanation:
+        return explain(several, lambda sentence: None, ANEW * MOST_WORK)
+
+    contradiction = contradiction_of(explanation, fitted, motions, data.before, explain_anew)
+    contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
     contradiction = contradiction or _refused_by(candidates, accepted, fitted, kept)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
