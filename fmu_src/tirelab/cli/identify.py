@@ -79,6 +79,7 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     from ..identification.identify import identify
     from ..identification.misfit import misfit_sentence
     from ..recordings.files import recording_files
+    from ..recordings.zero import refuse_too_deep
 
     out, part = output.out, options["part"]
     said, reading = reading, reading.of_part() if part else reading
@@ -105,6 +106,7 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
             show("reading", number, len(files))
             read.append(reading(path))
         show("reading", len(files), len(files))
+        refuse_too_deep(read)
         found = None if part else identify(read, law=options["law"], name=options["name"], progress=show)
     for recording in read:
         for note in recording.notes:

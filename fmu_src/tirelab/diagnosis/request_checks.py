@@ -10,13 +10,10 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-from radialtire.model import DEFLECTION_HIGHEST
-
 from ..errors import TirelabError
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
-from ..recordings.zero import quantity_text
+from ..recordings.zero import quantity_text, refuse_too_deep
 
 
 def check_once(files: Sequence[Path]) -> None:
@@ -58,15 +55,7 @@ def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_s
             "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give "
             f"what the gauge reads when nothing is loaded{zero}"
         )
-    for recording in (r.whole for r in (*fitted, *kept)):
-        deepest = int(np.argmax(recording.deflection))
-        if recording.deflection[deepest] > DEFLECTION_HIGHEST:
-            at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"
-            raise TirelabError(
-                f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
-                f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit and its zero, or diagnose a "
-                "part: FILE@10s:20s (times), FILE@100:2000 (rows)"
-            )
+    refuse_too_deep(r.whole for r in (*fitted, *kept))
 
 
 def check_folder(out: Path) -> None:

@@ -6,6 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+from radialtire.model import DEFLECTION_HIGHEST
+
 from .assignments import assignments
 from .channels import UNIT_OF, known_channel
 from .formats import RecordingError
@@ -132,6 +136,15 @@ class _Named(Protocol):
     def name(self) -> str: ...
 
 
+class _Driven(_Named, Protocol):
+    @property
+    def time(self) -> NDArray[np.float64]: ...
+    @property
+    def deflection(self) -> NDArray[np.float64]: ...
+    @property
+    def timed(self) -> bool: ...
+
+
 def refuse_far_zeros(recordings: Iterable[_Named]) -> None:
     """Raise RecordingError where the zero of a recording is so far off that no effect holds it.
 
@@ -141,6 +154,22 @@ def refuse_far_zeros(recordings: Iterable[_Named]) -> None:
         far = getattr(recording, "far_zero", "")
         if far and getattr(recording, "believed_force", None) is None:
             raise RecordingError(f"{recording.name}: {far}")
+
+
+def refuse_too_deep(recordings: Iterable[_Driven]) -> None:
+    """Raise RecordingError where a deflection is beyond the wheel's radius, which no tire and no FMU takes."""
+    for recording in recordings:
+        deepest = int(np.argmax(recording.deflection))
+        if recording.deflection[deepest] <= DEFLECTION_HIGHEST:
+            continue
+        at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"
+        least = float(f"{recording.deflection.min():.3g}")
+        zero = f", such as --zero deflection={quantity_text('deflection', least)}" if least > FARTHEST else ""
+        raise RecordingError(
+            f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
+            f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit, give what the gauge reads when "
+            f"nothing is loaded{zero}, or choose a range of the file: FILE@10s:20s (times), FILE@100:2000 (rows)"
+        )
 
 
 def parse_zeros(texts: Iterable[str]) -> dict[str, str]:

@@ -43,6 +43,8 @@ def test_the_command_closes_the_loop_through_files(tmp_path: Path) -> None:
         (["flat.csv", "--law", "hull1996"], "1 surface (flat) cannot determine the constants"),
         (["absent.csv"], "absent.csv"),
         (["flat.csv", "--out", "."], "cannot be written"),
+        (["flat.csv", "--zero", "deflection=-400mm"], "a tire takes 0.33 m at most"),
+        (["flat.csv", "--zero", "deflection=-400mm", "--part", "compare"], "such as --zero deflection=400mm"),
         (["flat.csv", "--law", "spline"], "'spline' is not one of"),
         ([], "Missing argument"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +45,16 @@ def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
         TirelabError, match=r"the deflection is 0\.4 m at 1 s, and a tire takes 0\.33 m at most"
     ):
         check_depth([part(0.0, 1.0)], [part(0.0, 1.0, 0.4)])
+
+
+def test_a_gauge_that_stands_far_from_zero_is_asked_for_its_zero() -> None:
+    """A robot's position: the force begins at 357 mm; at 0 the advice would be of no use."""
+    far = part(0.0, 1.0, 0.372)
+    far = replace(far, deflection=np.maximum(far.deflection, 0.357))
+    with pytest.raises(TirelabError, match=r"nothing is loaded, such as --zero deflection=357mm, or choose"):
+        check_depth([far], [])
+    with pytest.raises(TirelabError, match=r"nothing is loaded, or choose a range"):
+        check_depth([part(0.0, 1.0, 0.372)], [])
 
 
 def test_a_folder_may_be_new_but_not_within_a_file(tmp_path: Path) -> None:
