@@ -87,7 +87,13 @@ def difference_between(
         return None
     names = tuple(r.name for r in recordings)
     return Contradiction(
-        names, anew.model.names, anew.error, explanation.error, found.sentence(names), among_themselves=True
+        names,
+        anew.model.names,
+        anew.error,
+        explanation.error,
+        found.sentence(names),
+        among_themselves=True,
+        inflated=anew.model.tire.inflated,
     )
 
 

@@ -50,6 +50,7 @@ class Contradiction:
     as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
     among_themselves: whether they all differ from each other: then names are those of all, effects what explains them
     with the difference taken out, `without` the error that is left then, and `own` the one that is left otherwise
+    inflated: whether they are of tires, which have a pressure, and not of parts
     """
 
     names: tuple[str, ...]
@@ -58,6 +59,7 @@ class Contradiction:
     own: float
     as_if: str = ""
     among_themselves: bool = False
+    inflated: bool = True
 
     @property
     def headline(self) -> str:
@@ -87,12 +89,11 @@ class Contradiction:
     @property
     def action(self) -> str:
         """What to do about it, as a sentence."""
+        what = "tire, pressure" if self.inflated else "part"
         if self.among_themselves:
-            return "Check specimen, pressure and zero of each, or diagnose them one by one."
+            return f"Check {what} and zero of each, or diagnose them one by one."
         apart = "them" if len(self.names) > 1 else self.names[0]
-        return (
-            f"Check tire, pressure and zero of each, and what it had been through, or diagnose {apart} apart."
-        )
+        return f"Check {what} and zero of each, and what it had been through, or diagnose {apart} apart."
 
     @property
     def sentences(self) -> str:
@@ -144,7 +145,8 @@ def contradiction_of(
         if own > max(others.error / EXPLAINED, BEYOND_NOISE * float(np.hypot(level, forms))):
             names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
             as_if = _as_if(recording, moved, others.model.tire, alike, own)
-            one = Contradiction(tuple(names), others.model.names, others.error, own, as_if)
+            inflated = others.model.tire.inflated
+            one = Contradiction(tuple(names), others.model.names, others.error, own, as_if, inflated=inflated)
             found.append((others.error, one))
         if not others.remainder.unexplained:
             break
@@ -174,8 +176,10 @@ def contradiction_held_out(
         if own > max(explanation.error / EXPLAINED, beyond):
             as_if = _as_if(recording, moved, explanation.model.tire, alike, own)
             if as_if:
-                names = explanation.model.names
-                return Contradiction((recording.name,), names, explanation.error, own, as_if)
+                model = explanation.model
+                who = (recording.name,)
+                inflated = model.tire.inflated
+                return Contradiction(who, model.names, explanation.error, own, as_if, inflated=inflated)
     return None
 
 
@@ -256,7 +260,7 @@ def _as_if(recording: Recorded, moved: SmoothedMotion, tire: TireModel, alike: B
         (rmse([missed[alike] - offset]), f"the zero of the force {whose} were {newtons(abs(offset))} off"),
         (
             rmse([(missed - factor * force)[alike]]),
-            f"the force {whose} were {percent}, by another pressure or tire",
+            f"the force {whose} were {percent}, by another {'pressure or tire' if tire.inflated else 'part'}",
         ),
     )
     left, change = min(changes)

@@ -57,6 +57,7 @@ def test_specimens_of_other_stiffness_differ_and_show_their_damping() -> None:
     assert found.without == pytest.approx(NOISE, rel=0.15)
     assert found.own > 5.0 * found.without
     assert "With that taken out, viscous damping explains them to" in found.finding
+    assert found.action == "Check tire, pressure and zero of each, or diagnose them one by one."
     assert found.to_dict()["recordings"] == ["a", "b", "c"]
 
 

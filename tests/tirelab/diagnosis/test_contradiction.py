@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -131,6 +132,19 @@ def test_its_message_says_what_to_do() -> None:
         "them apart."
     )
     assert two.to_dict()["recordings"] == ["a", "b"]
+    assert replace(one, inflated=False).action == (
+        "Check part and zero of each, and what it had been through, or diagnose b apart."
+    )
+
+
+def test_of_parts_without_air_no_pressure_is_spoken_of() -> None:
+    spring = TireModel(PowerLaw(550.0, 1.42), tested_range=None, inflated=False)
+    found = diagnose(
+        [pressed("a", 1), pressed("b", 2), pressed("soft", 3, 440.0)], spring, catalogue=FEW
+    ).contradiction
+    assert found is not None
+    assert found.as_if == "It is as if the force of soft were 20 % less, by another part."
+    assert found.action.startswith("Check part and zero of each,")
 
 
 def test_a_held_out_recording_of_another_tire_is_named_where_it_refuses_the_law() -> None:
