@@ -34,7 +34,8 @@ class Signs:
 def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> Signs:
     """The signs of a rig, from three pieces of evidence, each from -1 to 1.
 
-    together     correlation of x and F: positive when both count the same way
+    together     correlation of x and F: positive when both count the same way; up to the largest |F| where that shows
+                 the contrary of the whole, as of a specimen that fails and is pulled on
     pushing      sum F|F| / sum F^2: 1 when the force is positive wherever it is large
     compressed   sum x F^2 / sum |x| F^2: 1 when the deflection is positive wherever the force is large
 
@@ -45,6 +46,9 @@ def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64
     # Numbers too large to be squared are refused elsewhere; here they are no evidence.
     with np.errstate(all="ignore"):
         evidence = _evidence(deflection, force)
+        before = _together_before_the_peak(deflection, force)
+        if before * evidence[0] < 0.0:
+            evidence = (before, *evidence[1:])
     together, pushing, compressed = (0 if not abs(e) >= CLEAR else (1 if e > 0.0 else -1) for e in evidence)
     if together and pushing and compressed and compressed * pushing == together:
         return Signs(compressed, pushing)
@@ -82,6 +86,15 @@ def _evidence(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tu
         pushing / ff if ff > 0.0 else 0.0,
         compressed / reached if reached > 0.0 else 0.0,
     )
+
+
+def _together_before_the_peak(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
+    """Return the correlation up to the largest |force|; 0 where it is not clear, or too little is driven before."""
+    first = slice(0, int(np.argmax(np.abs(force))) + 1)
+    if not np.ptp(deflection[first]) > PASSED * np.ptp(deflection):
+        return 0.0
+    together = _evidence(deflection[first], force[first])[0]
+    return together if abs(together) >= CLEAR else 0.0
 
 
 def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:

@@ -42,6 +42,8 @@ _COMMON = {
     "K": ("K", "degC", "degF"),
     "m/s": ("m/s", "mm/s", "km/h", "mph"),
 }
+# Words such as min, in and h may be part of a name.
+_USUAL = frozenset(unit for units in _COMMON.values() for unit in units) - {"min", "in", "h"}
 # Spellings that mean one thing only where the quantity is known; pint reads "C" as coulomb.
 _SPELLINGS = {
     ("K", "C"): "degC",
@@ -76,6 +78,7 @@ _GAUGE = re.compile(
 _MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
+_WITHIN_A_NAME = re.compile(r"(?P<name>[^()]*)\((?P<unit>[^()]*)\)(?P<more>[^()]+)")
 _RATE = re.compile(
     r"\bsampl\w*[ _](?:frequency|rate)\b\W*(?:(?P<unit>k?Hz)\W+)?(?P<value>\d+(?:\.\d+)?)\W*(?P<behind>k?Hz\b)?",
     re.I,
@@ -249,6 +252,10 @@ def split_header(text: str) -> tuple[str, str | None]:
         if found and found["name"]:
             unit = found["unit"].strip()
             return found["name"].strip(), unit if unit.strip("-") else None
+    within = _WITHIN_A_NAME.fullmatch(plain)
+    # Other words in parentheses within a name belong to it: Force (left) filtered.
+    if within and within["name"] and within["unit"] in _USUAL:
+        return f"{within['name'].strip(' _')} {within['more'].strip(' _')}".strip(), within["unit"]
     return plain, None
 
 

@@ -90,6 +90,19 @@ class TestSigns:
         columns = {"deflection": "+Displacement", "force": "+Force"}
         np.testing.assert_allclose(Reading(part=True, columns=columns)(path).force, -force, rtol=1e-5)
 
+    def test_a_specimen_that_fails_and_is_pulled_on_is_not_turned_unasked(self) -> None:
+        """Its gauge begins at -0.6 mm; the force rises to -0.4 mm and then falls, over most of the way."""
+        deflection = np.linspace(-0.6, 0.8, 300)
+        force = np.where(
+            deflection < -0.4, 10.0 * (deflection + 0.6), 2.0 * np.exp(-3.0 * (deflection + 0.4))
+        )
+        found = compressive_signs(deflection, force)
+        assert (found.deflection, found.force, found.falls) == (1, 1, False)
+        assert found.doubt == "force rises with deflection; under load force is positive, deflection negative"
+        # From above to below: the same specimen on a rig that counts down.
+        down = compressive_signs(-deflection - 0.2, force)
+        assert (down.deflection, down.force) == (-1, 1)
+
     def test_a_part_whose_force_has_both_signs_is_left_as_it_is(self, tmp_path: Path) -> None:
         time = np.arange(400) / 10.0
         header = "time [s],Displacement [mm],Force [N]"
