@@ -11,7 +11,7 @@ from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import DECIDED, SURE, confidence_word, whole_percent
-from .acceptance import NO_WORSE
+from .acceptance import LIKELY, NO_WORSE
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -60,13 +60,10 @@ def _undecided(effects: Sequence[NamedEffect], alternatives: Sequence[Alternativ
     if sure_ones:
         verb = "is" if len(sure_ones) == 1 else "are"
         return f"{_capital(set_title(sure_ones))} {verb} sure; what else acts is undecided."
-    alternative_is_likelier = any(
-        whole_percent(a.probability) > whole_percent(confidence)
-        for a in alternatives
-        if math.isfinite(a.probability)
-    )
-    likeliest = "no explanation is likely" if alternative_is_likelier else "this is the likeliest explanation"
-    return f"Undecided; {likeliest}."
+    others = max((a.probability for a in alternatives if math.isfinite(a.probability)), default=0.0)
+    if whole_percent(others) <= whole_percent(confidence):
+        return "Undecided; this is the likeliest explanation."
+    return f"Undecided; {'an alternative is likelier' if others > LIKELY else 'no explanation is likely'}."
 
 
 AMPLIFIED = 1.1
@@ -82,10 +79,13 @@ def _errors(
         stays = ", and no known effect was found to reduce it" if unexplained else ""
         nearest = min(alternatives, key=lambda a: a.left if a.left >= 0.0 else math.inf, default=None)
         if unexplained and nearest is not None and nearest.left < NO_WORSE * fit.before:
-            stays = (
-                f", and no known effect is likely enough to be named; {set_title(nearest.names)} would leave "
-                f"{newtons(nearest.left)}"
+            likely = math.isfinite(nearest.probability) and nearest.probability > LIKELY
+            refused, unlikely = (
+                "held-out data refuse what is likeliest",
+                "no known effect is likely enough to be named",
             )
+            stays = f", and {refused if likely else unlikely}; "
+            stays += f"{set_title(nearest.names)} would leave {newtons(nearest.left)}"
         return [f"The RMS error is {newtons(fit.before)}{stays}; {noise}."]
     verb = "reduces" if fit.after < fit.before else "does not reduce, it changes"
     found = [

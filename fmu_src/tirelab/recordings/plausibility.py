@@ -5,7 +5,7 @@ Nothing here is certain, so nothing is refused or changed: what is doubtful is s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -184,8 +184,9 @@ def too_deep(origin: Origin, deepest: float, unit: str) -> str:
 def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) -> Zero | None:
     """Return where the force begins, by the power law that fits the medians of the force over the deflection best.
 
-    F = A max(x - x0, 0)^B with x0 and B on a grid, A by least squares, on the surface with the most samples; None where
-    the force is not that of a spring that is pressed once over most of its stroke.
+    F = A max(x - x0, 0)^B with x0 and B on a grid, A by least squares, on the surface with the most samples. Where no
+    such law fits, as of a part that snaps through, it is the end of what is driven without force; None where there is
+    neither, or the force is not that of a spring that is pressed once over most of its stroke.
     """
     surface = _commonest(radius)
     x, f = deflection[surface], force[surface]
@@ -206,10 +207,13 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
     tried = np.linspace(low - 0.5 * stroke, low + 0.7 * stroke, 241)
     missed = [_missed(np.maximum(centre - begins, 0.0), weight, target) for begins in tried]
     begins, fits = float(tried[np.argmin(missed)]), 2e-2 * float(np.sum(target**2))
-    if not min(missed) <= fits:
-        return None
     largest = float(level.max())
     least = float(np.mean(f[x <= low + LOWEST * stroke]))
+    if not min(missed) <= fits:
+        free = _without_force([f[place == b] for b in filled])
+        return (
+            Zero(float(edges[filled[free]]), high - float(edges[filled[free]]), low, least) if free else None
+        )
     if abs(float(level[0])) < UNLOADED * largest and abs(begins - low) < AT_START * stroke:
         return Zero(low, stroke, low, least)
     below = level[centre < begins]
@@ -220,6 +224,15 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
     if not found.seen and low > 0.0 and _missed(centre, weight, target) <= fits:
         return None
     return found
+
+
+def _without_force(by_place: Sequence[FloatArray]) -> int:
+    """Return how many of the first places, in the order of the deflection, have no force whatever law follows: as many
+    as are AT_START of the stroke at least; else 0.
+    """
+    sizes = [float(np.quantile(np.abs(forces), 0.95)) for forces in by_place]
+    loaded = np.flatnonzero(np.array(sizes) > NO_FORCE * max(sizes))
+    return int(loaded[0]) if loaded[0] >= AT_START * len(by_place) else 0
 
 
 def _missed(beyond: FloatArray, weight: FloatArray, target: FloatArray) -> float:

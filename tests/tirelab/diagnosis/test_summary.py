@@ -70,6 +70,11 @@ def test_an_alternative_that_would_reduce_the_error_is_told_where_nothing_is_nam
         "The RMS error is 32.5 N, and no known effect is likely enough to be named; bottoming and Mullins softening "
         "would leave 10.5 N; the noise is 6.00 N." in told
     )
+    refused = [replace(others[1], probability=0.53), others[0]]
+    assert (
+        "held-out data refuse what is likeliest; bottoming and Mullins softening would leave 10.5 N"
+        in summarise((), refused, (regressed("deflection", 0.95),), 0.22, STAYED)
+    )
     hardly = [replace(other, left=32.0) for other in others]
     assert "no known effect was found to reduce it" in summarise(
         (), hardly, (regressed("deflection", 0.95),), 0.9, STAYED
@@ -81,6 +86,10 @@ def test_an_undecided_verdict_is_not_called_the_likeliest_beside_a_likelier_one(
     unsure = replace(FRICTION, probability=0.6)
     assert summarise((unsure,), others, (), 0.06, STAYED).startswith("Undecided; no explanation is likely. ")
     assert summarise((unsure,), others, (), 0.3, STAYED).startswith("Undecided; this is the likeliest ")
+    likely = [replace(others[0], probability=0.53)]
+    assert summarise((unsure,), likely, (), 0.06, STAYED).startswith(
+        "Undecided; an alternative is likelier. "
+    )
 
 
 def test_what_is_sure_is_said_where_what_acts_beside_it_is_undecided():

@@ -62,6 +62,22 @@ def test_a_gap_before_the_force_is_found() -> None:
     assert found.begins == pytest.approx(0.008, abs=3e-4)
 
 
+def test_a_part_that_snaps_through_begins_where_it_was_driven_without_force() -> None:
+    """Its gauge is the position of a robot: 6 mm of air from 357 mm on, then two humps that no power law follows."""
+    x = np.linspace(0.357, 0.372, 3000)
+    way = np.maximum(x - 0.363, 0.0) / 0.009
+    force = 8.0 * np.abs(np.sin(2.0 * np.pi * way)) * (way < 1.0) + 4.0 * way
+    force += 0.01 * np.random.default_rng(1).standard_normal(x.size)
+    found = force_begins(x, force, np.full(x.size, np.inf))
+    assert found is not None
+    # a sixtieth of the stroke of 15 mm is one place
+    assert found.begins == pytest.approx(0.363, abs=3e-4)
+    assert found.seen
+    assert found.far
+    away = force_begins(x, force - 4.0, np.full(x.size, np.inf))
+    assert away is None
+
+
 @pytest.mark.parametrize(
     ("radius", "said"), [(127.0, "as good as flat"), (-50.0, "as good as flat"), (2.5, "")]
 )
