@@ -120,6 +120,8 @@ EFFORT = (
     "preprocessing/gauge.CANDIDATES",
     "preprocessing/motion.CUTOFFS",
     "preprocessing/motion.LEVERAGE",
+    "preprocessing/motion.KEPT",
+    "preprocessing/motion.KEPT_SAMPLES",
     "preprocessing/motion.MOST_PIECES",
     "preprocessing/noise.FEWEST_LAGS",
     "preprocessing/samples.ROWS",

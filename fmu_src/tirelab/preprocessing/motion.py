@@ -23,7 +23,7 @@ it comes from the deflection, which is read there as well as elsewhere, or from 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,8 +75,23 @@ class Motion:
     resolved: BoolArray
 
 
+KEPT, KEPT_SAMPLES = 32, 50_000
+"""Budget: most recordings whose motion is kept, and most samples of one; a diagnosis asks for each up to ten times."""
+
+
 def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
-    """Return the motion of a recording: time [s] rising, deflection [m]."""
+    """Return the motion of a recording: time [s] rising, deflection [m]; its arrays are not to be written to."""
+    if deflection.size > KEPT_SAMPLES:
+        return _motion(time, deflection)
+    return _kept(*(np.asarray(values, dtype=np.float64).tobytes() for values in (time, deflection)))
+
+
+@lru_cache(maxsize=KEPT)
+def _kept(time: bytes, deflection: bytes) -> Motion:
+    return _motion(np.frombuffer(time), np.frombuffer(deflection))
+
+
+def _motion(time: FloatArray, deflection: FloatArray) -> Motion:
     noise = deflection_noise(deflection)
     smooth, rate, acceleration, resolved = _smoothed(time, deflection, noise)
     # Smoothing cuts a corner short: there the reading itself is nearer.

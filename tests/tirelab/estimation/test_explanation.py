@@ -13,6 +13,7 @@ from rivals import rivals
 from tirelab.estimation import first_sets
 from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
 from tirelab.names import REFITTED_LAW
+from tirelab.preprocessing.motion import motion_of
 from tirelab.preprocessing.noise import Noise
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import dataset_of
@@ -62,6 +63,16 @@ def test_what_is_left_is_left_by_the_written_tire(found: Explanation) -> None:
         assert float(np.std(left)) == pytest.approx(5.0, rel=0.06)
     assert nothing.effects == ()
     assert nothing.remainder.unexplained
+
+
+def test_the_motion_that_is_kept_is_not_written_to(found: Explanation) -> None:
+    for drive in RIDES:
+        kept, anew = motion_of(drive.time, drive.deflection), motion_of(drive.time, drive.deflection + 0.0)
+        assert anew is kept
+        fresh = motion_of(drive.time.copy() + 1e-9 * drive.time[-1], drive.deflection)
+        assert fresh is not kept
+        np.testing.assert_allclose(kept.rate, fresh.rate, rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(kept.deflection, fresh.deflection, rtol=1e-9, atol=1e-12)
 
 
 def test_a_set_that_was_not_fitted_is_refused(found: Explanation) -> None:
