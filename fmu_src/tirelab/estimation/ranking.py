@@ -1,9 +1,8 @@
 """Sets of effects, fitted with the effects' own equations and ranked by the evidence of these fits.
 
-The sets that the signatures find likely are fitted first, starting from the drawn responses that come nearest to the
-residual. Then the neighbours of the best sets are fitted, with one candidate removed, added or exchanged, as long as
-they may win. A smaller set starts from the optimum of the larger one, a larger set from that of the smaller one, so
-that no set is ranked below a part of itself.
+The sets that the signatures find likely are fitted first, then the neighbours of the best ones, with one candidate
+removed, added or exchanged, as long as they may win. A smaller set starts from the optimum of the larger one, a larger
+set from that of the smaller one, so that no set is ranked below a part of itself.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn_beside
 from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
@@ -102,25 +102,27 @@ class Ranking:
         return np.asarray(weights / weights.sum())
 
     def central(self, most_behind: float) -> Fit:
-        """Return the likeliest set, or in its place one with further or fewer effects whose response is nearer to the
-        mean of all sets, weighted by their probabilities; none is further behind the best than `most_behind`.
+        """Return the likeliest set, or one that is not further behind it than `most_behind`: with fewer effects and
+        nearer to the mean response of all sets by their weights, or with more and most of the squared distance gone.
 
         Of effects unlike all others it has those above one half, of effects that may replace each other one of them
         (M. M. Barbieri, J. O. Berger, "Optimal predictive model selection", Ann. Stat. 32 (2004) 870-897).
         """
         left = np.stack([fit.residual for fit in self.fits])
         away = np.sum((left - self.weights() @ left) ** 2, axis=1).tolist()
-        near = [pair for pair in zip(self.fits, away, strict=True) if self.behind(pair[0]) < most_behind]
+        near = [p for p in zip(self.fits, away, strict=True) if self.behind(p[0]) < most_behind]
         chosen = near[0]
-        while nearer := [pair for pair in near if pair[1] < chosen[1] and _nested(pair[0], chosen[0])]:
+        while nearer := [p for p in near if p[1] < _most_away(p[0], chosen)]:
             chosen = nearer[0]
         return chosen[0]
 
     def inclusion(self) -> dict[str, float]:
         """Return the probability of each candidate, over all fits."""
-        pairs = list(zip(self.fits, self.weights().tolist(), strict=True))
-        names = {name for fit in self.fits for name in fit.names}
-        return {n: float(sum(w for fit, w in pairs if n in fit.names)) for n in sorted(names)}
+        pairs = [(fit.names, weight) for fit, weight in zip(self.fits, self.weights().tolist(), strict=True)]
+        return {
+            n: float(sum(w for own, w in pairs if n in own))
+            for n in sorted({n for own, _ in pairs for n in own})
+        }
 
 
 @dataclass
@@ -207,8 +209,8 @@ class FittedSets:
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count
-        orders = [(not fit.out_of_range, fit.log_likelihood) for fit in (found, self.fits.get(key, found))]
-        if key not in self.fits or orders[0] > orders[1]:
+        own, kept = ((not fit.out_of_range, fit.log_likelihood) for fit in (found, self.fits.get(key, found)))
+        if key not in self.fits or own > kept:
             self.fits[key] = found
         return found
 
@@ -304,8 +306,10 @@ def _depends(name: str, beside: Sequence[str]) -> bool:
     return bool(beside) and name != LAW and any(map(acts_on_signal, (name, *beside)))
 
 
-def _nested(fit: Fit, other: Fit) -> bool:
-    return set(fit.names) <= set(other.names) or set(other.names) <= set(fit.names)
+def _most_away(fit: Fit, other: tuple[Fit, float]) -> float:
+    """Return the squared distance below which a set takes the place of another one at its distance, 0 for never."""
+    names, replaced = set(fit.names), set(other[0].names)
+    return other[1] if names < replaced else MAJORITY * other[1] if names > replaced else 0.0
 
 
 def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:

@@ -110,6 +110,17 @@ def test_of_effects_alike_one_stands_for_all_though_neither_is_above_one_half() 
     assert unlike.central(ANYWHERE).names == ()
 
 
+def test_an_effect_that_goes_a_little_towards_the_mean_is_not_added() -> None:
+    """Half of the sets have something else, which differs; a tenth of one of these is nearer to the mean than none."""
+    ranking = by_response(
+        ("a", 0.4, (1.0, 1.0, 0.0)),
+        ("a b", 0.3, (0.0, 1.0, 0.0)),
+        ("a c", 0.2, (1.0, 0.0, 0.0)),
+        ("a d", 0.1, (0.9, 1.0, 0.0)),
+    )
+    assert ranking.central(ANYWHERE).names == ("a",)
+
+
 def test_a_set_far_behind_the_best_does_not_stand_for_all() -> None:
     ranking = by_response(("", 0.4, (1.0, 1.0)), ("a", 0.35, (0.0, 1.0)), ("b", 0.25, (0.0, 1.1)))
     behind = ranking.behind(ranking.fits[1])
