@@ -48,20 +48,16 @@ from .findings import (
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .held_out import held_out_of
-from .ranking import (
-    FIRST_PART,
-    MOST_WORK,
-    Ranking,
-    corrected,
-    ranked,
-    with_parts,
-)
+from .ranking import MOST_WORK, Ranking, corrected, ranked, with_parts
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 
 Progress = Callable[[str], None]
+
+FIRST_PART = 0.5
+"""Budget: part of that of an explanation in which the set is found whose distortion by the blocks is subtracted."""
 
 LIKE_LAW = "it depends on the deflection only in this motion: load and unload to two depths, at two speeds"
 """Why an effect cannot be shown that no law depends on elsewhere."""

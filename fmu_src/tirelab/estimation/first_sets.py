@@ -35,11 +35,10 @@ from ..selection.search import (
     usual_form_error,
 )
 from .held_out import HeldOutRecordings
-from .ranking import (
-    BEGUN,
-    FittedSets,
-    begun,
-)
+from .ranking import FittedSets, begun
+
+BEGUN = 3
+"""Number of the likeliest sets of the search that are fitted first, in addition to the best one of each size."""
 
 
 def with_signatures(

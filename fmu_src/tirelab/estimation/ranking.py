@@ -26,9 +26,6 @@ from .problem import Values
 FloatArray = NDArray[np.float64]
 
 
-BEGUN = 3
-"""Number of the likeliest sets of the search that are fitted first, in addition to the best one of each size."""
-
 TEMPERATURE = 2.0
 """Tempering of the log odds between sets, for fits that stop early and forms that are not quite right."""
 
@@ -41,9 +38,6 @@ MOST_FITS = 40
 MOST_WORK = 1.2e8
 """Budget: number of simulated blocks of one explanation, after which it ends however much it still gains: some 30 s of
 a core of an x86-64 server, with which the whole command stays within 60 s."""
-
-FIRST_PART = 0.5
-"""Budget: part of it in which the set is found whose distortion by the blocks is subtracted."""
 
 EVALUATION = 2000
 """Number of blocks in which a simulation takes as long as everything of an evaluation that does not grow with them."""
