@@ -92,8 +92,9 @@ def difference_between(
         anew.error,
         explanation.error,
         found.sentence(names),
-        among_themselves=True,
-        inflated=anew.model.tire.inflated,
+        anew.model.tire.inflated,
+        found.kind,
+        tuple(found.amounts.tolist()),
     )
 
 

@@ -48,9 +48,11 @@ class Contradiction:
     names: its name, or both names where there are two recordings; effects: what explains the others; without [N]: error
     that this leaves of them; own [N]: error that it leaves of the recording, where it is driven as they are
     as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
-    among_themselves: whether they all differ from each other: then names are those of all, effects what explains them
-    with the difference taken out, `without` the error that is left then, and `own` the one that is left otherwise
+    Where they all differ from each other, names are those of all, effects what explains them with the difference taken
+    out, `without` the error that is left then, and `own` the one that is left otherwise.
     inflated: whether they are of tires, which have a pressure, and not of parts
+    differs, amounts: what differs among themselves (factor, force [N] or deflection [m]), and by how much in each from
+    the mean of all; both empty otherwise
     """
 
     names: tuple[str, ...]
@@ -58,8 +60,14 @@ class Contradiction:
     without: float
     own: float
     as_if: str = ""
-    among_themselves: bool = False
     inflated: bool = True
+    differs: str = ""
+    amounts: tuple[float, ...] = ()
+
+    @property
+    def among_themselves(self) -> bool:
+        """Whether they all differ from each other."""
+        return bool(self.differs)
 
     @property
     def headline(self) -> str:
@@ -107,6 +115,8 @@ class Contradiction:
             "effects_of_the_others": list(self.effects),
             "others_after": self.without,
             "own_after": self.own,
+            "differs": self.differs or None,
+            "amounts": dict(zip(self.names, self.amounts, strict=True)) if self.differs else None,
             "headline": self.headline,
             "finding": self.finding,
             "action": self.action,

@@ -58,7 +58,13 @@ def test_specimens_of_other_stiffness_differ_and_show_their_damping() -> None:
     assert found.own > 5.0 * found.without
     assert "With that taken out, viscous damping explains them to" in found.finding
     assert found.action == "Check tire, pressure and zero of each, or diagnose them one by one."
-    assert found.to_dict()["recordings"] == ["a", "b", "c"]
+    told = found.to_dict()
+    assert told["recordings"] == ["a", "b", "c"]
+    assert told["differs"] == "factor"
+    # 0.9, 1 and 1.1, of which the mean is 1
+    assert told["amounts"] == {
+        name: pytest.approx(v, abs=0.01) for name, v in zip("abc", (-0.1, 0.0, 0.1), strict=True)
+    }
 
 
 def test_the_zero_of_the_deflection_may_differ() -> None:
