@@ -20,8 +20,8 @@ import numpy as np
 from ..estimation.explanation import Explanation
 from ..preprocessing.motion import FloatArray, IndexArray, Motion
 from ..preprocessing.samples import Recorded
-from ..report.titles import newtons
-from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
+from ..report.titles import newtons, set_title
+from ..simulation.simulate import simulate, smoothed_motion
 from .contradiction import EXPLAINED, Contradiction, Explain, states_of
 
 ROUNDS = 100
@@ -32,6 +32,42 @@ SETTLED = 1e-4
 
 STEP = 1e-3
 """Part of the largest deflection by which the motion is shifted for the tangent of the force."""
+
+
+@dataclass(frozen=True)
+class Difference(Contradiction):
+    """By what recordings differ among themselves.
+
+    names: of all; effects: what explains them with the difference taken out; without [N]: error that is left then; own
+    [N]: error that is left otherwise; as_if: the difference, as a sentence
+    differs: what does: factor, force [N] or deflection [m]; amounts: that of each recording, from the mean of all
+    """
+
+    differs: str = ""
+    amounts: tuple[float, ...] = ()
+
+    @property
+    def headline(self) -> str:
+        """The message about it without figures."""
+        return "The recordings differ among themselves"
+
+    @property
+    def finding(self) -> str:
+        """What shows it, in sentences."""
+        explained = set_title(self.effects) if self.effects else "the baseline"
+        verb = "explain" if len(self.effects) > 1 else "explains"
+        left, own = newtons(self.without), newtons(self.own)
+        return f"{self.as_if} With that taken out, {explained} {verb} them to {left}, otherwise to {own}."
+
+    @property
+    def action(self) -> str:
+        """What to do about it, as a sentence."""
+        return f"Check {self.suspects} of each, or diagnose them one by one."
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the entry `contradiction` of diagnosis.json."""
+        own = {"differs": self.differs, "amounts": dict(zip(self.names, self.amounts, strict=True))}
+        return {**super().to_dict(), **own}
 
 
 @dataclass(frozen=True)
@@ -69,7 +105,7 @@ class _Difference:
 
 def difference_between(
     explanation: Explanation, recordings: Sequence[Recorded], motions: Sequence[Motion], explain: Explain
-) -> Contradiction | None:
+) -> Difference | None:
     """Return by what the recordings differ among themselves; None where it is not that, or all are explained together.
 
     It is if one number for each recording takes EXPLAINED of the differences out of it, and if what explains the
@@ -86,7 +122,7 @@ def difference_between(
     if anew.error >= EXPLAINED * explanation.error:
         return None
     names = tuple(r.name for r in recordings)
-    return Contradiction(
+    return Difference(
         names,
         anew.model.names,
         anew.error,
@@ -106,7 +142,7 @@ def _largest_difference(
     step = STEP * max(float(np.abs(m.deflection).max()) for m in motions)
     moved = [smoothed_motion(r, m) for r, m in zip(recordings, motions, strict=True)]
     forces = [simulate(tire, m, m) for m in moved]
-    shifted = [_shifted(m, step) for m in moved]
+    shifted = [replace(m, deflection=m.deflection + step) for m in moved]
     tangents = [(simulate(tire, m, m) - f) / step for m, f in zip(shifted, forces, strict=True)]
     gains = {"factor": forces, "force": [np.ones_like(f) for f in forces], "deflection": tangents}
     misses = [r.force - f for r, f in zip(recordings, forces, strict=True)]
@@ -117,10 +153,6 @@ def _largest_difference(
         if fitted is not None and (kind != "factor" or fitted[0].min() > -1.0):
             found.append(_Difference(kind, *fitted))
     return min(found, key=lambda d: d.left, default=None)
-
-
-def _shifted(moved: SmoothedMotion, step: float) -> SmoothedMotion:
-    return replace(moved, deflection=moved.deflection + step)
 
 
 def _fitted(

@@ -48,11 +48,7 @@ class Contradiction:
     names: its name, or both names where there are two recordings; effects: what explains the others; without [N]: error
     that this leaves of them; own [N]: error that it leaves of the recording, where it is driven as they are
     as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
-    Where they all differ from each other, names are those of all, effects what explains them with the difference taken
-    out, `without` the error that is left then, and `own` the one that is left otherwise.
     inflated: whether they are of tires, which have a pressure, and not of parts
-    differs, amounts: what differs among themselves (factor, force [N] or deflection [m]), and by how much in each from
-    the mean of all; both empty otherwise
     """
 
     names: tuple[str, ...]
@@ -61,19 +57,10 @@ class Contradiction:
     own: float
     as_if: str = ""
     inflated: bool = True
-    differs: str = ""
-    amounts: tuple[float, ...] = ()
-
-    @property
-    def among_themselves(self) -> bool:
-        """Whether they all differ from each other."""
-        return bool(self.differs)
 
     @property
     def headline(self) -> str:
         """The message about it without figures."""
-        if self.among_themselves:
-            return "The recordings differ among themselves"
         if len(self.names) > 1:
             return f"Recordings {' and '.join(self.names)} contradict each other"
         return f"Recording {self.names[0]} contradicts the others"
@@ -83,9 +70,6 @@ class Contradiction:
         """What shows it, in sentences."""
         explained = set_title(self.effects) if self.effects else "the baseline"
         left, own = newtons(self.without), newtons(self.own)
-        if self.among_themselves:
-            verb = "explain" if len(self.effects) > 1 else "explains"
-            return f"{self.as_if} With that taken out, {explained} {verb} them to {left}, otherwise to {own}."
         if len(self.names) > 1:
             whom, missed, where = "one", "the other", "they are driven alike"
         else:
@@ -95,13 +79,15 @@ class Contradiction:
         return " ".join(filter(None, (f"{found[0].upper()}{found[1:]}", self.as_if)))
 
     @property
+    def suspects(self) -> str:
+        """What may be another one in each recording."""
+        return "tire, pressure and zero" if self.inflated else "part and zero"
+
+    @property
     def action(self) -> str:
         """What to do about it, as a sentence."""
-        what = "tire, pressure" if self.inflated else "part"
-        if self.among_themselves:
-            return f"Check {what} and zero of each, or diagnose them one by one."
         apart = "them" if len(self.names) > 1 else self.names[0]
-        return f"Check {what} and zero of each, and what it had been through, or diagnose {apart} apart."
+        return f"Check {self.suspects} of each, and what it had been through, or diagnose {apart} apart."
 
     @property
     def sentences(self) -> str:
@@ -115,8 +101,6 @@ class Contradiction:
             "effects_of_the_others": list(self.effects),
             "others_after": self.without,
             "own_after": self.own,
-            "differs": self.differs or None,
-            "amounts": dict(zip(self.names, self.amounts, strict=True)) if self.differs else None,
             "headline": self.headline,
             "finding": self.finding,
             "action": self.action,

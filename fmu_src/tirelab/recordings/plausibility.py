@@ -211,9 +211,8 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
     least = float(np.mean(f[x <= low + LOWEST * stroke]))
     if not min(missed) <= fits:
         free = _without_force([f[place == b] for b in filled])
-        return (
-            Zero(float(edges[filled[free]]), high - float(edges[filled[free]]), low, least) if free else None
-        )
+        end = float(edges[filled[free]])
+        return Zero(end, high - end, low, least) if free else None
     if abs(float(level[0])) < UNLOADED * largest and abs(begins - low) < AT_START * stroke:
         return Zero(low, stroke, low, least)
     below = level[centre < begins]

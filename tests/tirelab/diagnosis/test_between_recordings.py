@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from radialtire import PowerLaw, TireModel
-from tirelab.diagnosis.between_recordings import difference_between
-from tirelab.diagnosis.contradiction import Contradiction
+from tirelab.diagnosis.between_recordings import Difference, difference_between
 from tirelab.estimation.explanation import Explanation, explain_misfit
 from tirelab.preprocessing.motion import motion_of
 from tirelab.preprocessing.samples import Recorded
@@ -39,7 +38,7 @@ def explain(several: Sequence[Recorded]) -> Explanation:
     return explain_misfit(several, TIRE, ["viscous_damping"], lambda stage: None)
 
 
-def difference(*several: Recording) -> Contradiction | None:
+def difference(*several: Recording) -> Difference | None:
     motions = [motion_of(r.time, r.deflection) for r in several]
     return difference_between(explain(several), several, motions, explain)
 
