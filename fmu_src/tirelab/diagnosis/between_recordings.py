@@ -22,7 +22,7 @@ from ..preprocessing.motion import FloatArray, IndexArray, Motion
 from ..preprocessing.samples import Recorded
 from ..report.titles import newtons, set_title
 from ..simulation.simulate import simulate, smoothed_motion
-from .contradiction import EXPLAINED, Contradiction, Explain, states_of
+from .contradiction import EXPLAINED, Contradiction, Explain, in_states, states_of
 
 ROUNDS = 100
 """Most rounds in which m and a are found in turns."""
@@ -162,21 +162,14 @@ def _fitted(
 
     states, misses, gains: of each recording the number of the state, R and G at each sample
     """
-    numbers = np.unique(np.concatenate(states), return_inverse=True)[1]
-    size = int(numbers.max()) + 1
-    own = np.split(numbers, np.cumsum([s.size for s in states])[:-1])
-    counts = np.array([np.bincount(k, minlength=size) for k in own], dtype=float)
+    counts, *sums = in_states(states, misses, gains)
     counts[:, (counts > 0.0).sum(axis=0) < 2] = 0.0
     if not counts.any(axis=1).all():
         return None
-    filled = np.maximum(counts, 1.0)
-    missed, gain = (
-        np.array([np.bincount(k, v, size) for k, v in zip(own, values, strict=True)]) / filled
-        for values in (misses, gains)
-    )
+    missed, gain = (own / np.maximum(counts, 1.0) for own in sums)
     total = np.maximum(counts.sum(axis=0), 1.0)
     slope = np.maximum((counts * gain**2).sum(axis=1), 1e-300)
-    amounts = np.zeros(len(own))
+    amounts = np.zeros(len(counts))
     for _ in range(ROUNDS):
         common = (counts * (missed - amounts[:, None] * gain)).sum(axis=0) / total
         new = (counts * gain * (missed - common)).sum(axis=1) / slope

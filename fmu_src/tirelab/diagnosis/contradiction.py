@@ -209,6 +209,17 @@ def states_of(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list
     return found
 
 
+def in_states(states: Sequence[IndexArray], *values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    """Return the number of samples of each recording in each state (r, s), and for each of the `values`, given at the
+    samples of each recording, their sums (r, s).
+    """
+    numbers = np.unique(np.concatenate(states), return_inverse=True)[1]
+    size = int(numbers.max()) + 1
+    own = np.split(numbers, np.cumsum([s.size for s in states])[:-1])
+    summed = (np.array([np.bincount(k, v, size) for k, v in zip(own, one, strict=True)]) for one in values)
+    return np.array([np.bincount(k, minlength=size) for k in own], dtype=float), *summed
+
+
 def _as_others(states: Sequence[IndexArray], number: int) -> BoolArray:
     """Return which samples of a recording are in a state that another one has too."""
     others = np.unique(np.concatenate([s for i, s in enumerate(states) if i != number]))
@@ -219,11 +230,7 @@ def _apart(misfits: Sequence[FloatArray], states: Sequence[IndexArray]) -> Float
     """Return by how much the mean misfit of each recording differs from that of the others in the states that they
     share, root mean square [N] over their samples; 0 where they share none.
     """
-    numbers = np.unique(np.concatenate(states), return_inverse=True)[1]
-    own = np.split(numbers, np.cumsum([s.size for s in states])[:-1])
-    size = int(numbers.max()) + 1
-    counts = np.array([np.bincount(k, minlength=size) for k in own], dtype=float)
-    sums = np.array([np.bincount(k, m, size) for k, m in zip(own, misfits, strict=True)])
+    counts, sums = in_states(states, misfits)
     other_counts, other_sums = counts.sum(axis=0) - counts, sums.sum(axis=0) - sums
     shared = np.where(other_counts > 0.0, counts, 0.0)
     differences = sums / np.maximum(counts, 1.0) - other_sums / np.maximum(other_counts, 1.0)
