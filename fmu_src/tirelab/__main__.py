@@ -6,6 +6,7 @@ import _thread
 import signal
 import sys
 import threading
+import time
 from typing import Any, NoReturn
 
 AGAIN = 0.01
@@ -28,11 +29,17 @@ def interrupt(*_: Any) -> NoReturn:
 def repeat(lost: Any) -> None:
     """Interrupt once more where a callback or a `__del__` was interrupted, of which Python only prints the error."""
     if lost.exc_type is Interrupted:
-        timer = threading.Timer(AGAIN, _thread.interrupt_main)
-        timer.daemon = True
-        timer.start()
+        over = threading.Event()
+        threading.Thread(target=_interrupt_after, args=(over,), daemon=True).start()
+        over.set()  # an interrupt before here, while a busy machine starts the thread, would be lost too
     else:
         sys.__unraisablehook__(lost)
+
+
+def _interrupt_after(over: threading.Event) -> None:
+    over.wait()
+    time.sleep(AGAIN)
+    _thread.interrupt_main()
 
 
 def main() -> None:

@@ -109,6 +109,18 @@ main()
 """
 """Is interrupted in a callback, as one of the import system: Python prints such an error and goes on."""
 
+SLOW_THREADS = """
+import threading, time
+start = threading.Thread.start
+
+def slowly(thread):
+    start(thread)
+    time.sleep(0.2)
+
+threading.Thread.start = slowly
+"""
+"""A busy machine."""
+
 
 def run(program: str, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run a program of Python as a module, in whose code no interrupt is looked at."""
@@ -210,6 +222,14 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(
 ) -> None:
     monkeypatch.chdir(repository)
     done = run(IN_CALLBACK, tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "\nAborted!\n")
+
+
+def test_it_comes_again_where_a_thread_takes_long_to_start(
+    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
+    done = run(SLOW_THREADS + IN_CALLBACK, tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "\nAborted!\n")
 
 
