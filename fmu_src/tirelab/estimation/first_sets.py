@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.noise import noise_of
+from ..preprocessing.noise import Driven, noise_of
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import Dataset, Samples, dataset_of
 from ..regressors.signature import (
@@ -36,6 +38,9 @@ from ..selection.search import (
 )
 from .held_out import HeldOutRecordings
 from .ranking import FittedSets, begun
+
+FloatArray = NDArray[np.float64]
+
 
 BEGUN = 3
 """Number of the likeliest sets of the search that are fitted first, in addition to the best one of each size."""
@@ -107,12 +112,13 @@ def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Da
     or what no effect explains: it counts alike in all of them, or the one that is fitted best would count most.
     """
     equations = normal_equations(signatures, dataset.misfit)
-    left = dataset.apart(dataset.misfit - _saturated(equations))
+    left = dataset.apart(_left_by_all(equations, dataset.misfit))
     found = []
-    for e, own in zip(dataset.experiments, left, strict=True):
+    for number, (e, own) in enumerate(zip(dataset.experiments, left, strict=True)):
         x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
         (surface,) = surface_numbers([e.surface_radius[e.counts]])
-        noise = noise_of(own, e.interval, x, rate, acceleration, surface)
+        driven = Driven(e.interval, x, rate, acceleration, surface)
+        noise = noise_of(own, driven, partial(_left_in_one, equations, [r.size for r in left], number))
         found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
     read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
     more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
@@ -120,8 +126,23 @@ def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Da
     return dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
 
 
-def _saturated(equations: NormalEquations) -> np.ndarray:
-    """Return the misfit predicted by the saturated model: all columns, each with a weak prior of the misfit's size."""
-    size = equations.power / equations.columns.shape[0]
+def _left_by_all(equations: NormalEquations, values: FloatArray) -> FloatArray:
+    """Return what the saturated model leaves of values (m,) or (m, k): all columns, each with a weak prior of the
+    misfit's size.
+    """
+    columns, size = equations.columns, equations.power / equations.columns.shape[0]
     gram = equations.gram + np.eye(equations.gram.shape[0]) / max(size, 1.0)
-    return np.asarray(equations.columns @ np.linalg.solve(gram, equations.moment))
+    return np.asarray(values - columns @ np.linalg.solve(gram, columns.T @ values))
+
+
+def _left_in_one(
+    equations: NormalEquations, sizes: Sequence[int], number: int, signals: FloatArray
+) -> FloatArray:
+    """Return what the saturated model leaves of signals (n, k) in one experiment, where the others have none of them.
+
+    sizes: of all experiments
+    """
+    begin = sum(sizes[:number])
+    whole = np.zeros((sum(sizes), signals.shape[1]))
+    whole[begin : begin + sizes[number]] = signals
+    return _left_by_all(equations, whole)[begin : begin + sizes[number]]

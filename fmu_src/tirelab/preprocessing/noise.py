@@ -22,7 +22,7 @@ Applied Regression Analysis, 1998, 2.1); the smallest of all these levels is tha
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -101,24 +101,65 @@ def white_level(residual: FloatArray) -> float:
     return _level(_third_differences(residual, 1))
 
 
-def noise_of(
-    residual: FloatArray,
-    interval: float,
-    deflection: FloatArray,
-    rate: FloatArray,
-    acceleration: FloatArray,
-    surface: IntArray,
-) -> Noise:
+Left = Callable[[FloatArray], FloatArray]
+"""Of signals (n, k) of the motion what a model leaves (n, k), fitted to them as it was to the misfit."""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A motion. interval [s]: between its samples; at each of them deflection [m], rate [m/s], acceleration [m/s^2] and
+    number of the surface (n,)
+    """
+
+    interval: float
+    deflection: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+    surface: IntArray
+
+    @property
+    def places(self) -> _Places:
+        """Where the tire is."""
+        return _Places(self.deflection, self.surface)
+
+    @property
+    def signals(self) -> FloatArray:
+        """What a misfit may follow (n, k): deflection, rate and all their products up to the third order, and
+        acceleration.
+
+        A loop of any width and shape has the third harmonic of the motion, which is three times as quick.
+        """
+        place, speed = self.deflection - self.deflection.mean(), self.rate
+        powers = [(i, order - i) for order in (1, 2, 3) for i in range(order + 1)]
+        return np.column_stack([*(place**i * speed**j for i, j in powers), self.acceleration])
+
+    @property
+    def kinks(self) -> FloatArray:
+        """Forces (n, k) that rise beyond one deflection each, as that of a stop, at FEWEST_LAGS deflections, and one
+        that rises and falls between them.
+        """
+        at = np.quantile(self.deflection, (np.arange(FEWEST_LAGS) + 0.5) / FEWEST_LAGS)
+        each = np.maximum(self.deflection[:, None] - at, 0.0)
+        return np.column_stack([each, each @ (-1.0) ** np.arange(FEWEST_LAGS)])
+
+
+def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> Noise:
     """Return the noise of a residual (n,), white or with a memory.
 
-    interval [s]: between samples; deflection [m], rate [m/s] and acceleration [m/s^2] of the motion and number of the
-    surface at the samples, each (n,)
+    left: of the model that left the residual. What is slow has gone into the model, so what is left of a kink that it
+    cannot follow varies within a few lags, as a noise with a memory does.
     """
-    levels = _levels_of(residual, rate * interval, acceleration * interval**2, float(np.ptp(deflection)))
-    places = _Places(deflection, surface)
-    found = _noise_at_plateau(levels, places)
-    found = found or _noise_at_whole_variation(levels, places, _signals(deflection, rate, acceleration))
-    return found or Noise(white_level(residual), 1)
+    levels = _levels_of(residual, driven)
+    plateau = _noise_at_plateau(levels, driven.places)
+    kinks = None
+    for found in [plateau] if plateau else _noises_at_whole_variation(levels, driven):
+        if found.memory == 1 or left is None:
+            return found
+        kinks = left(driven.kinks) if kinks is None else kinks
+        visits = _seen_visits(driven.places, found.memory, found.memory, levels.slow)
+        if not any(_may_follow(kink, found.memory, levels.slow, visits) for kink in kinks.T):
+            return found
+    return Noise(white_level(residual), 1)
 
 
 @dataclass(frozen=True)
@@ -152,8 +193,10 @@ class _Levels:
         return level > STAYS**2 * min(noise.level, _local_rms(self.residual, noise.memory, self.slow))
 
 
-def _levels_of(residual: FloatArray, change: FloatArray, bend: FloatArray, span: float) -> _Levels:
-    """Return the levels of a residual; the other arguments are those of `_where_slow`."""
+def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
+    """Return the levels of a residual."""
+    change, bend = driven.rate * driven.interval, driven.acceleration * driven.interval**2
+    span = float(np.ptp(driven.deflection))
     lags, slow = [1], np.ones(residual.size, dtype=bool)
     while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
         slower = _where_slow(change, bend, span, 2 * lags[-1])
@@ -181,25 +224,13 @@ def _noise_at_plateau(levels: _Levels, places: _Places) -> Noise | None:
     )
 
 
-def _signals(deflection: FloatArray, rate: FloatArray, acceleration: FloatArray) -> tuple[FloatArray, ...]:
-    """Return what a misfit may follow: deflection, rate and all their products up to the third order, and acceleration.
+def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Noise]:
+    """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first.
 
-    A loop of any width and shape has the third harmonic of the motion, which is three times as quick.
+    None of those of which a signal of the motion would reach its variation as well: the level may be that of a misfit
+    that follows it.
     """
-    place, speed = deflection - deflection.mean(), rate
-    powers = [(i, order - i) for order in (1, 2, 3) for i in range(order + 1)]
-    return (*(place**i * speed**j for i, j in powers), acceleration)
-
-
-def _noise_at_whole_variation(
-    levels: _Levels, places: _Places, signals: Sequence[FloatArray]
-) -> Noise | None:
-    """Return the noise whose level reaches the whole variation of the residual within a few lags; None without such.
-
-    signals: of the motion; if one of them would reach its variation as well, the level may be that of a misfit that
-    follows it
-    """
-    residual, slow = levels.residual, levels.slow
+    residual, slow, places = levels.residual, levels.slow, driven.places
     for last in reversed(range(1, len(levels.lags))):
         found, lag = _noise_of_level(levels.values, last), levels.lags[last]
         most = _local_rms(residual, lag, slow)
@@ -208,9 +239,8 @@ def _noise_at_whole_variation(
             continue
         visits = _seen_visits(places, found.memory, lag, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
-        if least * STAYS >= most and not any(_may_follow(signal, lag, slow, visits) for signal in signals):
-            return Noise(least, found.memory)
-    return None
+        if least * STAYS >= most and not any(_may_follow(s, lag, slow, visits) for s in driven.signals.T):
+            yield Noise(least, found.memory)
 
 
 def _seen_visits(places: _Places, memory: int, lag: int, seen: BoolArray) -> list[Visits]:

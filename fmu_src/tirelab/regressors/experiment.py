@@ -22,7 +22,16 @@ from radialtire.model import READING_NOISE
 from ..preprocessing.data_checks import are_rare, compared, spikes
 from ..preprocessing.gauge import destepped, staircase_step
 from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
-from ..preprocessing.noise import SHARE_OF_STEP, STILL, Noise, NoiseFloor, Scalar, noise_floor, noise_of
+from ..preprocessing.noise import (
+    SHARE_OF_STEP,
+    STILL,
+    Driven,
+    Noise,
+    NoiseFloor,
+    Scalar,
+    noise_floor,
+    noise_of,
+)
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 
@@ -175,7 +184,7 @@ def experiment_in_blocks(
 def _noise_along(moved: SmoothedMotion, misfit: FloatArray, interval: float) -> Noise:
     """Return the noise of a misfit [N] (n,) along a motion; interval [s]: between its samples."""
     (surface,) = surface_numbers([moved.surface_radius])
-    return noise_of(misfit, interval, moved.deflection, moved.rate, moved.acceleration, surface)
+    return noise_of(misfit, Driven(interval, moved.deflection, moved.rate, moved.acceleration, surface))
 
 
 def _averaged(moved: SmoothedMotion, turns: BoolArray, blocks: Blocks) -> SmoothedMotion:

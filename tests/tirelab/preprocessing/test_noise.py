@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
-from tirelab.preprocessing.noise import Noise, noise_floor, noise_of, white_level
+from tirelab.preprocessing.noise import Driven, Noise, noise_floor, noise_of, white_level
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -56,7 +56,9 @@ def noise_beside(residual: FloatArray, motion: FloatArray, surface: IntArray | N
     """Return the noise of a residual beside an exact motion of one sample a second, on one surface if None is given."""
     rate = np.gradient(motion)
     one = np.zeros(motion.size, dtype=np.intp)
-    return noise_of(residual, 1.0, motion, rate, np.gradient(rate), one if surface is None else surface)
+    return noise_of(
+        residual, Driven(1.0, motion, rate, np.gradient(rate), one if surface is None else surface)
+    )
 
 
 def test_a_place_that_comes_again_at_the_very_end_says_nothing_of_long_lags() -> None:
@@ -259,3 +261,40 @@ def test_an_oscillation_of_its_own_frequency_is_no_noise(period: float) -> None:
     shaker = np.sqrt(2.0) * np.sin(2.0 * np.pi * number / period) * np.sin(2.0 * np.pi * number / 3000.0) ** 2
     found = noise_beside(2.3 * shaker + WHITE, MOTION)
     assert found.memory == 1
+
+
+PLACE = np.linspace(0.0, 1.0, 900)
+PRESS = 0.02 * (PLACE + 0.002 * np.sin(5.0 * PLACE))
+"""One press, whose speed changes by a hundredth."""
+
+
+def left_by_hats(values: FloatArray, count: int) -> FloatArray:
+    """Return what a model of hat functions over the press leaves of values (n,) or (n, k)."""
+    hats = np.column_stack([np.interp(PLACE, np.linspace(0.0, 1.0, count), row) for row in np.eye(count)])
+    return np.asarray(values - hats @ np.linalg.lstsq(hats, values, rcond=None)[0])
+
+
+def noise_left_by_hats(force: FloatArray, count: int) -> Noise:
+    rate = np.gradient(PRESS)
+    driven = Driven(1.0, PRESS, rate, np.gradient(rate), np.zeros(PRESS.size, dtype=np.intp))
+    return noise_of(left_by_hats(force, count), driven, lambda signals: left_by_hats(signals, count))
+
+
+@pytest.mark.parametrize("seed", [18, 20, 23, 24])
+def test_what_a_model_leaves_where_no_place_comes_again_is_no_noise(seed: int) -> None:
+    """Bumps that thirty hat functions cannot follow leave 0.1 to 0.3 N that vary within a few lags, beside 0.01 N."""
+    drawn = np.random.default_rng(seed)
+    bumps = np.exp(-0.5 * (15.0 * (PRESS[:, None] / 0.02 - drawn.uniform(0.0, 1.0, 40))) ** 2)
+    force = bumps @ drawn.normal(0.0, 10.0, 40) + 0.01 * drawn.normal(size=PRESS.size)
+    assert float(np.std(left_by_hats(force, 30))) > 0.1
+    found = noise_left_by_hats(force, 30)
+    assert found.level == pytest.approx(0.01, rel=0.2)
+    assert found.memory == 1
+
+
+@pytest.mark.parametrize("length", [2, 4])
+def test_filtered_noise_is_seen_beside_a_model_in_one_press(length: int) -> None:
+    white = np.random.default_rng(4).normal(size=PRESS.size + length - 1)
+    found = noise_left_by_hats(np.convolve(white, np.ones(length) / length, mode="valid"), 11)
+    assert found.level == pytest.approx(1.0 / np.sqrt(length), rel=0.2)
+    assert found.memory == length
