@@ -7,8 +7,9 @@ translation to C has every effect of the catalogue and skips those whose switch 
     deflection reading -> deflection of the tire -> elastic law -> factors -> parallel forces -> masses
     -> force reading
 
-The factors act on A x^B, and on the preload of a part that air carries, for it is the force of that air. Without air
-the preload is a pretension or the zero of a load cell, which nothing softens: it is added after them.
+The factors act on A x^B, on the curve of a part beside it, and on the preload of a part that air carries, for it is the
+force of that air. Without air the preload is a pretension or the zero of a load cell, which nothing softens: it is
+added after them.
 """
 
 from __future__ import annotations
@@ -28,13 +29,13 @@ one, 0 before; time [s] of the first one."""
 HEAD = 6
 """Index of the first number of an effect in the state."""
 
-TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD, INFLATED = 0, 1, 2, 3, 4, 5, 6
+TRACKED, FOLLOWED, NOISE, CONTINUOUS, TWO_SIDED, PRELOAD, INFLATED, CURVE = 0, 1, 2, 3, 4, 5, 6, 7
 """In the parameters: 1 where rate and acceleration follow from the readings (0: they are given, or not needed); 1 where
 the tire's deflection differs from its reading and has a rate of its own; noise [m] of a reading; 1 where effects that
 are differential equations are a solver's: their numbers in n are then rates (see `Flow`); 1 where the part is held at
-both ends, and then its force [N] without a deflection; 1 where air carries it."""
+both ends, and then its force [N] without a deflection; 1 where air carries it; what a curve adds to its law [N]."""
 
-PARAMETERS = 7
+PARAMETERS = 8
 """Index of the first number of an effect in the parameters."""
 
 TRACK = 4 * 14 + 4 + 1
@@ -153,7 +154,7 @@ def step(
     at = Instant(
         time - start, interval, first, x, v, acceleration, A, B, 0.0, bend, pressure, temperature, held, 0.0
     )
-    bare = preload + through(path.law, bare, at, p, s, n)
+    bare = preload + p[CURVE] + through(path.law, bare, at, p, s, n)
     elastic = through(path.scale, 1.0, at, p, s, n) * bare
     at = Instant(
         time - start,

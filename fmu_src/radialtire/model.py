@@ -10,6 +10,7 @@ from . import flat_step, hull1996, power_law
 from .effect import CHANNELS, NONE_MEASURED, PLACES, Channel, Effect, State
 from .flat_step import (
     ACCELERATION,
+    CURVE,
     FOLLOWED,
     INFLATED,
     NOISE,
@@ -129,7 +130,7 @@ class TireModel:
     preload: [N] force of a two-sided part without a deflection, to which its law is added: that of a gas spring, which
     effects that multiply the law multiply too, as a pressure does; where it is not inflated a pretension, or the zero
     of a load cell, which nothing multiplies
-    curve: a force over the deflection that is added to the preload, None for a part that a power law follows
+    curve: a force over the deflection that is added to the law, None for a part that a power law follows
     remainder: a force without physics that is added to all others, None where nobody asked for one
     """
 
@@ -170,6 +171,11 @@ class TireModel:
         return learned or any(effect.differentiates for effect, _ in self.effects)
 
     @property
+    def pretension(self) -> float:
+        """The force [N] of a two-sided part without a deflection: its preload and what its curve has there."""
+        return self.preload if self.curve is None else self.preload + self.curve.over(0.0)
+
+    @property
     def is_part(self) -> bool:
         """Whether it is a spring, a damper or a bushing, not a tire: it is held at both ends, or has neither air nor a
         law that knows its ground, as a spring with a gap.
@@ -202,7 +208,7 @@ class TireModel:
         path, parameters, initial_state = laid_out(effects, TRACK * (self.differentiates + follows))
         parameters[TRACKED], parameters[FOLLOWED] = float(self.differentiates), float(follows)
         parameters[NOISE] = self.reading_noise
-        parameters[TWO_SIDED], parameters[PRELOAD] = float(self.two_sided), self.preload
+        parameters[TWO_SIDED], parameters[PRELOAD] = float(self.two_sided), self.pretension
         parameters[INFLATED] = float(self.inflated)
         at = PARAMETERS
         for effect, values in self.effects:
@@ -235,11 +241,7 @@ class TireModel:
         path, parameters, _ = self._flat
         if self.curve is not None:
             x = self.tire_deflection(deflection, surface_radius, time, state, measured)
-            parameters = (
-                *parameters[:PRELOAD],
-                self.preload + self.curve.over(x),
-                *parameters[PRELOAD + 1 :],
-            )
+            parameters = (*parameters[:CURVE], self.curve.beyond_zero(x), *parameters[CURVE + 1 :])
         after = list(state)
         force, _ = flat_step.step(
             path, law, _motion(deflection, surface_radius, time, measured), parameters, state, after

@@ -2,8 +2,9 @@
 
     F(x) = straight lines between F_i at x_i,   F_1 below x_1 and F_n above x_n
 
-Detents, a magnet, a snap-through rise and fall with the deflection. The curve is added to the part's preload, and
-acted on as that is (see `flat_step`).
+Detents, a magnet, a snap-through rise and fall with the deflection. F(x) - F(0) is a spring, beside the power law and
+acted on as that is: it relaxes, softens and loads what rubs. F(0) is a pretension or the zero of a load cell, as the
+part's preload is.
 """
 
 from __future__ import annotations
@@ -40,3 +41,7 @@ class PartCurve:
         i = bisect_right(at, deflection)
         part = (deflection - at[i - 1]) / (at[i] - at[i - 1])
         return force[i - 1] + part * (force[i] - force[i - 1])
+
+    def beyond_zero(self, deflection: float) -> float:
+        """Return by how much the force [N] at a deflection [m] is more than without one."""
+        return self.over(deflection) - self.over(0.0)

@@ -56,6 +56,36 @@ def test_it_is_over_the_deflection_of_the_part_and_its_friction_feels_it() -> No
     np.testing.assert_allclose(forces, simulate(rubbing, part), rtol=1e-10, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("viscoelastic_relaxation", {"share_1": 0.3, "relaxation_time_1": 0.5}),
+        ("rate_independent_hysteresis", {"load_share": 0.1}),
+        ("mullins_softening", {"share": 0.3}),
+        ("pressure_leak", {"rate": 0.05}),
+    ],
+)
+def test_a_straight_curve_is_acted_on_as_the_spring_that_it_is(name: str, given: dict[str, float]) -> None:
+    """Its force without a deflection, here 40 N, may be the zero of a load cell: nothing acts on that."""
+    effect = CATALOGUE[name]
+    values = effect.checked(tuple(given.get(p.name, p.start) for p in effect.parameters))
+    assert set(given) <= {p.name for p in effect.parameters}
+    spring = TireModel(
+        PowerLaw(100.0, 1.0), ((effect, values),), two_sided=True, preload=40.0, inflated=False
+    )
+    line = PartCurve((-0.02, 0.05), (40.0 - 0.02 * 9e3, 40.0 + 0.05 * 9e3))
+    curved = TireModel(PowerLaw(10.0, 1.0), spring.effects, two_sided=True, inflated=False, curve=line)
+    part = stroke()
+    bare = TireModel(PowerLaw(100.0, 1.0), two_sided=True, preload=40.0, inflated=False)
+    assert np.ptp(simulate(spring, part) - simulate(bare, part)) > 5.0
+    np.testing.assert_allclose(simulate(curved, part), simulate(spring, part), rtol=1e-9, atol=1e-9)
+    state, forces = curved.initial_state, []
+    for t, x in zip(part.time.tolist(), part.deflection.tolist(), strict=True):
+        force, state = curved.step(x, np.inf, t, state)
+        forces.append(force)
+    np.testing.assert_allclose(forces, simulate(curved, part), rtol=1e-10, atol=1e-9)
+
+
 def test_the_tangent_is_that_of_spring_and_curve() -> None:
     _, state = PART.step(0.01, np.inf, 0.0, PART.initial_state)
     assert PART.stiffness(0.01, np.inf, state) == pytest.approx(1e4 - 30.0 / 0.03, rel=1e-6)

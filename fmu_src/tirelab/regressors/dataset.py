@@ -242,7 +242,7 @@ def own_deflection(tire: TireModel, experiment: Experiment) -> FloatArray:
 
 def zero_of(tire: TireModel) -> float:
     """Return the force [N] that counts for nothing: the preload of a part without air may be a load cell's zero."""
-    return 0.0 if tire.inflated else tire.preload
+    return 0.0 if tire.inflated else tire.pretension
 
 
 def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded], baseline: TireModel) -> Scales:

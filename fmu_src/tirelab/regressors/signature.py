@@ -29,8 +29,8 @@ from scipy.interpolate import BSpline
 
 from ..names import REFITTED_LAW
 from ..preprocessing.samples import MOST_SURFACES, surface_numbers
-from ..simulation.simulate import UPSTREAM, preload_of
-from .dataset import Dataset, arranged, own_deflection
+from ..simulation.simulate import UPSTREAM, beyond_zero
+from .dataset import Dataset, Experiment, arranged, own_deflection
 from .draws import at_reading, centre_and_spread, drawn, strengthened
 
 FloatArray = NDArray[np.float64]
@@ -117,14 +117,21 @@ def _spline(x: FloatArray, span: tuple[float, float], forces: FloatArray) -> Flo
     return np.asarray(BSpline(span[0] + step * np.arange(-3.0, HEIGHTS + 1.0), forces, 3)(x))
 
 
+def _beside_law(tire: TireModel, experiment: Experiment) -> FloatArray:
+    """Return the force [N] of a part without a deflection and what its curve adds to that."""
+    pretension = np.full(experiment.time.size, tire.pretension)
+    if tire.curve is None:
+        return pretension
+    return pretension + beyond_zero(tire.curve, own_deflection(tire, experiment))
+
+
 def law_signature(dataset: Dataset) -> Signature:
     """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload or gap where
     that is more.
     """
     x, radius = dataset.deflection, dataset.gathered([e.surface_radius for e in dataset.experiments])
     tire = dataset.tire  # what it is without a deflection, and its curve, are no factor's
-    preload = [preload_of(tire, own_deflection(tire, e)) for e in dataset.experiments]
-    force = dataset.stacked([e.baseline - p for e, p in zip(dataset.experiments, preload, strict=True)])
+    force = dataset.stacked([e.baseline - _beside_law(tire, e) for e in dataset.experiments])
     reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
     way = np.log(np.maximum((np.abs(x) if tire.two_sided else x) / reference, LEAST_RATIO))
     changes = [FACTOR + 0.0 * way, EXPONENT * way]

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS, Effect, State, TireModel
 from radialtire.flat_step import AHEAD
 from radialtire.model import Law
+from radialtire.part_curve import PartCurve
 from radialtire.tracking import FINEST
 
 from . import compiled
@@ -185,11 +186,13 @@ def elastic_stage(
     for effect, values in _at(tire, "law"):
         bare = stages.respond(effect, values, bare, moved)
     each = [stages.alone(effect, values, 1.0, moved) for effect, values in factors]
-    preload = preload_of(tire, moved.deflection) if tire.two_sided else 0.0
+    if tire.curve is not None:
+        law_alone, curve = bare, tire.curve
+        bare = stages.once(curve, (moved, bare), lambda: law_alone + beyond_zero(curve, moved.deflection))
 
     def whole() -> tuple[History, FloatArray]:
         # As `flat_step`: without air a preload is a pretension or the zero of a load cell.
-        multiplied, added = (preload, 0.0) if tire.inflated else (0.0, preload)
+        multiplied, added = (tire.pretension, 0.0) if tire.inflated else (0.0, tire.pretension)
         elastic = np.prod(each, axis=0) * (multiplied + bare) if each else multiplied + bare
         after = replace(
             moved, elastic_force=elastic, preload=np.broadcast_to(multiplied, elastic.shape).copy()
@@ -231,12 +234,9 @@ def _moved(tire: TireModel, read: History, kinematics: Kinematics | None, stages
     return stages.once(before, (read,), make)
 
 
-def preload_of(tire: TireModel, deflection: FloatArray) -> FloatArray:
-    """Return the preload [N] of a two-sided part with its curve over its own `deflection` [m]."""
-    preload = np.full(deflection.shape, tire.preload)
-    if tire.curve is not None:
-        preload += np.interp(deflection, tire.curve.at, tire.curve.force)
-    return preload
+def beyond_zero(curve: PartCurve, deflection: FloatArray) -> FloatArray:
+    """Return by how much the force [N] of a curve is more at the part's own `deflection` [m] than without one."""
+    return np.interp(deflection, curve.at, curve.force) - curve.over(0.0)
 
 
 def upstream(tire: TireModel, history: History) -> FloatArray:

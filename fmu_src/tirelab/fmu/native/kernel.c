@@ -396,12 +396,12 @@ static inline Tuple8 deflection_lag_respond(double signal, Instant instant, Noth
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static inline double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[7] != 0.0) {
-        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[8]}});
+    if (p[8] != 0.0) {
+        const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[9]}});
         signal = t1.a;
     }
-    if (p[9] != 0.0) {
-        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[10], p[11]}});
+    if (p[10] != 0.0) {
+        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[11], p[12]}});
         signal = t2.a;
     }
     return signal;
@@ -493,8 +493,8 @@ static inline Tuple8 series_compliance_respond(double signal, Instant instant, N
 /* flat_step.py: Return the signal after the effects of one place, which have no state. */
 static inline double unremembered_series(double signal, Instant at, const double *p, const double *s)
 {
-    if (p[12] != 0.0) {
-        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[13], p[14]}});
+    if (p[13] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[14], p[15]}});
         signal = t1.a;
     }
     return signal;
@@ -629,12 +629,12 @@ static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_law(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[15] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 16));
+    if (p[16] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 17));
         signal = t1.a;
     }
-    if (p[29] != 0.0) {
-        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 30));
+    if (p[30] != 0.0) {
+        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 31));
         signal = t2.a;
     }
     return signal;
@@ -745,29 +745,29 @@ static inline Tuple16 warm_up_respond(double signal, Instant instant, Vector1 st
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[42] != 0.0) {
-        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[43], p[44], p[45]}});
+    if (p[43] != 0.0) {
+        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[44], p[45], p[46]}});
         signal = t1.a;
     }
-    if (p[46] != 0.0) {
-        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 47));
+    if (p[47] != 0.0) {
+        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 48));
         signal = t2.a;
     }
-    if (p[52] != 0.0) {
+    if (p[53] != 0.0) {
         const Tuple14 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
-            + 53));
+            + 54));
         signal = t3.a;
         Vector3 after = t3.b;
         n[6] = after.v[0];
         n[7] = after.v[1];
         n[8] = after.v[2];
     }
-    if (p[60] != 0.0) {
-        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[61], p[62], p[63]}});
+    if (p[61] != 0.0) {
+        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[62], p[63], p[64]}});
         signal = t4.a;
     }
-    if (p[64] != 0.0) {
-        const Tuple16 t5 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[65], p[66], p[67]}});
+    if (p[65] != 0.0) {
+        const Tuple16 t5 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[66], p[67], p[68]}});
         signal = t5.a;
         Vector1 after = t5.b;
         n[9] = after.v[0];
@@ -1171,42 +1171,42 @@ static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing s
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[68] != 0.0) {
+    if (p[69] != 0.0) {
         const Tuple18 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
-            Vector8 *)(p + 69));
+            Vector8 *)(p + 70));
         signal = t1.a;
         Vector8 after = t1.b;
         for (int i = 0; i < 8; i++)
             n[10 + i] = after.v[i];
     }
-    if (p[77] != 0.0 && p[3] != 0.0) {
-        const Tuple16 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 78));
+    if (p[78] != 0.0 && p[3] != 0.0) {
+        const Tuple16 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 79));
         signal = t2.a;
         Vector1 flowed = t2.b;
         n[18] = flowed.v[0];
-    } else if (p[77] != 0.0) {
-        const Tuple16 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 78));
+    } else if (p[78] != 0.0) {
+        const Tuple16 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 79));
         signal = t3.a;
         Vector1 after = t3.b;
         n[18] = after.v[0];
     }
-    if (p[85] != 0.0 && p[3] != 0.0) {
+    if (p[86] != 0.0 && p[3] != 0.0) {
         const Tuple20 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 86));
+            *)(p + 87));
         signal = t4.a;
         Vector6 flowed = t4.b;
         for (int i = 0; i < 6; i++)
             n[19 + i] = flowed.v[i];
-    } else if (p[85] != 0.0) {
+    } else if (p[86] != 0.0) {
         const Tuple20 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 86));
+            *)(p + 87));
         signal = t5.a;
         Vector6 after = t5.b;
         for (int i = 0; i < 6; i++)
             n[19 + i] = after.v[i];
     }
-    if (p[98] != 0.0) {
-        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 99));
+    if (p[99] != 0.0) {
+        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 100));
         signal = t6.a;
     }
     return signal;
@@ -1221,8 +1221,8 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_mass(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[103] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[104]}});
+    if (p[104] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[105]}});
         signal = t1.a;
     }
     return signal;
@@ -1447,31 +1447,31 @@ static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[105] != 0.0 && p[3] != 0.0) {
-        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[106], p[107],
-            p[108]}});
+    if (p[106] != 0.0 && p[3] != 0.0) {
+        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[107], p[108],
+            p[109]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
             n[25 + i] = flowed.v[i];
-    } else if (p[105] != 0.0) {
-        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[106], p[107],
-            p[108]}});
+    } else if (p[106] != 0.0) {
+        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[107], p[108],
+            p[109]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
             n[25 + i] = after.v[i];
     }
-    if (p[109] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[110]}});
+    if (p[110] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[111]}});
         signal = t3.a;
     }
-    if (p[111] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[112], p[113]}});
+    if (p[112] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[113], p[114]}});
         signal = t4.a;
     }
-    if (p[114] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[115], p[116]}});
+    if (p[115] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[116], p[117]}});
         signal = t5.a;
     }
     return signal;
@@ -1526,7 +1526,7 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
     double pretension = held && p[6] == 0.0 ? p[5] : 0.0;
     Instant at = (Instant){time - start, interval, first, x, v, acceleration, A, B, 0.0, bend, pressure,
         temperature, held, 0.0};
-    bare = preload + through_law(bare, at, p, s, n);
+    bare = preload + p[7] + through_law(bare, at, p, s, n);
     double elastic = through_scale(1.0, at, p, s, n) * bare;
     at = (Instant){time - start, interval, first, x, v, acceleration, A, B, elastic, bend, pressure, temperature,
         held, preload};

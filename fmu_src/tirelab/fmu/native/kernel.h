@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "4530b7f272f3c103" /* what stands where in p and s */
+#define LAYOUT "db0755e16feceb5e" /* what stands where in p and s */
 enum {
-    PARAMETERS = 117,
+    PARAMETERS = 118,
     STATES = 182,
     S_TIME = 0,
     S_STARTED = 4,
