@@ -39,10 +39,11 @@ SAMPLES_MOST = 20_000
 
 LINES = (5, 10, 20, 40, 80)
 """Numbers of straight lines of the piecewise law of which the one of the least criterion is taken: a detent needs four,
-a part has some. As many samples lie on each."""
+a part has some."""
 
 SAMPLES_OF_LINE = 8
-"""Fewest samples of one of many lines: four for each of its two numbers."""
+"""Fewest samples of one of many lines: four for each of its two numbers. Places that are apart from each other are as
+many parts of a line apart."""
 
 
 @dataclass(frozen=True)
@@ -183,13 +184,26 @@ def _piecewise(s: _Samples) -> LawFit:
 
 
 def _lines(s: _Samples, count: int) -> LawFit:
-    knots = np.unique(np.quantile(s.x, np.linspace(0.0, 1.0, count + 1)))
+    knots = _knots(s.x, count)
     hats = [np.interp(s.x, knots, np.eye(knots.size)[i]) for i in range(knots.size)]
     values, fitted = _lstsq(hats, s)
     digits = 3 if count == LINES[0] else 9  # so that near ones have different symbols
     units = [(f"F({10.0 * knot:.{digits}g} mm)", 1.0, "N") for knot in knots]
     at = tuple(float(knot) / CM_PER_M for knot in knots)
     return replace(_fit("piecewise", units, values, fitted), at=at)
+
+
+def _knots(x: Array, count: int) -> Array:
+    """Return at most count + 1 deflections, between each two of which as many places were visited.
+
+    However long a part is held, a place is one: between two knots within a hold the force would be that of two times.
+    """
+    lowest, highest = float(x.min()), float(x.max())
+    step = max((highest - lowest) / (SAMPLES_OF_LINE * count), 1e-300)
+    visited = lowest + step * (np.unique(np.floor((x - lowest) / step)) + 0.5)
+    knots = np.quantile(np.clip(visited, lowest, highest), np.linspace(0.0, 1.0, count + 1))
+    knots[[0, -1]] = lowest, highest
+    return knots[np.append(True, np.diff(knots) > step)]
 
 
 def _mf_tyre(s: _Samples) -> LawFit:

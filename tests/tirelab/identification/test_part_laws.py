@@ -23,6 +23,17 @@ def test_a_part_that_is_only_pulled_has_its_line_too(start: float) -> None:
     assert with_uncertainty(0.0, 0.0) == "0 ± 0"
 
 
+def test_the_corners_of_a_curve_do_not_lie_in_holds() -> None:
+    """Ninety-five of a hundred samples are read in three holds, whose gauge has a noise of 0.01 mm."""
+    way = np.linspace(0.0, 0.02, 300)
+    holds = np.repeat([0.005, 0.01, 0.015], 1900) + np.random.default_rng(1).normal(0.0, 1e-5, 5700)
+    x = np.concatenate([way, holds])
+    found = {fit.name: fit for fit in fit_laws([recording(x, 1e4 * x + 3e5 * x**2)])}["piecewise"]
+    between = np.diff(found.at)
+    assert len(found.at) > 5
+    assert between.max() < 3.0 * between.min()
+
+
 def test_few_deflections_far_apart_have_laws() -> None:
     """Two steps of a gauge, none near half of the largest deflection."""
     x = np.repeat([0.0, 0.02], 300)
