@@ -117,7 +117,8 @@ def test_the_tissue_relaxes_and_the_correction_holds_where_it_was_not_fitted(
         assert "viscoelastic_relaxation" in found.verdict.names
         assert found.after < 0.3 * found.before
         assert found.verdict.recordings[0].deflection.max() < 20e-6  # as it was read, in metres
-        assert not {"saturation", "rate_independent_hysteresis"} & set(found.verdict.names)
+        likely = {e.name for e in found.verdict.effects if e.probability > 0.5}
+        assert not likely & {"saturation", "rate_independent_hysteresis"}
         # One approach and a hold: no drift shows in it, however its deflection creeps.
         assert any("drift" in line and "visited again" in line for line in found.not_shown())
 
