@@ -124,8 +124,8 @@ _GERMAN_SYMBOL = {"deflection": "s"}
 _NO_SUFFIX_UNITS = frozenset({"in", "min", "max"})
 
 
-# A controller puts the number of its input before every name: Ch 1 Time.
-_OF_INPUT = re.compile(r"(?:ch|chan|channel|kanal)[ ._-]*\d+[ ._:-]+(?P<name>.+)", re.IGNORECASE)
+# A controller puts the number of its input before every name: Ch 1 Time, C_1_Temps.
+_OF_INPUT = re.compile(r"(?:c|ch|chan|channel|kanal)[ ._-]*\d+[ ._:-]+(?P<name>.+)", re.IGNORECASE)
 
 
 def parse_columns(text: str) -> dict[str, str]:
@@ -248,7 +248,8 @@ def may_be_qualified(header: Header, channel: Channel) -> bool:
             return True
     of_input = _OF_INPUT.fullmatch(header.name)
     if channel.name == "time" and of_input and unit and measures(unit, channel.unit):
-        return _words(of_input["name"]) in channel.words
+        name = of_input["name"]
+        return _words(name) in channel.words or foreign_channel(name) == channel.name
     if channel.name not in ("deflection", "force") or unit is None or not measures(unit, channel.unit):
         return False
     name = header.name if header.unit else header.name.removesuffix(unit)

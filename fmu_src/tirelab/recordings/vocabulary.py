@@ -120,6 +120,7 @@ SECOND = {
         *("traversenposition", "traversenweg absolut", "absoluter traversenweg", "absolute crosshead travel"),
         *("position traverse", "position de la traverse"),
         *("distance entre mors", "tool separation", "grip to grip separation", "grip separation", "gap"),
+        *("depth", "eindringtiefe", "tiefe", "profondeur", "profundidad", "profondita"),
     ),
     "force": ("fx", "fy"),
 }

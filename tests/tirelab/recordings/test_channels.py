@@ -51,6 +51,21 @@ class TestUnitsOfColumns:
         path = write_rows(tmp_path / "a.csv", "time_s,deflection_cm,force_N", *loading())
         assert read_recording(path, radius="flat").deflection.max() == pytest.approx(0.025)
 
+    def test_the_number_of_an_input_may_stand_before_each_name(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        names = "C_1_Temps[s],C_1_D\u00e9placement[mm],C_1_Force[kN]"
+        path = write_rows(tmp_path / "a.csv", names, time, 10.0 * deflection, 1e-3 * force)
+        read = read_recording(path, radius="flat")
+        np.testing.assert_allclose(read.time, time, rtol=1e-5)
+        np.testing.assert_allclose(read.force, force, rtol=1e-5)
+
+    def test_a_depth_is_the_deflection_where_nothing_else_is(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "Time [s],Load [N],Depth [cm]", time, force, deflection)
+        np.testing.assert_allclose(
+            read_recording(path, radius="flat").deflection, 1e-2 * deflection, rtol=1e-5
+        )
+
     def test_a_missing_unit_is_told(self, tmp_path: Path) -> None:
         path = write_rows(tmp_path / "a.csv", "time [s],deflection,force [N]", *loading())
         said = refusal(path, radius="flat")

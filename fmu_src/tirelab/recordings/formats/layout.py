@@ -159,9 +159,15 @@ def column_counted(body: Sequence[Sequence[str]]) -> bool:
     rows = [row for row in body if sum(map(bool, map(str.strip, row))) > 1]
     filled = [row for row in rows if row[0].strip().lower() not in BLANK_WORDS]
     texts = [row for row in filled if not is_value(row[0])]
-    if texts and len(texts) == len(filled) and all(is_value(c) for row in texts for c in row[1:]):
+    used = [i for i in range(1, max(map(len, rows), default=0)) if any(map(str.strip, _cells(rows, i)))]
+    if texts and len(texts) == len(filled) and all(is_value(c) for i in used for c in _cells(texts, i)):
         return False
     return bool(rows) and len(texts) <= max(BELOW_NAMES, 0.1 * len(rows))
+
+
+def _cells(rows: Sequence[Sequence[str]], column: int) -> list[str]:
+    """Return the cells of one column, blank in rows that are shorter."""
+    return [row[column] if column < len(row) else "" for row in rows]
 
 
 def _refuse_serial_monitor(path: Path, lines: Sequence[str]) -> None:

@@ -212,6 +212,9 @@ class TestExcel:
         path = self.save(tmp_path / "a.xlsx", [*rows, ["END", None, None, None, None]])
         said = "skipped as empty: row 202"
         assert_the_recording(read_recording(path, radius="flat"), said, digits=1e-15)
+        # The reader counts an empty column that the file claims to have.
+        wider = self.save(tmp_path / "c.xlsx", [[*row[:5], None, None] for row in rows])
+        assert_the_recording(read_recording(wider, radius="flat"), digits=1e-15)
         rows[9][3] = nothing
         recording = read_recording(self.save(tmp_path / "b.xlsx", rows), radius="flat")
         assert "skipped for want of force: row 10" in recording.notes
