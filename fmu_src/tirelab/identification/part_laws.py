@@ -203,7 +203,7 @@ def _knots(x: Array, count: int) -> Array:
     visited = lowest + step * (np.unique(np.floor((x - lowest) / step)) + 0.5)
     knots = np.quantile(np.clip(visited, lowest, highest), np.linspace(0.0, 1.0, count + 1))
     knots[[0, -1]] = lowest, highest
-    return knots[np.append(True, np.diff(knots) > step)]
+    return np.asarray(knots[np.append(True, np.diff(knots) > step)])
 
 
 def _mf_tyre(s: _Samples) -> LawFit:
