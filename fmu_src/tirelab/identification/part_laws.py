@@ -42,8 +42,7 @@ LINES = (5, 10, 20, 40, 80)
 a part has some."""
 
 SAMPLES_OF_LINE = 8
-"""Fewest samples of one of many lines: four for each of its two numbers. Places that are apart from each other are as
-many parts of a line apart."""
+"""Fewest samples of one of many lines: four for each of its two numbers. A place is one of as many parts of a line."""
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,8 @@ STAYS = float(np.sqrt(2.0) ** 0.5)
 roughest noise that has a memory."""
 
 FEWEST_LAGS = 20
-"""Fewest lags in a recording: the level of noise that is independent a lag apart is then known to a sixth."""
+"""Fewest lags in a recording: the level of noise that is independent a lag apart is then known to a sixth. A kink is
+tried in each of as many parts of it."""
 
 LONGEST_PHASE = float(2.0 * np.pi / 3.0)
 """Phase p [rad] of the motion over the longest lag. Third differences of a sine are (2 sin(p / 2))^3 times it, at this
@@ -118,11 +119,6 @@ class Driven:
     surface: IntArray
 
     @property
-    def places(self) -> _Places:
-        """Where the tire is."""
-        return _Places(self.deflection, self.surface)
-
-    @property
     def signals(self) -> FloatArray:
         """What a misfit may follow (n, k): deflection, rate and all their products up to the third order, and
         acceleration.
@@ -150,24 +146,16 @@ def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> 
     cannot follow varies within a few lags, as a noise with a memory does.
     """
     levels = _levels_of(residual, driven)
-    plateau = _noise_at_plateau(levels, driven.places)
+    plateau = _noise_at_plateau(levels, driven)
     kinks = None
     for found in [plateau] if plateau else _noises_at_whole_variation(levels, driven):
         if found.memory == 1 or left is None:
             return found
         kinks = left(driven.kinks) if kinks is None else kinks
-        visits = _seen_visits(driven.places, found.memory, found.memory, levels.slow)
+        visits = _seen_visits(driven, found.memory, found.memory, levels.slow)
         if not any(_may_follow(kink, found.memory, levels.slow, visits) for kink in kinks.T):
             return found
     return Noise(white_level(residual), 1)
-
-
-@dataclass(frozen=True)
-class _Places:
-    """Where the tire is at each sample: its deflection [m] (n,), and the number of the surface (n,)."""
-
-    deflection: FloatArray
-    surface: IntArray
 
 
 Visits = tuple[IntArray, IntArray, FloatArray]
@@ -207,7 +195,7 @@ def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
     return _Levels(residual, tuple(lags), slow, tuple(_level_of(residual, lag, slow) for lag in lags))
 
 
-def _noise_at_plateau(levels: _Levels, places: _Places) -> Noise | None:
+def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
     last = _plateau(levels.values)
     if last == 0:
@@ -217,7 +205,7 @@ def _noise_at_plateau(levels: _Levels, places: _Places) -> Noise | None:
         return Noise(white_level(levels.residual), 1)
     if levels.oscillates(found):
         return Noise(min(levels.values), 1)
-    visits = _seen_visits(places, found.memory, levels.lags[-1], levels.slow)
+    visits = _seen_visits(driven, found.memory, levels.lags[-1], levels.slow)
     between = ([_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits)
     return min(
         (found, *(_noise_of_level(own, _plateau(own)) for own in between)), key=lambda noise: noise.level
@@ -230,20 +218,20 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
     None of those of which a signal of the motion would reach its variation as well: the level may be that of a misfit
     that follows it.
     """
-    residual, slow, places = levels.residual, levels.slow, driven.places
+    residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
         found, lag = _noise_of_level(levels.values, last), levels.lags[last]
         most = _local_rms(residual, lag, slow)
         rises = any(_rises(levels.values)[last:])
         if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
             continue
-        visits = _seen_visits(places, found.memory, lag, slow)
+        visits = _seen_visits(driven, found.memory, lag, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
         if least * STAYS >= most and not any(_may_follow(s, lag, slow, visits) for s in driven.signals.T):
             yield Noise(least, found.memory)
 
 
-def _seen_visits(places: _Places, memory: int, lag: int, seen: BoolArray) -> list[Visits]:
+def _seen_visits(driven: Driven, memory: int, lag: int, seen: BoolArray) -> list[Visits]:
     """Return the pairs of each kind of visit (`_visits`) with both samples `seen`.
 
     No kind with too few of them, nor one whose pairs are all so near the ends that no difference over the lag is known.
@@ -252,7 +240,7 @@ def _seen_visits(places: _Places, memory: int, lag: int, seen: BoolArray) -> lis
     _inner(inner, lag)[:] = True
     pairs = [
         (one[both], other[both], sign[both])
-        for one, other, sign in _visits(places, memory)
+        for one, other, sign in _visits(driven, memory)
         for both in [seen[one] & seen[other]]
     ]
     return [p for p in pairs if p[0].size >= FEWEST_EVENTS * memory and np.any(inner[p[0]] & inner[p[1]])]
@@ -307,21 +295,21 @@ def _rises(levels: Sequence[float]) -> list[bool]:
     return [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
 
 
-def _visits(places: _Places, memory: int) -> Iterator[Visits]:
+def _visits(driven: Driven, memory: int) -> Iterator[Visits]:
     """Return pairs of samples of two visits of one place, for three meanings of place: the same deflection; the same
     deflection and direction; the same direction and distance from the last reversal; each on the same surface.
 
     Samples are of different visits if they are four memories apart, and at one place if they are at most half the path
     of one memory apart.
     """
-    deflection = places.deflection
+    deflection = driven.deflection
     near = 0.5 * float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
     inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
     begin = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
     turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
     # Added to a place, they keep surfaces apart, and loading and unloading.
     apart = 2.0 * float(np.ptp(deflection))
-    ground, way = 2.0 * apart * places.surface, apart * inwards
+    ground, way = 2.0 * apart * driven.surface, apart * inwards
     for own in (deflection, deflection + way, np.abs(deflection - deflection[turn]) + way):
         place = own + ground
         order = np.argsort(place, kind="stable")
