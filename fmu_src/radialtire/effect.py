@@ -195,6 +195,11 @@ class Effect:
     changes: tuple[str, ...] = ()
 
     @property
+    def holds_gap(self) -> bool:
+        """Whether its first parameter shifts the deflection by one number, as the gap of a part does."""
+        return self.place == "deflection" and {"static", "reading"} <= set(self.traits)
+
+    @property
     def signed(self) -> bool:
         """Whether its first strength may be of either sign."""
         return next((p.minimum < 0.0 for p in self.parameters if p.role == "strength"), False)

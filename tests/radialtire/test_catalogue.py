@@ -17,6 +17,7 @@ from radialtire import (
     Effect,
     Instant,
     Parameter,
+    PowerLaw,
     State,
     TireModel,
     read_tire,
@@ -261,3 +262,9 @@ def test_it_looks_at_rates_only_if_it_says_so(effect: Effect, data: st.DataObjec
         signal, fast, effect.initial_state, values
     )
     assert same is not effect.differentiates
+
+
+def test_one_effect_holds_the_gap_of_a_part() -> None:
+    (gap,) = [effect for effect in CATALOGUE.values() if effect.holds_gap]
+    tire = TireModel(PowerLaw(100.0, 1.0), ((gap, (-0.002,)),), inflated=False)
+    assert tire.tire_deflection(0.005, math.inf, 0.0, tire.initial_state) == pytest.approx(0.003)

@@ -79,7 +79,8 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
     scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
     law = _power_law(fit, scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
-    effects = ((CATALOGUE["deflection_offset"], (-x0,)),)
+    gap = next(effect for effect in CATALOGUE.values() if effect.holds_gap)
+    effects = ((gap, (-x0,)),)
     return _described(TireModel(law=law, effects=effects), recordings, name)
 
 

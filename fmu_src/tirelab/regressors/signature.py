@@ -99,9 +99,7 @@ def gap_of(tire: TireModel) -> tuple[Effect, tuple[float, ...]] | None:
     A part's law that begins beyond a gap has an offset of the deflection as one of its constants, as others have a
     preload: no recording of the part tells a change of it from another zero of the gauge.
     """
-    offsets = [
-        (e, v) for e, v in tire.effects if e.place == "deflection" and {"static", "reading"} <= set(e.traits)
-    ]
+    offsets = [(e, v) for e, v in tire.effects if e.holds_gap]
     return offsets[0] if offsets and not tire.inflated and not tire.two_sided else None
 
 
