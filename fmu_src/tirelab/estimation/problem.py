@@ -286,29 +286,29 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
     """Return the baseline tire with the effects of these values and, with LAW, its law refitted."""
     effects = [(name, v) for name, v in values.items() if name != LAW]
     tire = dataset.tire
-    if LAW in values:
-        factor, exponent, *shape = values[LAW][:COMMON]
-        own = values[LAW][COMMON:]
-        if tire.two_sided:
-            tire = replace(tire, preload=tire.preload + own[-1])
-            own = own[:-1]
-        if gap := gap_of(tire):
-            effects.append((gap[0].name, (gap[1][0] - own[-1],)))
-            own = own[:-1]
-        radii = dataset.radii[: law_surfaces(dataset)]
-        pairs = [(own[2 * i], own[2 * i + 1]) if own else (0.0, 0.0) for i in range(len(radii))]
-        rows = tuple((r, factor + a, exponent + b) for r, (a, b) in zip(radii, pairs, strict=True))
-        tire = replace(tire, law=Recalibrated(tire.law, rows))
-        if any(shape):
-            bend, twist, *kinks = shape
-            twist = min(max(twist, -1.0), 1.0)
-            if tire.two_sided and any(kinks):
-                effects.append((CURVE, (*span_of(dataset), *_heights(CURVE, kinks))))
-                kinks = [0.0] * KINKS
-            if bend or twist or any(kinks):
-                reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
-                effects.append((SHAPE, (bend, twist, reference, *_heights(SHAPE, kinks))))
-    return arranged(tire, effects)
+    if LAW not in values:
+        return arranged(tire, effects)
+    factor, exponent, *shape = values[LAW][:COMMON]
+    own = values[LAW][COMMON:]
+    preload = tire.preload
+    if tire.two_sided:
+        preload, own = preload + own[-1], own[:-1]
+    if gap := gap_of(tire):
+        effects.append((gap[0].name, (gap[1][0] - own[-1],)))
+        own = own[:-1]
+    radii = dataset.radii[: law_surfaces(dataset)]
+    pairs = [(own[2 * i], own[2 * i + 1]) if own else (0.0, 0.0) for i in range(len(radii))]
+    rows = tuple((r, factor + a, exponent + b) for r, (a, b) in zip(radii, pairs, strict=True))
+    if any(shape):
+        bend, twist, *kinks = shape
+        twist = min(max(twist, -1.0), 1.0)
+        if tire.two_sided and any(kinks):
+            effects.append((CURVE, (*span_of(dataset), *_heights(CURVE, kinks))))
+            kinks = [0.0] * KINKS
+        if bend or twist or any(kinks):
+            reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
+            effects.append((SHAPE, (bend, twist, reference, *_heights(SHAPE, kinks))))
+    return arranged(tire, effects, law=Recalibrated(tire.law, rows), preload=preload)
 
 
 def _heights(shape: str, kinks: Sequence[float]) -> list[float]:

@@ -386,12 +386,15 @@ def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[st
 
 
 def _refit_below_subsets(sets: FittedSets) -> None:
-    """Fit every set again that leaves more than one of its subsets, from the optimum of the subset."""
+    """Fit every set again, from the optimum of a subset, that could win if it left as little as that one does.
+
+    A gain within TEMPERATURE is what the ranking allows for fits that stop early.
+    """
     for names in sorted(sets.fits, key=len):
-        for subset in list(sets.fits):
-            fit = sets.fits[subset]
-            leaves_less = subset < names and fit.power < 0.999 * sets.fits[names].power
-            if leaves_less and sets.posterior(names) >= sets.posterior(sets.best()) - REACH:
+        for subset in [n for n in sets.fits if n < names]:
+            own, fit = sets.fits[names], sets.fits[subset]
+            gain = sets.discrepancy.profile(fit.power)[0] - sets.discrepancy.profile(own.power)[0]
+            if gain > TEMPERATURE and own.log_posterior + gain >= sets.posterior(sets.best()) - LOST:
                 added = {n: sets.additions(fit, n) for n in sorted(names - subset)}
                 if all(added.values()):  # beside the subset none of them is silent
                     sets.fit([{**fit.values, **{n: v[0] for n, v in added.items()}}], fit.variance)
