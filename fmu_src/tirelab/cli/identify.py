@@ -183,7 +183,9 @@ def _part(
         console.print(f"tire: {tire}", soft_wrap=True)
     elif best:
         command = words.identify(words.recordings, best, output.out)
-        console.print(f"- the best one that a tire file holds: `{command}`", markup=False, soft_wrap=True)
+        console.print(
+            f"- the law that is proposed for a tire file: `{command}`", markup=False, soft_wrap=True
+        )
         if misfit:
             console.print(f"- {misfit} then", markup=False, soft_wrap=True)
         curve = next(fit for fit in fits if fit.name == CURVE)

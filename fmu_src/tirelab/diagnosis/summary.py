@@ -98,8 +98,8 @@ def _errors(
     found.append(f"On held-out data it {change}.")
     if fit.held_out_after > AMPLIFIED * fit.held_out_noise_free:
         found.append(
-            f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the remainder is "
-            "reading noise amplified by differentiation."
+            f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the rest "
+            "comes of rates that are tracked from a noisy deflection: the noise that is left in them, and their delay."
         )
     return found
 

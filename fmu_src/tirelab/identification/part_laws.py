@@ -244,15 +244,21 @@ def _power_preload(s: _Samples) -> LawFit:
 
 
 def _shifted(s: _Samples, name: str) -> LawFit:
+    """Return a law that begins at x0: fitted from where the force is seen to begin, and from its straight line."""
     linear = name == "linear_gap"
-    start = _power_start(s, s.begins)
 
     def law(v: Array) -> Array:
         beyond = np.maximum(s.x - v[-1], 0.0)
         return np.asarray(v[0] * (beyond if linear else (beyond + 1e-12) ** v[1]))
 
-    begin = [start[0], s.begins] if linear else [*start, s.begins]
-    values, fitted = _searched(law, np.array(begin), s)
+    (force, stiffness), _ = _lstsq([np.ones_like(s.x), s.x], s)
+    seen = _power_start(s, s.begins)
+    starts = [[seen[0], s.begins] if linear else [*seen, s.begins]]
+    if stiffness != 0.0:
+        crossing = -force / stiffness
+        starts.append([stiffness, crossing] if linear else [stiffness, 1.0, crossing])
+    found = [_searched(law, np.array(start), s) for start in starts]
+    values, fitted = min(found, key=lambda f: float(f[1][0] @ f[1][0]))
     gap = ("x0", 10.0, "mm")
     symbols = (("k", 0.1, "N/mm"), gap) if linear else (("A", 1.0, "N/cm^B"), ("B", 1.0, "1"), gap)
     return _fit(name, symbols, values, fitted)

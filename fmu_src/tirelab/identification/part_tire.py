@@ -204,7 +204,8 @@ def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:
     if not loose:
         return
     squares = [r.force[r.deflection < x0] ** 2 for r in loose]
-    left = float(np.sqrt(np.mean(np.concatenate(squares))))
+    noise = reading_noise(loose)
+    left = float(np.sqrt(max(np.mean(np.concatenate(squares)) - (0.0 if np.isnan(noise) else noise**2), 0.0)))
     if left > IN_GAP * max(float(np.abs(r.force).max()) for r in recordings):
         first = loose[0]
         if float(first.deflection.max()) <= x0 and float(first.force.max()) > -float(first.force.min()):
@@ -216,7 +217,7 @@ def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:
             )
         raise TirelabError(
             f"the law {fit.name} has no force below {1e3 * x0:.3g} mm, and the recordings have {left:.3g} N there "
-            f"(root mean square); choose one of {', '.join(TWO_SIDED)} for a part that pulls too"
+            f"beyond the noise (root mean square); choose one of {', '.join(TWO_SIDED)} for a part that pulls too"
         )
 
 

@@ -273,9 +273,10 @@ def _guessed_columns(
     of their name ("forc"), else by their size.
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
-    other channel, disp_z beside Fz, or of several the one that stands nearest to the other channel; of two columns
-    without, the one that a drive moves evenly is the deflection, else the smaller. A counter, a strain and a stress are
-    neither, nor is what was sampled another number of times.
+    other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
+    channels have several the two that stand nearest to each other. Of two columns without a unit the one that a drive
+    moves evenly is the deflection, else the smaller. A counter, a strain and a stress are neither, nor is what was
+    sampled another number of times.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -306,9 +307,13 @@ def _guessed_columns(
         if name in missing and name not in guessed and len(alike) == 1:
             guessed[name] = alike[0]
             free.remove(alike[0])
+    pairs = [(i, j) for i in stating["deflection"] for j in stating["force"]]
+    if pairs and {"deflection", "force"} <= set(missing) - set(guessed):
+        guessed["deflection"], guessed["force"] = min(pairs, key=lambda pair: abs(pair[0] - pair[1]))
+    places = {name: match.index for name, match in matches.items()} | guessed
     for name, other in (("deflection", "force"), ("force", "deflection")):
-        if name in missing and name not in guessed and other in matches and len(stating[name]) > 1:
-            beside = matches[other].index
+        if name in missing and name not in guessed and other in places and len(stating[name]) > 1:
+            beside = places[other]
             guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     if len(free) >= len(both):

@@ -80,9 +80,13 @@ _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
 _WITHIN_A_NAME = re.compile(r"(?P<name>[^()]*)\((?P<unit>[^()]*)\)(?P<more>[^()]+)")
 _RATE = re.compile(
-    r"\bsampl\w*[ _](?:frequency|rate)\b\W*(?:(?P<unit>k?Hz)\W+)?(?P<value>\d+(?:\.\d+)?)\W*(?P<behind>k?Hz\b)?",
+    r"\bsamp(?:l\w*)?[ _](?:frequency|rate)\b\W*(?:(?P<unit>k?Hz)\W+)?(?P<value>\d+(?:\.\d+)?)\W*(?P<behind>k?Hz\b)?",
     re.I,
 )
+_STEP = re.compile(r"\ADelta_X\s+(?P<value>\d+(?:\.\d+)?(?:E[+-]?\d+)?)\b", re.I)
+"""The time between samples [s] in the header of a LabVIEW measurement file (NI, "Specification for the LabVIEW
+Measurement File (.lvm)")."""
+
 _LIKELY = {
     **{("N", word): "lbf" for word in ("lb", "lbs", "pound", "pounds")},
     **{("N", word): "kgf" for word in ("kg", "kgs", "kilogram", "kilograms")},
@@ -175,7 +179,8 @@ def conversion(unit: str, si: str) -> Conversion:
         advice = becomes if measured and of_specimen else _advice(text, si, known=True)
         advice = _of_torsion(text, si, torque=known == registry.Unit("N*m").dimensionality) or advice
         if known == registry.Unit("V").dimensionality:
-            advice = f"write the {quantity} of 1 {text}, the calibration, as its unit: 250 {_COMMON[si][0]}"
+            usual = "mm" if si == "m" else _COMMON[si][0]
+            advice = f"write the {quantity} of 1 {text}, the calibration, as its unit: 250 {usual}"
         what = f"{unit[:40]!r} is not a unit of {quantity}; {advice}"
         raise UnitError(what, _likely(text, si, known=True))
     zero, one = registry.Quantity(0.0, parsed), registry.Quantity(1.0, parsed)
@@ -324,14 +329,18 @@ def parse_interval(text: str | float) -> float:
 
 
 def sampling_said(lines: Iterable[str]) -> str:
-    """Return the rate that some lines of text state, as "Sample Frequency (Hz): 100": 100Hz; "" where none does.
+    """Return the rate or the interval that some lines of text state, as "Sample Frequency (Hz): 100": 100Hz; "" where
+    none does.
 
-    A number without a unit is none.
+    A number without a unit is none, but for the interval of a LabVIEW measurement file, which is in seconds.
     """
-    for found in filter(None, map(_RATE.search, lines)):
-        unit = found["unit"] or found["behind"]
-        if unit:
-            return f"{found['value']}{'kHz' if unit.lower() == 'khz' else 'Hz'}"
+    for line in lines:
+        rate, step = _RATE.search(line), _STEP.match(line)
+        unit = (rate["unit"] or rate["behind"]) if rate else ""
+        if rate and unit:
+            return f"{rate['value']}{'kHz' if unit.lower() == 'khz' else 'Hz'}"
+        if step and float(step["value"]) > 0.0:
+            return f"{float(step['value']):.12g}s"
     return ""
 
 

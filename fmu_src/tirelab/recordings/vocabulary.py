@@ -17,6 +17,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "running time",
             "total time",
             "ts",
+            "times",
             "millis",
             "micros",
             "时间",

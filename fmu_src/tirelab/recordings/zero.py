@@ -189,7 +189,10 @@ def zero_in_si(name: str, text: str, where: str) -> float:
     try:
         return parse_quantity(str(text), UNIT_OF[name])
     except UnitError as error:
-        raise RecordingError(f"{where}, {name}: {error}; such as {EXAMPLE}") from None
+        what = str(error).partition("; ")[0]
+        raise RecordingError(
+            f"{where}, {name}: {what}; write what `tirelab inspect` shows there with its unit, such as {EXAMPLE}"
+        ) from None
 
 
 def quantity_text(name: str, value: float) -> str:

@@ -37,9 +37,8 @@ def test_an_effect_is_stated_with_the_improvement_on_held_out_data():
 
 def test_amplified_reading_noise_is_separated_from_the_error_of_the_tire():
     fit = FitErrors(6.0, 26.4, 9.1, 26.5, 9.2, "recordings given", 6.2)
-    assert (
-        "With the noise-free deflection as input it is 6.20 N; the remainder is reading noise"
-        in summarise((FRICTION,), (), (), 0.85, fit)
+    assert "With the noise-free deflection as input it is 6.20 N; the rest comes of rates" in summarise(
+        (FRICTION,), (), (), 0.85, fit
     )
     assert "noise-free" not in summarise(
         (FRICTION,), (), (), 0.85, FitErrors(6.0, 26.4, 6.1, 26.5, 6.2, "by", 6.1)

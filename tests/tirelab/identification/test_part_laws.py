@@ -41,6 +41,15 @@ def test_few_deflections_far_apart_have_laws() -> None:
     assert fits["linear"].value("k") == pytest.approx(40.0, rel=0.01)
 
 
+def test_a_law_with_a_gap_leaves_no_more_than_a_straight_line_though_its_beginning_was_not_recorded() -> None:
+    """A fibre at lengths of 0.95 to 1.18 mm that pulls from 0.9 mm on: at the zero of its length it would be slack."""
+    x = np.linspace(0.00095, 0.00118, 400)
+    fits = {fit.name: fit for fit in fit_laws([recording(x, 9e3 * (100.0 * x - 0.09) ** 2)])}
+    assert fits["linear_gap"].rmse < fits["constant"].rmse
+    assert fits["power_gap"].rmse == pytest.approx(2.0, rel=0.08)
+    assert fits["power_gap"].value("x0") == pytest.approx(0.9, abs=0.2)
+
+
 @pytest.mark.parametrize("name", MADE)
 def test_the_law_that_made_the_readings_is_found(name: str) -> None:
     x, force, constants = MADE[name]

@@ -36,6 +36,27 @@ def test_what_a_scale_weighs_is_the_force_and_the_steps_of_a_motor_are_not(tmp_p
     assert proposed(path) == ["--columns", "force=#5", "--units", "time=ms,force=gf"]
 
 
+def test_of_many_forces_and_gauges_the_two_that_stand_together_are_guessed(tmp_path: Path) -> None:
+    """A wall under two loads with gauges on it: no name says which is the travel, and a command can be copied."""
+    _, deflection, force = loading()
+    rows = (2.0 * force, force, deflection, 3.0 * force, 0.1 * deflection)
+    path = write_rows(tmp_path / "a.csv", "V [kN],Fh [kN],u [mm],Fv [kN],lv1 [mm]", *rows)
+    assert proposed(path) == ["--columns", "deflection=#3,force=#2"]
+    rows = (2.0 * force, force, deflection, 3.0 * force)
+    path = write_rows(tmp_path / "b.csv", "V [kN],Fh [kN],u [mm],Fv [kN]", *rows)
+    assert proposed(path) == ["--columns", "deflection=#3,force=#2"]
+
+
+def test_times_in_the_plural_are_a_time(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    path = write_rows(
+        tmp_path / "a.csv", "times(s),displacement [mm],force [N]", time, 1e3 * deflection, force
+    )
+    found = understand(path, Choices(part=True)).recording
+    assert found.timed
+    np.testing.assert_allclose(np.ptp(found.time), np.ptp(time))
+
+
 @pytest.mark.parametrize("columns", ["A,B", "B,A"])
 def test_what_a_drive_moves_evenly_is_the_deflection_however_large(tmp_path: Path, columns: str) -> None:
     force = loading()[2]

@@ -65,6 +65,10 @@ def test_a_zero_stands_in_the_file_of_settings_in_one_line(tmp_path: Path) -> No
     [
         ("deflection=30", "no length"),
         ("force=3mm", "not a unit of force"),
+        (
+            "deflection=0.4V",
+            "write what `tirelab inspect` shows there with its unit, such as deflection=30mm",
+        ),
         ("time=3s", "'time' has no zero"),
         ("stroke=3mm", "no channel"),
     ],

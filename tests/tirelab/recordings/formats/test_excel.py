@@ -15,7 +15,7 @@ from tirelab.recordings.choices import Choices
 from tirelab.recordings.files import recording_files
 from tirelab.recordings.formats import workbook
 from tirelab.recordings.inspection import inspect_recording
-from tirelab.recordings.recording import read_recording
+from tirelab.recordings.recording import RecordingError, read_recording
 
 
 class TestExcel:
@@ -262,6 +262,23 @@ def test_a_workbook_of_the_format_before_xlsx(tmp_path: Path) -> None:
     rows = [list(HEADERS), *(list(map(float, row)) for row in zip(*COLUMNS.values(), strict=True))]
     path = write_old_workbook(tmp_path / "a.xls", rows)
     assert_the_recording(read_recording(path, radius="flat"))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_a_text_table_that_is_named_as_a_workbook(tmp_path: Path, encoding: str) -> None:
+    """Instruments write one so that a spreadsheet opens it."""
+    lines = ["Impact tester", "\t".join(HEADERS)]
+    lines += ["\t".join(f"{value:.17g}" for value in row) for row in zip(*COLUMNS.values(), strict=True)]
+    (tmp_path / "a.xls").write_text("\n".join(lines), encoding=encoding)
+    above = "table found at row 2: the lines above it are kept as its provenance"
+    assert_the_recording(read_recording(tmp_path / "a.xls", radius="flat"), above)
+
+
+@pytest.mark.parametrize("content", ["<html><table><tr><td>1</td></tr></table></html>", "\x09\x08\x00\x01"])
+def test_what_is_neither_text_nor_a_workbook_is_refused_as_a_workbook(tmp_path: Path, content: str) -> None:
+    (tmp_path / "a.xls").write_text(content)
+    with pytest.raises(RecordingError, match="cannot be read as a workbook"):
+        read_recording(tmp_path / "a.xls", radius="flat")
 
 
 @pytest.mark.parametrize("name", ["bomb.xlsx", "bomb.ods"])
