@@ -85,7 +85,7 @@ BOTTOMING = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="a stop is met, as the rim by a tire: the force rises steeply from one deflection on",
+    statement="the force rises steeply from one deflection on, as where a tire meets the rim, or a part its stop",
     tell_tale="a local knee in the force at one deflection, on every surface; nothing below it",
     imitators=("gas_compression", "recalibration", "mullins_softening"),
     source="a second spring with a soft onset; no magnitude for bicycle tires was found, bounds wide",

@@ -25,7 +25,7 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
-from ..regressors.excitation import of_deflection
+from ..regressors.excitation import is_of_reading, of_deflection
 from .acceptance import HeldOut
 
 Grounds = Mapping[str, float]
@@ -160,6 +160,19 @@ def probability(of: str, grounds: Grounds) -> float:
     """Return the calibrated probability `of` a "verdict" or an "effect" with these grounds."""
     weights = _weights()[of]
     return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
+
+
+def probability_of_effect(effect: NamedEffect, grounds: Grounds, explanation: Explanation) -> float:
+    """Return the probability of an effect with these grounds.
+
+    The law of a part may have any shape, and no further motion tells one that the catalogue's forces do not follow from
+    an effect of the part's deflection alone beside it: each of the two has half the probability.
+    """
+    own = probability("effect", grounds)
+    shape = grounds["beside_law"] and explanation.excitation.within_law(effect.name)
+    if shape and explanation.model.baseline.is_part and not is_of_reading(effect.name):
+        return 0.5 * own
+    return own
 
 
 def sharing_odds(probability: float, alike: int) -> float:

@@ -29,7 +29,7 @@ from .acceptance import (
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of
 from .between_recordings import difference_between
-from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability
+from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
@@ -200,7 +200,7 @@ def _refused_by(
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
     grounds = grounds_of_effect(effect, explanation, validation)
-    return replace(effect, probability=probability("effect", grounds), grounds=grounds)
+    return replace(effect, probability=probability_of_effect(effect, grounds, explanation), grounds=grounds)
 
 
 def _errors(data: _Data, explanation: Explanation, validation: HeldOut) -> FitErrors:

@@ -217,6 +217,11 @@ def of_deflection(name: str) -> bool:
     return "static" in CATALOGUE[name].traits and CATALOGUE[name].reads is None
 
 
+def is_of_reading(name: str) -> bool:
+    """Whether an effect is one of a sensor, not of the tire or the part."""
+    return "reading" in CATALOGUE[name].traits
+
+
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
     """Return what the motion of all recordings can show; the speeds of recordings on one surface are taken together."""
     visits = [_visits(e) for e in dataset.experiments]

@@ -24,6 +24,7 @@ from tirelab.diagnosis.confidence import (
     no_surer_than_effects,
     of_confounded,
     probability,
+    probability_of_effect,
     sharing_odds,
 )
 from tirelab.estimation.findings import Estimate, Evidence, NamedEffect
@@ -48,10 +49,14 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
             within_law=lambda name: (
-                one_surface and name in ("gas_compression", "bottoming", "deflection_offset")
+                one_surface and name in ("gas_compression", "bottoming", "deflection_offset", "saturation")
             ),
         ),
-        model=SimpleNamespace(radii=(np.inf,), fit=SimpleNamespace(problem=problem)),
+        model=SimpleNamespace(
+            radii=(np.inf,),
+            fit=SimpleNamespace(problem=problem),
+            baseline=SimpleNamespace(is_part=more.get("part", False)),
+        ),
     )
 
 
@@ -140,6 +145,24 @@ def test_on_several_surfaces_a_law_of_another_form_can_still_be_an_effect_of_the
     found = [grounds_of_effect(e, one, HELD_OUT) for e in one.effects]
     assert [f["imitated"] for f in found] == [0.0, 0.0]
     assert [f["beside_law"] for f in found] == [0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "shared"), [("bottoming", 0.5), ("gas_compression", 0.5), ("saturation", 1.0), ("inertia", 1.0)]
+)
+def test_an_effect_of_a_parts_deflection_shares_its_probability_with_a_law_of_another_shape(
+    name: str, shared: float
+) -> None:
+    """A tire's law is a power law, and a part's may be any; what its sensor does is no law."""
+    for names, part, expected in (
+        (f"{name} recalibration", True, shared),
+        (f"{name} recalibration", False, 1.0),
+        (name, True, 1.0),
+    ):
+        one = explained(names, part=part)
+        grounds = grounds_of_effect(one.effects[0], one, HELD_OUT)
+        found = probability_of_effect(one.effects[0], grounds, one)
+        assert found == pytest.approx(expected * probability("effect", grounds))
 
 
 def test_a_refitted_law_in_an_effects_place_imitates_it_as_far_as_it_is_likely() -> None:
