@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 from .prior import Prior
 
-ROLES = ("strength", "form", "limit", "reading")
+Role = Literal["strength", "form", "limit", "reading"]
 
 
 class ParameterError(ValueError):
@@ -41,7 +42,7 @@ class Parameter:
     neutral: float | None = None
     nominal: float | None = None
     optional: bool = False
-    role: str = "form"
+    role: Role = "form"
     prior: Prior | None = None
 
     @property
