@@ -25,7 +25,7 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
-from ..regressors.excitation import is_of_reading, of_deflection
+from ..regressors.excitation import acts_on_reading, of_deflection
 from .acceptance import HeldOut
 
 Grounds = Mapping[str, float]
@@ -162,17 +162,14 @@ def probability(of: str, grounds: Grounds) -> float:
     return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
 
 
-def probability_of_effect(effect: NamedEffect, grounds: Grounds, explanation: Explanation) -> float:
+def probability_of_effect(effect: NamedEffect, grounds: Grounds) -> float:
     """Return the probability of an effect with these grounds.
 
-    The law of a part may have any shape, and no further motion tells one that the catalogue's forces do not follow from
-    an effect of the part's deflection alone beside it: each of the two has half the probability.
+    An effect of the deflection alone beside a refitted law may be what the shape of that law does not follow: laws are
+    of any shape, and each of the two has half the probability. What a sensor does to the force is no law.
     """
     own = probability("effect", grounds)
-    shape = grounds["beside_law"] and explanation.excitation.within_law(effect.name)
-    if shape and explanation.model.baseline.is_part and not is_of_reading(effect.name):
-        return 0.5 * own
-    return own
+    return 0.5 * own if grounds["beside_law"] and not acts_on_reading(effect.name) else own
 
 
 def sharing_odds(probability: float, alike: int) -> float:

@@ -217,9 +217,9 @@ def of_deflection(name: str) -> bool:
     return "static" in CATALOGUE[name].traits and CATALOGUE[name].reads is None
 
 
-def is_of_reading(name: str) -> bool:
-    """Whether an effect is one of a sensor, not of the tire or the part."""
-    return "reading" in CATALOGUE[name].traits
+def acts_on_reading(name: str) -> bool:
+    """Whether an effect acts on the force that is read, behind the tire or the part."""
+    return CATALOGUE[name].place == "reading"
 
 
 def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:

@@ -55,7 +55,6 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         model=SimpleNamespace(
             radii=(np.inf,),
             fit=SimpleNamespace(problem=problem),
-            baseline=SimpleNamespace(is_part=more.get("part", False)),
         ),
     )
 
@@ -148,20 +147,23 @@ def test_on_several_surfaces_a_law_of_another_form_can_still_be_an_effect_of_the
 
 
 @pytest.mark.parametrize(
-    ("name", "shared"), [("bottoming", 0.5), ("gas_compression", 0.5), ("saturation", 1.0), ("inertia", 1.0)]
+    ("name", "shared"),
+    [
+        ("bottoming", 0.5),
+        ("gas_compression", 0.5),
+        ("deflection_offset", 0.5),
+        ("saturation", 1.0),
+        ("inertia", 1.0),
+    ],
 )
-def test_an_effect_of_a_parts_deflection_shares_its_probability_with_a_law_of_another_shape(
+def test_an_effect_of_the_deflection_shares_its_probability_with_a_law_of_another_shape(
     name: str, shared: float
 ) -> None:
-    """A tire's law is a power law, and a part's may be any; what its sensor does is no law."""
-    for names, part, expected in (
-        (f"{name} recalibration", True, shared),
-        (f"{name} recalibration", False, 1.0),
-        (name, True, 1.0),
-    ):
-        one = explained(names, part=part)
+    """Beside a refitted law only, and not what a sensor does to the force: that is no law."""
+    for names, expected in ((f"{name} recalibration", shared), (name, 1.0)):
+        one = explained(names)
         grounds = grounds_of_effect(one.effects[0], one, HELD_OUT)
-        found = probability_of_effect(one.effects[0], grounds, one)
+        found = probability_of_effect(one.effects[0], grounds)
         assert found == pytest.approx(expected * probability("effect", grounds))
 
 
