@@ -1,6 +1,7 @@
 """Files of measurements: one loader per format, each giving the same kind of table."""
 
 import re
+from contextlib import suppress
 from collections.abc import Callable
 from pathlib import Path
 
@@ -108,7 +109,9 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
     if not known and read_as in LOADERS:
         suffix = read_as
     if suffix in WORKBOOK_SUFFIXES and not kind and _is_text(start):
-        suffix = ".txt"  # many instruments write their text tables for a spreadsheet to open
+        # Many instruments write a table of text for a spreadsheet to open.
+        with suppress(RecordingError):
+            return DelimitedTable(path, skip_rows)
     if suffix not in LOADERS:
         if kind or _CONTROL.search(start):
             raise _unknown(path, f"is {kind}; {_advice(read_as)}" if kind else "")
