@@ -1,8 +1,8 @@
 """Files of measurements: one loader per format, each giving the same kind of table."""
 
 import re
-from contextlib import suppress
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from .delimited import DelimitedTable
