@@ -108,6 +108,7 @@ DERIVED = (
     "estimation/ranking.SWAPPED",
     "diagnosis/acceptance.LIKELY",
     "diagnosis/alternatives.CREDIBLE",
+    "diagnosis/confidence.EITHER",
     "diagnosis/confidence.MOST_LOG_ODDS",
     "diagnosis/confidence.LEAST_SHARE",
     "diagnosis/discriminating_test.DECISIVE",

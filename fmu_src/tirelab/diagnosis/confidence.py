@@ -36,6 +36,9 @@ MOST_LOG_ODDS = 15.0
 LEAST_SHARE = 1e-4
 """Shares of the misfit below this one count as this one."""
 
+EITHER = 0.5
+"""Part of a probability that one of two explanations has between which nothing decides."""
+
 OF_VERDICT = (
     "odds",
     "contested",
@@ -169,7 +172,7 @@ def probability_of_effect(effect: NamedEffect, grounds: Grounds) -> float:
     of any shape, and each of the two has half the probability. What a sensor does to the force is no law.
     """
     own = probability("effect", grounds)
-    return 0.5 * own if grounds["beside_law"] and not acts_on_reading(effect.name) else own
+    return EITHER * own if grounds["beside_law"] and not acts_on_reading(effect.name) else own
 
 
 def sharing_odds(probability: float, alike: int) -> float:
