@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
-from radialtire.model import READING_NOISE, Law
+from radialtire.model import READING_NOISE
 
 from ..preprocessing.motion import motion_of
 from ..preprocessing.noise import Noise
@@ -226,16 +226,12 @@ def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:
     return Samples(tuple(recordings), motions, tuple(simulate(tire, m, m) for m in motions))
 
 
-def arranged(
-    tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]], **changed: Law | float
-) -> TireModel:
-    """Return `tire` with the effects of these names and values, in the order of the signal path; changed: other fields
-    with another value.
-    """
+def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:
+    """Return `tire` with the effects of these names and values, in the order of the signal path."""
     chosen = {e.name: (e, v) for e, v in tire.effects} | {n: (CATALOGUE[n], v) for n, v in effects}
     names = list(CATALOGUE)
     order = sorted(chosen.values(), key=lambda p: (PLACES.index(p[0].place), names.index(p[0].name)))
-    return replace(tire, effects=tuple(order), **changed)  # type: ignore[arg-type]
+    return replace(tire, effects=tuple(order))
 
 
 def own_deflection(tire: TireModel, experiment: Experiment) -> FloatArray:

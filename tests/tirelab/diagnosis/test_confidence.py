@@ -49,13 +49,10 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
             within_law=lambda name: (
-                one_surface and name in ("gas_compression", "bottoming", "deflection_offset", "saturation")
+                one_surface and name in ("gas_compression", "bottoming", "deflection_offset")
             ),
         ),
-        model=SimpleNamespace(
-            radii=(np.inf,),
-            fit=SimpleNamespace(problem=problem),
-        ),
+        model=SimpleNamespace(radii=(np.inf,), fit=SimpleNamespace(problem=problem)),
     )
 
 

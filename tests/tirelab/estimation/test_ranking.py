@@ -164,6 +164,15 @@ def test_a_ranking_ends_where_its_budget_of_simulations_does(
     assert short.best.names == ("viscous_damping",)
 
 
+def test_no_set_within_reach_leaves_more_than_a_subset_of_it(ranking: Ranking) -> None:
+    """A larger set can do what a smaller one does; a thousandth is what a fit that stops may miss."""
+    powers = {frozenset(fit.names): fit.power for fit in ranking.fits if ranking.behind(fit) < 15.0}
+    assert len(powers) > 2
+    for names, power in powers.items():
+        for less, left in powers.items():
+            assert not less < names or power <= 1.002 * left
+
+
 def test_a_set_that_stopped_early_is_fitted_again_from_the_smaller_one_that_leaves_less(
     dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy, ranking: Ranking
 ) -> None:

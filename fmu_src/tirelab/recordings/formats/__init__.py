@@ -108,7 +108,7 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
     known = suffix in LOADERS
     if not known and read_as in LOADERS:
         suffix = read_as
-    if suffix in WORKBOOK_SUFFIXES and not kind and _is_text(start):
+    if suffix in WORKBOOK_SUFFIXES and not kind:
         # Many instruments write a table of text for a spreadsheet to open.
         with suppress(RecordingError):
             return DelimitedTable(path, skip_rows)
@@ -130,13 +130,6 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
         raise _unknown(
             path, f"no table is found in its text ({str(error).removeprefix(path.name + ': ')})"
         ) from None
-
-
-def _is_text(start: bytes) -> bool:
-    """Whether a file begins as a table of text, not as binary data, HTML or XML."""
-    return start.startswith((b"\xff\xfe", b"\xfe\xff")) or not (
-        _CONTROL.search(start) or start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
-    )
 
 
 def _advice(read_as: str) -> str:
