@@ -39,6 +39,13 @@ EVENLY = 1.5
 """Steps of what a drive moves differ by less than this factor, but for a few."""
 
 
+A_RATE = 0.99
+"""Part of the variance of a recorded velocity that the rate of the recorded travel explains."""
+
+SAME_SIZE = 0.02
+"""Decades between the two sizes at most, but for a whole number of them: 5 %."""
+
+
 class IncompleteRecording(RecordingError):
     """A table that leaves something open: what, and the whole of what has to be written.
 
@@ -241,6 +248,26 @@ def driven(values: FloatArray) -> bool:
     return len(steps) > 1 and bool(np.quantile(steps, 0.9) < EVENLY * np.quantile(steps, 0.1))
 
 
+def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> frozenset[int]:
+    """Return the columns that are the rate of another one over time, as a velocity recorded beside the travel is.
+
+    A damper's force goes with its rate too, but only a rate has the size of it, but for the units, a power of ten.
+    """
+    found = set()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for column in values.values():
+            rate = np.gradient(column, time)
+            for i, other in values.items():
+                known = np.isfinite(rate) & np.isfinite(other)
+                if np.count_nonzero(known) < 3:
+                    continue
+                (own, between), (_, of_rate) = np.cov(other[known], rate[known])
+                decades = np.log10(np.abs(between / of_rate))
+                if between > np.sqrt(A_RATE * own * of_rate) and abs(decades - np.round(decades)) < SAME_SIZE:
+                    found.add(i)
+    return frozenset(found)
+
+
 def _states(header: Header, name: str) -> bool:
     """Whether a column states a unit of a channel, or one by which it is meant."""
     return measures(unit_of_column(header, name) or "", UNIT_OF[name]) or bool(
@@ -275,8 +302,8 @@ def _guessed_columns(
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
     channels have several the two that stand nearest to each other. Of two columns without a unit the one that a drive
-    moves evenly is the deflection, else the smaller. A counter, a strain and a stress are neither, nor is what was
-    sampled another number of times.
+    moves evenly is the deflection, else the smaller; of more, what is the rate of another one is neither. A counter, a
+    strain and a stress are neither, nor is what was sampled another number of times.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -316,6 +343,9 @@ def _guessed_columns(
             beside = places[other]
             guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
+    if len(free) > len(both) and known:
+        rates = rates_among({i: values[i] for i in free}, values[known[0]])
+        free = [i for i in free if i not in rates]
     if len(free) >= len(both):
         # Of many columns the first ones: of trials side by side those of one trial.
         sized = sorted(

@@ -10,6 +10,8 @@ from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.choices import Choices
 from tirelab.recordings.recording import RecordingError, understand
 
+CHANNELS = ("time", "deflection", "force")
+
 
 def proposed(path: Path, part: bool = True) -> list[str]:
     """Return the words of the command that is proposed for a file."""
@@ -45,6 +47,30 @@ def test_of_many_forces_and_gauges_the_two_that_stand_together_are_guessed(tmp_p
     rows = (2.0 * force, force, deflection, 3.0 * force)
     path = write_rows(tmp_path / "b.csv", "V [kN],Fh [kN],u [mm],Fv [kN]", *rows)
     assert proposed(path) == ["--columns", "deflection=#3,force=#2"]
+
+
+@pytest.mark.parametrize("unit_of_rate", [1.0, 1e-3])
+@pytest.mark.parametrize("rows", ["t,x,v,F", "t,v,x,F", "t,F,x,v"])
+def test_a_velocity_recorded_beside_the_travel_is_not_guessed_to_be_the_force(
+    tmp_path: Path, rows: str, unit_of_rate: float
+) -> None:
+    """A damper in a table without headers; a velocity in m/s is smaller than the travel in mm."""
+    t = np.arange(0.0, 4.0, 0.005)
+    x, v = 10.0 * np.sin(np.pi * t), 10.0 * np.pi * np.cos(np.pi * t)
+    noise = np.random.default_rng(1).normal(0.0, 5.0, t.size)
+    columns = {"t": t, "x": x, "v": unit_of_rate * v, "F": 1200.0 * np.tanh(v / 10.0) + noise}
+    order = rows.split(",")
+    path = write_rows(tmp_path / "a.csv", "", *(columns[name] for name in order))
+    wanted = {name: f"#{order.index(letter) + 1}" for name, letter in zip(CHANNELS, "txF", strict=True)}
+    assert proposed(path)[:2] == ["--columns", ",".join(f"{n}={c}" for n, c in wanted.items())]
+
+
+def test_a_force_that_goes_with_the_rate_is_still_guessed(tmp_path: Path) -> None:
+    """A linear damper of 31 N s/m: its force is as much like the rate as a rate is, but not of its size."""
+    t = np.arange(0.0, 4.0, 0.005)
+    x, v = 10.0 * np.sin(np.pi * t), 10.0 * np.pi * np.cos(np.pi * t)
+    path = write_rows(tmp_path / "a.csv", "", t, x, 31.0 * v, 20.0 + 0.001 * t)
+    assert proposed(path)[:2] == ["--columns", "time=#1,deflection=#2,force=#3"]
 
 
 def test_times_in_the_plural_are_a_time(tmp_path: Path) -> None:
