@@ -27,10 +27,12 @@ def _parameters() -> tuple[Parameter, ...]:
     for i in range(1, SURFACES_MAX + 1):
         start = FLAT_COEFFICIENT if i == 1 else 0.0
         unused = "" if i == 1 else "; 0 leaves the surface out"
-        lowest = 1e-3 if i == 1 else 0.0
+        lowest = 1e-12 if i == 1 else 0.0
         found += [
             Parameter(f"curvature_{i}", f"k{i}", "1/m", 0.0, -1e4, 1e4, f"1/R of surface {i}, rising with i"),
-            Parameter(f"coefficient_{i}", f"A{i}", "N/cm^B", start, lowest, 1e6, f"A on surface {i}{unused}"),
+            Parameter(
+                f"coefficient_{i}", f"A{i}", "N/cm^B", start, lowest, 1e18, f"A on surface {i}{unused}"
+            ),
             Parameter(f"exponent_{i}", f"B{i}", "1", FLAT_EXPONENT, 0.1, 10.0, f"B on surface {i}"),
         ]
     return tuple(found)

@@ -52,8 +52,8 @@ PRELOAD_FORCE = Parameter(
     "F0",
     "N",
     0.0,
-    -1e6,
-    1e6,
+    -1e9,
+    1e9,
     "force of a two-sided part without a deflection, beside its law",
 )
 

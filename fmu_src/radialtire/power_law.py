@@ -68,7 +68,7 @@ class PowerLaw:
 
     name: ClassVar[str] = "power_law"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("coefficient", "A", "N/cm^B", coefficient, 1e-9, 1e6, "force at 1 cm of deflection"),
+        Parameter("coefficient", "A", "N/cm^B", coefficient, 1e-12, 1e18, "force at 1 cm of deflection"),
         Parameter("exponent", "B", "1", exponent, 0.1, 10.0, "exponent of the deflection"),
     )
 

@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+import pint
 import pytest
 from driving import channels_for, converges, drive, sine, tire_with
 from hypothesis import given, settings
@@ -27,6 +28,23 @@ from radialtire.effect import PLACES
 
 EFFECTS = pytest.mark.parametrize("effect", CATALOGUE.values(), ids=CATALOGUE.keys())
 
+QUANTITY_UNITS = {
+    "1": "1",
+    "force": "N",
+    "travel": "m",
+    "gauge": "m",
+    "duration": "s",
+    "interval": "s",
+    "rate": "m/s",
+    "acceleration": "m/s^2",
+    "pressure": "Pa",
+    "temperature": "K",
+}
+"""Units of the quantities with which a prior scales."""
+
+ABSOLUTE = {"lag", "delay", "mass"}
+"""Parameters with a usual size of their own: filters of an amplifier, and a fixture in proportion to the force."""
+
 ISSUE = {
     "deflection_offset",
     "force_offset",
@@ -45,6 +63,28 @@ ISSUE = {
     "saturation",
 }
 """Physics that the project set out to name."""
+
+
+@EFFECTS
+def test_a_prior_scales_with_the_recording_as_the_unit_of_its_parameter_does(effect: Effect) -> None:
+    """A fibre of micrometres and a column of meganewtons have the same priors, in proportion."""
+    registry = pint.UnitRegistry()
+    for parameter in effect.parameters:
+        if parameter.prior is None or parameter.name in ABSOLUTE:
+            continue
+        above, _, below = parameter.prior.scale.partition("/")
+        scale = registry(QUANTITY_UNITS[above]) / registry(QUANTITY_UNITS[below or "1"])
+        assert registry(parameter.unit.replace(".", "*")).dimensionality == scale.dimensionality, (
+            parameter.name
+        )
+
+
+@EFFECTS
+def test_a_force_may_be_that_of_any_part(effect: Effect) -> None:
+    """From a fibre to a building: forces are allowed up to a giganewton at least."""
+    for parameter in effect.parameters:
+        if parameter.unit == "N":
+            assert parameter.maximum >= 1e9, parameter.name
 
 
 def within(parameter: Parameter) -> st.SearchStrategy[float]:

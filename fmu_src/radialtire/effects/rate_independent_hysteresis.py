@@ -97,7 +97,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
             "N",
             0.0,
             0.0,
-            1e7,
+            1e9,
             "friction whatever the load: half the loop's height, on the way in",
             neutral=0.0,
             nominal=30.0,

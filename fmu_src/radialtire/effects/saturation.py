@@ -58,7 +58,7 @@ SATURATION = Effect(
             "N",
             0.0,
             0.0,
-            1e6,
+            1e9,
             "rounding of the knee",
             optional=True,
             prior=Prior("normal", 0, 0.02, "force"),

@@ -231,7 +231,7 @@ VISCOUS_DAMPING = Effect(
             "s/m",
             0.0,
             0.0,
-            1e4,
+            1e12,
             "1/s: rate beyond which it grows less",
             neutral=0.0,
             optional=True,

@@ -35,19 +35,11 @@ only where the force is one of the deflection, in and out alike, and no spring's
 AT_REST, MOSTLY_HELD = 0.02, 0.9
 """A recording is a hold if more than MOSTLY_HELD of its samples lie within AT_REST of its stroke of one deflection."""
 
-LEAST_SPRING = 1e-3
+LEAST_SPRING = PowerLaw.parameters[0].minimum
 """Least coefficient A [N/cm^B] that a tire file holds: a part without a spring, such as a damper, has this one."""
-
-MOST_SPRING = PowerLaw.parameters[0].maximum
-"""Largest coefficient A [N/cm^B] that a tire file holds. A is the force at 1 cm: of a specimen of concrete, or of a pad
-that is pressed by a tenth of a millimetre, far beyond all that was recorded."""
 
 SURE = 3.0
 """Standard uncertainties by which a spring's constant must be below 0 to be no spring."""
-
-
-class TooStiff(TirelabError):
-    """A law whose coefficient is larger than a tire file holds."""
 
 
 def holds_air(recordings: Sequence[Recording]) -> bool:
@@ -78,7 +70,7 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
         )
     exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
     scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
-    law = _power_law(fit, scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
+    law = PowerLaw(scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
     gap = next(effect for effect in CATALOGUE.values() if effect.holds_gap)
     effects = ((gap, (-x0,)),)
     return _described(TireModel(law=law, effects=effects), recordings, name)
@@ -87,22 +79,15 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
 def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> str:
     """Return the first of the laws that a tire file holds, "" where it holds none.
 
-    One whose spring is none is left to the constant. The curve is taken where it is proposed (`curve_advice`), and of a
-    spring that is too stiff for a power law.
+    One whose spring is none is left to the constant. The curve is taken where it is proposed (`curve_advice`).
     """
-    stiff = False
     for fit in fits:
         if fit.name == CURVE:
             continue
         try:
             tire = tire_of(fit, recordings, "")
-        except TooStiff:
-            stiff = True
-            continue
         except TirelabError:
             continue
-        if stiff and fit.name == "constant":
-            return CURVE
         if fit.name == "constant" or tire.law != PowerLaw(LEAST_SPRING, 1.0):
             return CURVE if curve_advice(tire, recordings) else fit.name
     return ""
@@ -145,16 +130,7 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
             f"{_ramp_advice(recordings)}for a part without a spring, such as a damper, give --part constant"
         )
     preload = 0.0 if fit.name == "power" else fit.value("F0")
-    return TireModel(law=_power_law(fit, scale * value, exponent), two_sided=True, preload=preload)
-
-
-def _power_law(fit: LawFit, coefficient: float, exponent: float) -> PowerLaw:
-    if coefficient > MOST_SPRING:
-        raise TooStiff(
-            f"the law {fit.name} has A = {coefficient:.3g} N/cm^B, and a tire file holds {MOST_SPRING:g}: A is the "
-            f"force at 1 cm of deflection; give --part {CURVE}, whose points are forces within the recorded deflections"
-        )
-    return PowerLaw(coefficient, exponent)
+    return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
 
 
 def springless(fit: LawFit, tire: TireModel) -> str:

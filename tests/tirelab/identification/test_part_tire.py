@@ -307,19 +307,18 @@ def test_a_pad_whose_gauge_counts_from_elsewhere_is_asked_for_its_zero() -> None
         tire_of(no_force, [falling], "")
 
 
-def test_a_specimen_of_concrete_is_written_as_a_curve() -> None:
-    """3 GN/m, far more than a file holds: no power law is proposed, and not one without a spring either."""
-    way = np.abs(BOTH) * 4e-3
-    concrete = recording(way, 3e9 * way)
-    fits = fit_laws([concrete])
-    assert best_writable(fits, [concrete]) == "piecewise"
-    found = {fit.name: fit for fit in fits}
-    with pytest.raises(
-        TirelabError, match=r"A = 3e\+07 N/cm\^B, and a tire file holds 1e\+06: .* --part piecewise"
-    ):
-        tire_of(found["linear"], [concrete], "")
-    tire = tire_of(found["piecewise"], [concrete], "")
-    assert tire.curve is not None
+@pytest.mark.parametrize(("stiffness", "depth"), [(3e9, 1e-4), (1e-3, 4e-6)])
+def test_a_part_of_any_stiffness_is_written_with_its_spring(stiffness: float, depth: float) -> None:
+    """A specimen of concrete of 3 GN/m, pressed by 0.1 mm, and a cell of 1 mN/m, pressed by 4 um."""
+    way = np.abs(BOTH) * depth / np.max(np.abs(BOTH))
+    noise = 1e-3 * stiffness * depth * np.random.default_rng(1).standard_normal(way.size)
+    part = replace(recording(way, way), force=stiffness * way + noise)
+    fits = fit_laws([part])
+    proposed = best_writable(fits, [part])
+    assert proposed not in ("", "constant")
+    for name in (proposed, "linear", "piecewise"):
+        tire = tire_of({fit.name: fit for fit in fits}[name], [part], "")
+        np.testing.assert_allclose(simulate(tire, part), stiffness * way, atol=1e-3 * stiffness * depth)
 
 
 def test_what_is_said_of_a_law_is_of_the_one_that_is_proposed(tmp_path: Path) -> None:
