@@ -1,15 +1,16 @@
-"""Recompute the confidences of a proof with the present weights, to judge a calibration on trials that it did not use.
+"""Recompute the confidences of proofs with the present weights, to judge a calibration on trials that it did not use.
 
-Run: python -m tirelab.validation.restate DIR
+Run: python -m tirelab.validation.restate DIR...
 
-DIR is the folder of a finished `tirelab prove`. The verdicts stay as they were. From the grounds of each in its
-diagnosis.json, `diagnosis.confidence` recomputes the probability, limited by the probabilities of its effects as they
-were stated then. It prints the Brier skill and how often verdicts of each class held (`wide_kinds.holds`).
+Each DIR is the folder of a finished `tirelab prove`; the trials of all of them are taken together. The verdicts stay as
+they were. From the grounds of each in its diagnosis.json, `diagnosis.confidence` recomputes the probability, limited by
+those of its effects as they were stated then. It prints the Brier skill and how often verdicts of each class held
+(`wide_kinds.holds`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,9 @@ from ..diagnosis.confidence import confidence_of
 from .calibration import confidence_pairs, reliability, skill
 from .folders import Folders, read_json
 from .score import Score
+
+FOLDER = click.Path(file_okay=False, path_type=Path)
+"""Type of an argument that names a proof."""
 
 
 def restated(verdict: Mapping[str, Any]) -> float:
@@ -41,15 +45,20 @@ def restated_scores(folders: Folders) -> list[Score]:
 
 
 @click.command()
-@click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
-def main(folder: Path) -> None:
-    """Recompute the confidences of the proof in DIR with the present weights."""
-    scores = restated_scores(Folders(folder))
-    if not scores:
-        raise click.ClickException(f"{folder} holds no scores; finish `tirelab prove` there first")
+@click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=FOLDER)
+def main(folders: Sequence[Path]) -> None:
+    """Recompute the confidences of the proofs in the folders DIR with the present weights."""
+    scores: list[Score] = []
+    for folder in folders:
+        own = restated_scores(Folders(folder))
+        if not own:
+            raise click.ClickException(f"{folder} holds no scores; finish `tirelab prove` there first")
+        scores += own
     found = skill(confidence_pairs(scores))
     low, high = found.interval
-    click.echo(f"Brier skill of the confidence: {found.value:.2f} ({low:.2f} to {high:.2f})")
+    click.echo(
+        f"Brier skill of the confidence: {found.value:.2f} ({low:.2f} to {high:.2f}), {len(scores)} trials"
+    )
     for point in reliability(scores):
         click.echo(f"stated {point.at:.3f}: {point.rate.hits} of {point.rate.trials} held")
 

@@ -54,6 +54,10 @@ def test_the_verdicts_of_a_folder_are_restated_and_scored(
     assert told.exit_code == 0, told.output
     assert "0 of 2 held" in told.output
     assert told.output.startswith("Brier skill of the confidence: ")
+    assert ", 4 trials" in told.output
+    both = CliRunner().invoke(main, [str(tmp_path), str(tmp_path)])
+    assert "0 of 4 held" in both.output
+    assert ", 8 trials" in both.output
 
 
 def test_a_folder_without_scores_is_refused(tmp_path: Path) -> None:
