@@ -267,6 +267,12 @@ class Fit:
         tire = self.problem.dataset.tire
         return math.sqrt(sum((form_error(name, tire) * size) ** 2 for name, size in self.sizes.items()))
 
+    def reading_exactly(self) -> Fit:
+        """Return the fit of tires that take the deflection as exact; what is fitted has the motion without noise."""
+        problem, dataset = self.problem, self.problem.dataset
+        dataset = replace(dataset, tire=replace(dataset.tire, reading_noise=0.0))
+        return replace(self, problem=replace(problem, dataset=dataset))
+
     def with_discrepancy(self, discrepancy: Discrepancy) -> Fit:
         """Return the fit with its evidence under another discrepancy."""
         evidence = laplace_evidence(self.near, discrepancy.blurred(self.problem.dataset.rounding_error))
