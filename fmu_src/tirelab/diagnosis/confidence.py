@@ -165,14 +165,14 @@ def probability(of: str, grounds: Grounds) -> float:
     return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
 
 
-def probability_of_effect(effect: NamedEffect, grounds: Grounds) -> float:
+def probability_of_effect(name: str, grounds: Grounds) -> float:
     """Return the probability of an effect with these grounds.
 
     An effect of the deflection alone beside a refitted law may be what the shape of that law does not follow: laws are
     of any shape, and each of the two has half the probability. What a sensor does to the force is no law.
     """
     own = probability("effect", grounds)
-    return EITHER * own if grounds["beside_law"] and not acts_on_reading(effect.name) else own
+    return EITHER * own if grounds["beside_law"] and not acts_on_reading(name) else own
 
 
 def sharing_odds(probability: float, alike: int) -> float:

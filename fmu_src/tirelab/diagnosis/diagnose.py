@@ -200,7 +200,7 @@ def _refused_by(
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:
     grounds = grounds_of_effect(effect, explanation, validation)
-    return replace(effect, probability=probability_of_effect(effect, grounds), grounds=grounds)
+    return replace(effect, probability=probability_of_effect(effect.name, grounds), grounds=grounds)
 
 
 def _errors(data: _Data, explanation: Explanation, validation: HeldOut) -> FitErrors:

@@ -141,7 +141,10 @@ class Verdict:
                 "schema": SCHEMA,
                 "verdict": {
                     "effects": [self._effect_to_dict(e) for e in self.effects],
-                    "doubted": [{"name": e.name, "probability": e.probability} for e in self.doubted],
+                    "doubted": [
+                        {"name": e.name, "probability": e.probability, "grounds": dict(e.grounds)}
+                        for e in self.doubted
+                    ],
                     "confidence": self.confidence,
                     "grounds": dict(self.grounds),
                     "alternatives": [list(r.names) for r in self.alternatives],

@@ -1,12 +1,13 @@
 """Calibrate the stated probabilities: blind trials, also with physics outside the catalogue, and a logistic regression.
 
-Run: python -m tirelab.validation.calibrate --seed SEED --trials N [--out FILE]
+Run: python -m tirelab.validation.calibrate --seed SEED --trials N --out FILE
+     python -m tirelab.validation.calibrate --proof DIR --out FILE
 
-Every trial is drawn, diagnosed and scored; its grounds (`diagnosis.confidence`) and whether it was right are kept. The
-weights maximise the posterior under independent normal priors of standard deviation 1, for grounds of standard
-deviation 1; the weights of `LOWERING` are at most zero, those of `RAISING` at least zero. The skill is computed by
-ten-fold cross-validation. The file that is written has the form of `diagnosis/calibration.json`, which a diagnosis
-reads.
+Every trial is drawn, diagnosed and scored, or read from the folder of a finished `tirelab prove`; its grounds
+(`diagnosis.confidence`) and whether it was right are kept. The weights maximise the posterior under independent normal
+priors of standard deviation 1, for grounds of standard deviation 1; the weights of `LOWERING` are at most zero, those
+of `RAISING` at least zero. The skill is computed by ten-fold cross-validation. The file that is written has the form of
+`diagnosis/calibration.json`, which a diagnosis reads.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from ..diagnosis.confidence import LOWERING, OF_EFFECT, OF_VERDICT, RAISING
 from ..diagnosis.diagnose import diagnose
 from ..diagnosis.diagnosis_file import NOTHING
 from ..diagnosis.verdict import Verdict
+from ..errors import TirelabError
 from ..recordings.recording import read_recording
 from .blind_trials import ALL_KINDS, BlindTrials
 from .calibration import skill as brier_skill
@@ -178,6 +180,25 @@ def diagnosed(folder: Path, seed: int, number: int, kind: str | None) -> dict[st
     return Trial(_score(f"{seed}/{number}", answer, verdict), dict(verdict.grounds), effects).to_json()
 
 
+def proved(folder: Path) -> dict[str, dict[str, Any]]:
+    """Return the trials of a finished proof as plain values, by seed and number; raises TirelabError where one does not
+    say on which grounds its effects were doubted.
+    """
+    folders, found = Folders(folder), dict[str, dict[str, Any]]()
+    seed = read_json(folders.root / "settings.json")["seed"]
+    for path in sorted((folders.root / "scores").glob("*.json")):
+        score = Score.from_json(read_json(path))
+        if score.verdict is None:
+            continue
+        verdict = read_json(folders.verdict(path.stem) / "diagnosis.json")["verdict"]
+        effects = {e["name"]: e.get("grounds") for e in (*verdict["effects"], *verdict["doubted"])}
+        if None in effects.values():
+            raise TirelabError(f"{folder}: it was made by an older version; run its `tirelab prove` again")
+        key = f"{seed}/{score.trial}"
+        found[key] = Trial(replace(score, trial=key), verdict["grounds"], effects).to_json()
+    return found
+
+
 def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
     return Score(
         trial=key,
@@ -198,15 +219,26 @@ def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
 
 
 @click.command()
-@click.option("--seed", type=int, multiple=True, required=True, help="Seeds, each with that many trials.")
+@click.option("--seed", type=int, multiple=True, help="Seeds, each with that many trials.")
+@click.option(
+    "--proof",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    multiple=True,
+    help="Folders of finished proofs, of which all trials are taken.",
+)
 @click.option("--trials", type=click.IntRange(min=PARTS), default=100, show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="File to write.")
 @click.option(
     "--kept", type=click.Path(path_type=Path), help="File for the trials; one that is there is gone on with."
 )
-def main(seed: Sequence[int], trials: int, out: Path, kept: Path | None) -> None:
+def main(seed: Sequence[int], proof: Sequence[Path], trials: int, out: Path, kept: Path | None) -> None:
     """Calibrate on trials of all kinds in turn."""
     done: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8")) if kept and kept.exists() else {}
+    try:
+        for folder in proof:
+            done |= proved(folder)
+    except TirelabError as error:
+        raise click.ClickException(str(error)) from None
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         tasks: dict[str, tuple[Any, ...]] = {}
@@ -221,10 +253,22 @@ def main(seed: Sequence[int], trials: int, out: Path, kept: Path | None) -> None
             done[one_done.key] = one_done.value
             if kept:
                 kept.write_text(json.dumps(done), encoding="utf-8")
-    command = "python -m tirelab.validation.calibrate "
-    command += " ".join(f"--seed {s}" for s in seed) + f" --trials {trials}"
+    if len(done) < PARTS:
+        raise click.ClickException(
+            f"{len(done)} trials are too few; give --seed or --proof with {PARTS} at least"
+        )
+    words = [
+        *(f"--seed {s}" for s in seed),
+        *([f"--trials {trials}"] if seed else []),
+        *["--proof DIR"] * len(proof),
+    ]
+    provenance = {
+        "command": f"python -m tirelab.validation.calibrate {' '.join(words)}",
+        "seeds": sorted({int(key.partition("/")[0]) for key in done}),
+        "kinds": "all in turn",
+    }
     ordered = [Trial.from_json(done[key]) for key in sorted(done)]
-    content = calibrated(ordered, {"command": command, "kinds": "all in turn"})
+    content = calibrated(ordered, provenance)
     out.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     for of in ("verdict", "effect"):
         click.echo(f"{of}: skill {content[of]['skill_left_out']:.2f} left out, {content[of]['rows']} rows")

@@ -3,9 +3,9 @@
 Run: python -m tirelab.validation.restate DIR...
 
 Each DIR is the folder of a finished `tirelab prove`; the trials of all of them are taken together. The verdicts stay as
-they were. From the grounds of each in its diagnosis.json, `diagnosis.confidence` recomputes the probability, limited by
-those of its effects as they were stated then. It prints the Brier skill and how often verdicts of each class held
-(`wide_kinds.holds`).
+they were. From their grounds and those of their effects in each diagnosis.json, `diagnosis.confidence` recomputes the
+probabilities; an effect without grounds, as older versions wrote those that they left out, keeps its own. It prints the
+Brier skill and how often verdicts of each class held (`wide_kinds.holds`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 
 import click
 
-from ..diagnosis.confidence import confidence_of
+from ..diagnosis.confidence import confidence_of, probability_of_effect
 from .calibration import confidence_pairs, reliability, skill
 from .folders import Folders, read_json
 from .score import Score
@@ -28,8 +28,14 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 
 def restated(verdict: Mapping[str, Any]) -> float:
     """Return the confidence of a `verdict` of diagnosis.json by the present weights."""
-    named, doubted = ([e["probability"] for e in verdict[own]] for own in ("effects", "doubted"))
+    named, doubted = ([_of_effect(e) for e in verdict[own]] for own in ("effects", "doubted"))
     return confidence_of(verdict["grounds"], named, doubted)
+
+
+def _of_effect(effect: Mapping[str, Any]) -> float:
+    if "grounds" in effect:
+        return probability_of_effect(effect["name"], effect["grounds"])
+    return float(effect["probability"])
 
 
 def restated_scores(folders: Folders) -> list[Score]:

@@ -160,7 +160,7 @@ def test_an_effect_of_the_deflection_shares_its_probability_with_a_law_of_anothe
     for names, expected in ((f"{name} recalibration", shared), (name, 1.0)):
         one = explained(names)
         grounds = grounds_of_effect(one.effects[0], one, HELD_OUT)
-        found = probability_of_effect(one.effects[0], grounds)
+        found = probability_of_effect(one.effects[0].name, grounds)
         assert found == pytest.approx(expected * probability("effect", grounds))
 
 

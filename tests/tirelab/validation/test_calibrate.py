@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.special import expit
-from tirelab.diagnosis.confidence import OF_VERDICT
+from tirelab.diagnosis.confidence import OF_EFFECT, OF_VERDICT
 from tirelab.validation.calibrate import (
     Row,
     calibration_of,
     fitted_weights,
+    main,
     probabilities,
     skill,
     skill_left_out,
     verdict_row,
 )
+from tirelab.validation.folders import Folders, write_json
 from tirelab.validation.score import Score
 
 TRUE = {"constant": -1.0, "odds": 0.8, "remainder_share": -2.0}
@@ -87,3 +92,58 @@ def test_a_verdict_is_right_where_all_that_it_names_is_there(score: Callable[...
     for named, right in (("viscous_damping unknown", False), ("unknown", True)):
         one = score("outside", "unknown", named, probabilities={"viscous_damping": 0.3})
         assert verdict_row(one, {}).right is right
+
+
+@pytest.fixture
+def proof(tmp_path: Path, score: Callable[..., Score]) -> Path:
+    """The folder of a finished proof of twelve trials: a lag is hidden in each, and named in every other one."""
+    folders = Folders(tmp_path / "proof")
+    write_json(folders.root / "settings.json", {"seed": 7})
+    for number in range(12):
+        key, named = f"{number:04d}", "lag" if number % 2 else "friction"
+        own = {**score("loud", "lag", named).to_json(), "trial": key}
+        write_json(folders.score(key), own)
+        odds = 5.0 if number % 2 else -1.0
+        doubted = {
+            "name": "drift",
+            "probability": 0.2,
+            "grounds": {**dict.fromkeys(OF_EFFECT, 0.0), "odds": -3.0},
+        }
+        verdict = {
+            "grounds": {**dict.fromkeys(OF_VERDICT, 0.0), "odds": odds},
+            "effects": [{"name": named, "grounds": {**dict.fromkeys(OF_EFFECT, 0.0), "odds": odds}}],
+            "doubted": [doubted] if number == 3 else [],
+        }
+        write_json(folders.verdict(key) / "diagnosis.json", {"verdict": verdict})
+    return folders.root
+
+
+def test_finished_proofs_are_calibrated_on(proof: Path, tmp_path: Path) -> None:
+    out = tmp_path / "calibration.json"
+    told = CliRunner().invoke(main, ["--proof", str(proof), "--out", str(out)])
+    assert told.exit_code == 0, told.output
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert found["seeds"] == [7]
+    assert found["command"] == "python -m tirelab.validation.calibrate --proof DIR"
+    assert (found["verdict"]["rows"], found["verdict"]["right"]) == (12, 0.5)
+    # The twelve named effects, six of which are there, and the one that was left out.
+    assert (found["effect"]["rows"], found["effect"]["right"]) == (13, pytest.approx(6 / 13))
+    for of, names in (("verdict", OF_VERDICT), ("effect", OF_EFFECT)):
+        assert set(found[of]["weights"]) == {"constant", *names}
+        assert found[of]["weights"]["odds"] > 0.0
+
+
+def test_a_proof_that_does_not_say_why_effects_were_doubted_is_refused(proof: Path, tmp_path: Path) -> None:
+    file = Folders(proof).verdict("0003") / "diagnosis.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    del content["verdict"]["doubted"][0]["grounds"]
+    file.write_text(json.dumps(content), encoding="utf-8")
+    told = CliRunner().invoke(main, ["--proof", str(proof), "--out", str(tmp_path / "calibration.json")])
+    assert told.exit_code == 1
+    assert "run its `tirelab prove` again" in told.output
+
+
+def test_without_trials_nothing_is_calibrated(tmp_path: Path) -> None:
+    told = CliRunner().invoke(main, ["--out", str(tmp_path / "calibration.json")])
+    assert told.exit_code == 1
+    assert "give --seed or --proof" in told.output

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from tirelab.diagnosis.confidence import OF_VERDICT, probability
+from tirelab.diagnosis.confidence import EITHER, OF_EFFECT, OF_VERDICT, probability
 from tirelab.validation.folders import Folders
 from tirelab.validation.restate import main, restated, restated_scores
 from tirelab.validation.score import Score
@@ -33,6 +33,14 @@ def test_it_is_the_present_probability_shared_and_no_surer_than_an_effect() -> N
     # Two others share the odds: a third of them each.
     alone = probability("verdict", {**GROUNDS, "alike": math.log1p(2)})
     assert restated(verdict(1.0, alike=2)) == pytest.approx(alone / (alone + 3.0 * (1.0 - alone)))
+
+
+def test_what_an_effect_is_given_by_its_grounds_counts_where_they_are_kept() -> None:
+    """A bottoming beside a refitted law: what was stated then, 0.99, is not asked."""
+    grounds = {**dict.fromkeys(OF_EFFECT, 0.0), "odds": 1.0, "beside_law": 1.0}
+    own = {"name": "bottoming", "probability": 0.99, "grounds": grounds}
+    found = restated({"grounds": {**GROUNDS, "odds": 15.0}, "effects": [own], "doubted": []})
+    assert found == pytest.approx(EITHER * probability("effect", grounds))
 
 
 def test_the_verdicts_of_a_folder_are_restated_and_scored(
