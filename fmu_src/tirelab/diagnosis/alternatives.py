@@ -43,15 +43,13 @@ class Alternative:
     """Another set of effects that the recordings cannot rule out.
 
     log_odds: of the verdict against it, not tempered; reason: what the recordings lack to decide, and what to record
-    probability: of the set, not a number where the recordings cannot show it; left [N]: error of its tire, where the
-    verdict names no effect
+    probability: of the set, not a number where the recordings cannot show it
     """
 
     names: tuple[str, ...]
     log_odds: float
     reason: str
     probability: float
-    left: float = float("nan")
 
 
 def alternatives_of(

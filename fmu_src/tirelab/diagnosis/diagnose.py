@@ -20,9 +20,11 @@ from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_tim
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
 from .acceptance import (
+    NO_WORSE,
     HeldOut,
     Validate,
     accept,
+    is_worse,
     rmse,
     validation_on,
     without_unlikely,
@@ -35,7 +37,7 @@ from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
 from .summary import summarise
-from .verdict import FitErrors, Verdict
+from .verdict import FitErrors, NotNamed, Verdict
 
 QUICK = (
     "Most of it lies in sharp turns of the motion or in changes quicker than what is compared: drive round corners, "
@@ -86,7 +88,8 @@ def diagnose(
     check_signal(data.samples, [r.name for r in fitted], levels, beside=with_simulation)
 
     report("validating the correction on held-out data")
-    accepted = _accepted(candidates, validation_on(fitted, kept, data.samples, data.before))
+    validate = validation_on(fitted, kept, data.samples, data.before)
+    accepted = _accepted(candidates, validate)
     explanation, validation = accepted.explanation, accepted.validation
     fit = _errors(data, explanation, validation)
     remainder = _remainder(data, explanation, fit.noise)
@@ -99,7 +102,7 @@ def diagnose(
     )
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
     if not accepted.effects:
-        alternatives = tuple(_with_error(a, explanation) for a in alternatives)
+        fit = replace(fit, not_named=_not_named(candidates, validate))
     located = law_corrected(fitted, data.before, explanation.model.baseline, explanation.model.tire)
     noise = None if unexplained else explanation.residuals
     where = data.shown(localize(fitted, data.samples, located, levels, noise))
@@ -185,6 +188,15 @@ def _accepted(candidates: Explanation, validate: Validate) -> _Accepted:
     return _Accepted(explanation, validation, effects, doubted)
 
 
+def _not_named(candidates: Explanation, validate: Validate) -> NotNamed | None:
+    """Return the set that is likeliest by the fitted recordings of those that reduce their error, None without any."""
+    names = candidates.likeliest_reducing(NO_WORSE)
+    if not names:
+        return None
+    chosen = candidates.of(names)
+    return NotNamed(names, chosen.error, is_worse(validate(chosen)))
+
+
 def _refused_by(
     candidates: Explanation, accepted: _Accepted, fitted: Sequence[Recorded], kept: Sequence[Recorded]
 ) -> Contradiction | None:
@@ -238,13 +250,6 @@ def _unexplained(
     """Return the coordinates on which an unexplained remainder depends; none where nothing is unexplained."""
     places = data.shown(localize(data.recordings, data.samples, residuals, levels, residuals))
     return tuple(by for by in unexplained_by(remainder, places) if data.timed or by not in OF_TIME)
-
-
-def _with_error(alternative: Alternative, explanation: Explanation) -> Alternative:
-    """Return an alternative with the error [N] of its tire, where it was fitted."""
-    if not explanation.was_fitted(alternative.names):
-        return alternative
-    return replace(alternative, left=explanation.of(alternative.names).error)
 
 
 def _renamed(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:

@@ -11,7 +11,7 @@ from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import DECIDED, SURE, confidence_word, whole_percent
-from .acceptance import LIKELY, NO_WORSE
+from .acceptance import LIKELY
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -43,7 +43,7 @@ def summarise(
     said = [_undecided(effects, alternatives, confidence)] if undecided else []
     said.append(headline(names, bool(regressions), doubted, left, [e.name for e in effects if e.in_baseline]))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
-    said += _errors(bool(names), bool(regressions), fit, alternatives)
+    said += _errors(bool(names), bool(regressions), fit)
     if regressions:
         said.append(_remainder(regressions))
     said.append(sure(confidence))
@@ -70,22 +70,15 @@ AMPLIFIED = 1.1
 """The noise of the deflection is mentioned where it raises the held-out error by more than this factor."""
 
 
-def _errors(
-    corrected: bool, unexplained: bool, fit: FitErrors, alternatives: Sequence[Alternative]
-) -> list[str]:
-    """Return what the correction does to the error, or what the alternative that leaves least would do."""
+def _errors(corrected: bool, unexplained: bool, fit: FitErrors) -> list[str]:
+    """Return what the correction does to the error, or what would reduce it and is not named."""
     noise = f"the noise is {newtons(fit.noise)}"
     if not corrected:
         stays = ", and no known effect was found to reduce it" if unexplained else ""
-        nearest = min(alternatives, key=lambda a: a.left if a.left >= 0.0 else math.inf, default=None)
-        if unexplained and nearest is not None and nearest.left < NO_WORSE * fit.before:
-            likely = math.isfinite(nearest.probability) and nearest.probability > LIKELY
-            refused, unlikely = (
-                "held-out data refuse what is likeliest",
-                "no known effect is likely enough to be named",
-            )
-            stays = f", and {refused if likely else unlikely}; "
-            stays += f"{set_title(nearest.names)} would leave {newtons(nearest.left)}"
+        if unexplained and (other := fit.not_named) is not None:
+            refused, unlikely = "held-out data refuse", "no known effect is likely enough to be named"
+            why = f"{refused} what reduces it" if other.refused else unlikely
+            stays = f", and {why}; {set_title(other.names)} would leave {newtons(other.left)}"
         return [f"The RMS error is {newtons(fit.before)}{stays}; {noise}."]
     verb = "reduces" if fit.after < fit.before else "does not reduce, it changes"
     found = [

@@ -40,10 +40,22 @@ SCHEMA = 2
 
 
 @dataclass(frozen=True)
+class NotNamed:
+    """A set that reduces the error of the fitted recordings and is not named; left [N]: by its tire; refused: whether
+    it is worse than nothing on held-out data.
+    """
+
+    names: tuple[str, ...]
+    left: float
+    refused: bool
+
+
+@dataclass(frozen=True)
 class FitErrors:
     """Noise and root mean square errors [N]; held_out_by: what was held out (see `acceptance.HeldOut`).
 
     held_out_noise_free, after_noise_free: held_out_after and after where the tire is given the noise-free deflection
+    not_named: where nothing is corrected, what would reduce the error of the fitted recordings
     """
 
     noise: float
@@ -54,6 +66,7 @@ class FitErrors:
     held_out_by: str
     held_out_noise_free: float = float("nan")
     after_noise_free: float = float("nan")
+    not_named: NotNamed | None = None
 
     @property
     def left(self) -> float:

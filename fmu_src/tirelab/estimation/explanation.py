@@ -145,6 +145,13 @@ class Explanation:
         """The set that is likeliest by the fitted recordings alone, whatever it makes of the held-out ones."""
         return max(self._ranking.fits, key=lambda fit: fit.log_posterior - fit.log_predictive).names
 
+    def likeliest_reducing(self, part: float) -> tuple[str, ...]:
+        """The same of the sets that leave less than this part of what is left without any; () where none does."""
+        nothing = self._ranking.of(frozenset())
+        most = 0.0 if nothing is None else part**2 * nothing.power
+        reducing = [fit for fit in self._ranking.fits if fit.power < most and not fit.out_of_range]
+        return max(reducing, key=lambda f: f.log_posterior - f.log_predictive).names if reducing else ()
+
     def is_near(self, names: Sequence[str], other: Sequence[str]) -> bool:
         """Whether a set was fitted and is nearly as likely as another one, or likelier."""
         fits = [self._fit(n) for n in (names, other)]

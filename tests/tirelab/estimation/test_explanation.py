@@ -126,6 +126,11 @@ def test_a_set_that_was_not_fitted_is_refused(found: Explanation) -> None:
     assert found.alternative_model(("phlogiston",)) is None
 
 
+def test_of_the_sets_that_leave_less_the_likeliest_is_told(found: Explanation) -> None:
+    assert found.likeliest_reducing(0.9) == ("viscous_damping",)
+    assert found.likeliest_reducing(1e-3) == ()
+
+
 def test_fitted_again_without_a_recording_it_is_fitted_to_the_others() -> None:
     """Twice the damping in the second ride, of which nothing is used."""
     rides = (RIDES[0], damped(2, damping=1000.0, samples=3000))
