@@ -203,7 +203,7 @@ class Fit:
     evaluations: simulations of all dataset's blocks that it took, from all its starts
     law_scales: of the groups of the law's parameters, where not that of their priors
     held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
-    out_of_range: whether the recordings ask of an effect more than it can be, such as a lag of seconds of a load cell
+    beyond: effects of which the recordings ask more than they can be, such as a lag of seconds of a load cell
     """
 
     problem: EstimationProblem
@@ -221,14 +221,22 @@ class Fit:
     law_scales: Mapping[int, float] = field(default_factory=dict)
     held_out_residual: FloatArray = field(default_factory=lambda: np.zeros(0))
     log_predictive: float = 0.0
-    out_of_range: bool = False
+    beyond: tuple[str, ...] = ()
+
+    @property
+    def out_of_range(self) -> bool:
+        """Whether one of its effects would have to be more than it can be."""
+        return bool(self.beyond)
+
+    @property
+    def in_any_range(self) -> float:
+        """The log posterior, whatever its effects can be."""
+        return self.log_likelihood + self.log_predictive - PRIOR_ODDS * len(self.names)
 
     @property
     def log_posterior(self) -> float:
         """Log posterior of the set, not normalised; what is out of range is another effect's."""
-        if self.out_of_range:
-            return -np.inf
-        return self.log_likelihood + self.log_predictive - PRIOR_ODDS * len(self.names)
+        return -np.inf if self.out_of_range else self.in_any_range
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -367,7 +375,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         1.0,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
-        out_of_range=_out_of_range(problem, held, found.positions),
+        beyond=_beyond(problem, held, found.positions),
     )
     return fit.with_discrepancy(discrepancy)
 
@@ -379,14 +387,13 @@ def _held(problem: EstimationProblem, found: Iterate) -> NDArray[np.bool_]:
     return np.asarray((at_low & (uphill > 0.0)) | (at_high & (uphill < 0.0)))
 
 
-def _out_of_range(problem: EstimationProblem, held: NDArray[np.bool_], positions: FloatArray) -> bool:
-    """Return whether a strength is held (k,) at a limit of its valid range, other than where its effect vanishes."""
-    for i in np.flatnonzero(held):
+def _beyond(problem: EstimationProblem, held: NDArray[np.bool_], positions: FloatArray) -> tuple[str, ...]:
+    """Return the effects with a strength held (k,) at a limit of its valid range, other than where they vanish."""
+    found = []
+    for i in (i for i in np.flatnonzero(held) if problem.parameters[i].owner != LAW):
         free = problem.parameters[i]
-        if free.owner == LAW:
-            continue
         parameter = CATALOGUE[free.owner].parameters[free.index]
         limit = parameter.minimum if positions[i] <= free.low else parameter.maximum
         if parameter.role == "strength" and parameter.neutral != limit:
-            return True
-    return False
+            found.append(free.owner)
+    return tuple(dict.fromkeys(found))

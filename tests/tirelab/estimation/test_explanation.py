@@ -126,6 +126,24 @@ def test_a_set_that_was_not_fitted_is_refused(found: Explanation) -> None:
     assert found.alternative_model(("phlogiston",)) is None
 
 
+def test_what_would_have_to_be_more_than_it_can_be_is_as_if_it_were_unknown() -> None:
+    """A force that follows the deflection by 5 s, as no amplifier's filter does: the lag ends at one second."""
+    time = np.arange(2000) * 0.05
+    deflection = 0.012 + 0.006 * np.sin(0.2 * time) + 0.003 * np.sin(0.53 * time + 1.0)
+    elastic, late = flat_force(deflection), np.zeros(time.size)
+    late[0] = elastic[0]
+    for i in range(1, time.size):
+        late[i] = late[i - 1] + (elastic[i] - late[i - 1]) * 0.05 / 5.0
+    drive = read("late", time, deflection, late, 1)
+    others = ("viscous_damping", "viscoelastic_relaxation")
+    said: list[list[str]] = [[], []]
+    found = explain_misfit([drive], TireModel(), ("force_lag", *others), said[0].append)
+    without = explain_misfit([drive], TireModel(), others, said[1].append)
+    assert said[0] == 2 * said[1]  # it is searched again, beside nothing that is impossible
+    assert found.evidence == without.evidence
+    assert found.error == without.error
+
+
 def test_of_the_sets_that_leave_less_the_likeliest_is_told(found: Explanation) -> None:
     assert found.likeliest_reducing(0.9) == ("viscous_damping",)
     assert found.likeliest_reducing(1e-3) == ()
