@@ -103,7 +103,9 @@ def rmse(parts: Sequence[FloatArray]) -> float:
 def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) -> FloatArray:
     """Return the residual [N] of `tire` where it is given the smoothed motion in place of the readings."""
     whole, before = begun(recording)
-    smooth = smoothed_motion(whole, motion_of(whole.time, whole.deflection) if before else motion)
+    if before:
+        motion = motion_of(whole.time, whole.deflection, timed=is_timed([recording]))
+    smooth = smoothed_motion(whole, motion)
     return recording.force - simulate(tire, smooth, smooth)[before:]
 
 

@@ -156,7 +156,7 @@ def contradiction_held_out(
     explanation: by the refused set, fitted to `recordings`
     """
     every = [*recordings, *held_out]
-    motions = [motion_of(r.time, r.deflection) for r in every]
+    motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]
     states, seen = states_of(every, motions), compared(held_out)
     level = float(np.sqrt(np.mean([floor.level**2 for floor in explanation.floors])))
     for number, recording in enumerate(held_out):

@@ -3,7 +3,8 @@
 A gauge that reads in steps of q errs by up to q / 2 either way, with the standard deviation q / sqrt(12) (B. Widrow,
 I. Kollar, "Quantization Noise", Cambridge 2008, chapter 5). Random noise of variance s^2 gives fifth differences of
 variance 252 s^2, to which a smooth motion adds next to nothing. They do not show the steps where the motion is slow,
-because most readings repeat the last one, or where it is nearly even, because most steps are alike.
+because most readings repeat the last one, or where it is nearly even, because most steps are alike. Of readings that
+are not even in time they show how uneven these are. Noise then counts where it turns the motion to and fro.
 
 `gauge_step` finds a step by its rounding, beside which most readings may differ. `staircase_step` finds one so coarse
 that readings repeat: its stays and jumps are removed from the deflection (`destepped`) before a rate is taken.
@@ -33,20 +34,30 @@ GRID_TOLERANCE = 0.25
 """Largest distance of a reading from the grid of steps, as a part of a step: a file rounds what a gauge has read."""
 
 
-def deflection_noise(deflection: FloatArray) -> float:
-    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6, even in time; at least 1e-9 m,
-    or a millionth of their span where that is less.
+def deflection_noise(deflection: FloatArray, *, timed: bool = True) -> float:
+    """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6; at least 1e-9 m, or a millionth of
+    their span where that is less.
 
+    timed: whether they are known to be even in time
     Readings rounded to steps q without other noise have q / sqrt(12), those with other noise at least that.
     """
     least = LEAST_NOISE * _shrunk(deflection)
-    random = robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0)
+    random = robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0) if timed or _trembles(deflection) else 0.0
     step = gauge_step(deflection)
     rounding = step / np.sqrt(12.0)
     # A smooth motion that is only rounded has second differences of -q, 0 and q.
     if step > 0.0 and np.mean(np.abs(np.diff(deflection, 2)) > 1.5 * step) < NEGLIGIBLE:
         return float(max(rounding, least))
     return float(max(random, rounding, least))
+
+
+def _trembles(deflection: FloatArray) -> bool:
+    """Return whether readings turn twice within three steps more than now and then, as a motion does not.
+
+    White noise that is larger than the steps of the motion does so at 5 of 12 samples.
+    """
+    turns = np.diff(deflection[1:]) * np.diff(deflection[:-1]) < 0.0
+    return bool(np.mean(turns[1:] & turns[:-1]) > NEGLIGIBLE)
 
 
 def gauge_step(deflection: FloatArray) -> float:

@@ -79,20 +79,23 @@ KEPT, KEPT_SAMPLES = 32, 50_000
 """Budget: most recordings whose motion is kept, and most samples of one; a diagnosis asks for each up to ten times."""
 
 
-def motion_of(time: FloatArray, deflection: FloatArray) -> Motion:
-    """Return the motion of a recording: time [s] rising, deflection [m]; its arrays are not to be written to."""
+def motion_of(time: FloatArray, deflection: FloatArray, *, timed: bool = True) -> Motion:
+    """Return the motion of a recording: time [s] rising, deflection [m]; its arrays are not to be written to.
+
+    timed: whether the times were measured
+    """
     if deflection.size > KEPT_SAMPLES:
-        return _motion(time, deflection)
-    return _kept(*(np.asarray(values, dtype=np.float64).tobytes() for values in (time, deflection)))
+        return _motion(time, deflection, timed)
+    return _kept(*(np.asarray(values, dtype=np.float64).tobytes() for values in (time, deflection)), timed)
 
 
 @lru_cache(maxsize=KEPT)
-def _kept(time: bytes, deflection: bytes) -> Motion:
-    return _motion(np.frombuffer(time), np.frombuffer(deflection))
+def _kept(time: bytes, deflection: bytes, timed: bool) -> Motion:
+    return _motion(np.frombuffer(time), np.frombuffer(deflection), timed)
 
 
-def _motion(time: FloatArray, deflection: FloatArray) -> Motion:
-    noise = deflection_noise(deflection)
+def _motion(time: FloatArray, deflection: FloatArray, timed: bool) -> Motion:
+    noise = deflection_noise(deflection, timed=timed)
     smooth, rate, acceleration, resolved = _smoothed(time, deflection, noise)
     # Smoothing cuts a corner short: there the reading itself is nearer.
     smooth = np.where(resolved, smooth, deflection)

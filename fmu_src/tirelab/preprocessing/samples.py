@@ -121,7 +121,7 @@ def raw_dataset_of(recordings: Sequence[Recorded], baseline: TireModel) -> RawDa
             RawExperiment(
                 time - time[0],
                 recording.force,
-                motion_of(time, recording.deflection),
+                motion_of(time, recording.deflection, timed=is_timed([recording])),
                 pairs[inverse, 0],
                 pairs[inverse, 1],
                 np.arange(0, time.size, -(-time.size // share)),

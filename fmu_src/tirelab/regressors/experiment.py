@@ -32,7 +32,7 @@ from ..preprocessing.noise import (
     noise_floor,
     noise_of,
 )
-from ..preprocessing.samples import Recorded, surface_numbers
+from ..preprocessing.samples import Recorded, is_timed, surface_numbers
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 
 FloatArray = NDArray[np.float64]
@@ -141,7 +141,7 @@ def experiment_in_blocks(
     """Return a recording in blocks; sizes: least and most samples of a block; reading: noise of a sample, if known."""
     interval = float(np.median(np.diff(recording.time)))
     read, step = read_deflection(recording)
-    motion = motion_of(recording.time, read)
+    motion = motion_of(recording.time, read, timed=is_timed([recording]))
     gauge = 0.0 if step > 0.0 else motion.noise
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)

@@ -200,3 +200,14 @@ def test_no_reading_is_moved_by_more_than_half_a_step() -> None:
 def test_a_rest_on_one_level_stays_there() -> None:
     time = np.linspace(0.0, 10.0, 100)
     np.testing.assert_array_equal(destepped(time, np.full(100, 3e-3), 1e-4), np.full(100, 3e-3))
+
+
+def test_readings_that_are_not_even_in_time_have_the_noise_that_turns_them_to_and_fro() -> None:
+    """Cycles of a coupon in steps between a third and three times the usual one: without a time they have no noise."""
+    rng = np.random.default_rng(4)
+    way = np.cumsum(1e-3 * 3.0 ** rng.uniform(-1.0, 1.0, 2000))
+    driven = 0.02 * np.abs(2.0 * (way / 0.04 % 1.0) - 1.0)
+    assert deflection_noise(driven, timed=False) == LEAST_NOISE
+    assert deflection_noise(driven) > 1e-4
+    slow = 1e-6 * way / way[-1] + 1e-5 * rng.standard_normal(way.size)
+    assert deflection_noise(slow, timed=False) == deflection_noise(slow) == pytest.approx(1e-5, rel=0.1)
