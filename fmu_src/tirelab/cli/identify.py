@@ -186,7 +186,9 @@ def _part(
         console.print(
             f"- the law that is proposed for a tire file: `{command}`", markup=False, soft_wrap=True
         )
-        if misfit:
+        if advice := _advice_on_holds(found, best, output.out, words):
+            console.print(f"- {advice}", markup=False, soft_wrap=True)
+        elif misfit:
             console.print(f"- {misfit} then", markup=False, soft_wrap=True)
         curve = next(fit for fit in fits if fit.name == CURVE)
         if misfit and law.rmse > MISFIT * curve.rmse:

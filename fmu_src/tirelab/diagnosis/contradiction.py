@@ -4,7 +4,7 @@ A recording is suspected where its misfit differs from that of the others in the
 direction, deflection and speed. The others are then explained anew without it. It contradicts them if they are
 explained much better alone, and if their tire is far off it where it is driven as they are. It may be of another tire,
 pressure or zero, or have another past: another zero of a gauge or a factor on its force is named where that alone makes
-it agree. So may a held-out recording by which a set was refused.
+it agree. So may a held-out recording, whether a set was refused by it or not.
 """
 
 from __future__ import annotations
@@ -150,10 +150,10 @@ def contradiction_of(
 def contradiction_held_out(
     explanation: Explanation, recordings: Sequence[Recorded], held_out: Sequence[Recorded]
 ) -> Contradiction | None:
-    """Return the held-out recording by which a set was refused that would agree if one zero or factor of its own were
-    another; None where there is none.
+    """Return the held-out recording that would agree if one zero or factor of its own were another; None where there
+    is none.
 
-    explanation: by the refused set, fitted to `recordings`
+    explanation: fitted to `recordings`
     """
     every = [*recordings, *held_out]
     motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]

@@ -114,7 +114,7 @@ def diagnose(
 
     contradiction = contradiction_of(explanation, fitted, motions, data.before, explain_anew)
     contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
-    contradiction = contradiction or _refused_by(candidates, accepted, fitted, kept)
+    contradiction = contradiction or _contradicted_by(candidates, accepted, fitted, kept)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
     missing = not_compared(fitted)
@@ -197,17 +197,16 @@ def _not_named(candidates: Explanation, validate: Validate) -> NotNamed | None:
     return NotNamed(names, chosen.error, is_worse(validate(chosen)))
 
 
-def _refused_by(
+def _contradicted_by(
     candidates: Explanation, accepted: _Accepted, fitted: Sequence[Recorded], kept: Sequence[Recorded]
 ) -> Contradiction | None:
-    """Return the held-out recording that refused the set which explains the fitted ones, if it contradicts them."""
-    names = candidates.likeliest_fitted
-    if not kept or set(names) == set(accepted.explanation.model.names):
+    """Return the held-out recording that contradicts the set which explains the fitted ones, refused by it or not."""
+    if not kept:
         return None
-    refused = candidates.of(names)
-    if refused.error >= EXPLAINED * accepted.explanation.error:
-        return None
-    return contradiction_held_out(refused, fitted, kept)
+    names, chosen = candidates.likeliest_fitted, accepted.explanation
+    likeliest = candidates.of(names) if candidates.was_fitted(names) else chosen
+    clearly = likeliest.error < EXPLAINED * chosen.error
+    return contradiction_held_out(likeliest if clearly else chosen, fitted, kept)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

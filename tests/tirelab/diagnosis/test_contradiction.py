@@ -162,6 +162,18 @@ def test_a_held_out_recording_of_another_tire_is_named_where_it_refuses_the_law(
     assert verdict.summary.startswith("Recording other contradicts the others.")
 
 
+def test_a_held_out_recording_of_another_tire_is_named_where_nothing_was_refused() -> None:
+    """The fitted recording is that of the baseline; another tire of 500 N/cm^B is held out, a tenth less force."""
+    verdict = diagnose([pressed("a", 1, 550.0)], TIRE, held_out=[pressed("other", 2, 495.0)], catalogue=FEW)
+    assert verdict.effects == ()
+    assert verdict.contradiction is not None
+    assert verdict.contradiction.names == ("other",)
+    assert (
+        verdict.contradiction.as_if
+        == "It is as if the force of other were 10 % less, by another pressure or tire."
+    )
+
+
 def test_a_held_out_recording_that_no_zero_and_no_factor_reconciles_is_not_named() -> None:
     """A correction for 3000 N s/m refused by a recording of 1000: neither a zero nor a factor makes a damper."""
     fitted, kept = pressed("a", 1, damping=3000.0, period=2.0), pressed("b", 2, damping=1000.0, period=2.0)
