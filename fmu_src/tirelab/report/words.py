@@ -232,7 +232,7 @@ def foremost(where: Sequence[Mapping[str, Any]], most: int, of_one: int = 2) -> 
         for place in where
         if not (place["by"] == "force" and "deflection" in by)
         and not (is_one_rate(place) and "direction" in by)
-        and not (held and place["by"] == "acceleration" and place["from"] <= 0.0 <= place["to"])
+        and not (held and place["by"] == "acceleration" and _near_nothing(place))
     ]
     counts: Counter[str] = Counter()
     first: list[int] = []
@@ -256,7 +256,7 @@ def is_one_rate(place: Mapping[str, Any]) -> bool:
 
 
 REST = 1e-7
-"""Up to this rate [m/s] nothing moves: what is read of it is the gauge's noise."""
+"""Up to this rate [m/s], or acceleration [m/s^2], nothing moves: what is read of it is the gauge's noise."""
 
 
 def is_at_rest(place: Mapping[str, Any]) -> bool:
@@ -264,7 +264,13 @@ def is_at_rest(place: Mapping[str, Any]) -> bool:
     start, stop = place["from"], place["to"]
     if place["by"] != "rate" or isinstance(start, str) or isinstance(stop, str):
         return False
-    return bool(-REST < start <= 0.0 <= stop < REST)
+    return bool(max(abs(start), abs(stop)) < REST)
+
+
+def _near_nothing(place: Mapping[str, Any]) -> bool:
+    """Return whether a place over the acceleration lies about none, or so near it that nothing moves."""
+    start, stop = place["from"], place["to"]
+    return bool(start <= 0.0 <= stop or max(abs(start), abs(stop)) < REST)
 
 
 def span(place: Mapping[str, Any]) -> str:

@@ -195,6 +195,14 @@ def test_a_hold_is_told_as_rest_and_not_as_a_rate_and_an_acceleration_of_nothing
     assert words.where_phrase(slow) == "rate of deflection −0.00200 to 0 mm/s"
 
 
+def test_what_a_smoothed_hold_still_moves_is_rest() -> None:
+    held = {"by": "rate", "from": 2.8e-17, "to": 1.4e-13, "unit": "m/s"}
+    still = {"by": "acceleration", "from": -2.1e-15, "to": -1.2e-18, "unit": "m/s^2"}
+    assert words.span(held) == words.where_phrase(held) == "at rest"
+    assert words.foremost([still, held], 3) == [held]
+    assert "rest" not in words.span(held | {"to": 1.4e-3})
+
+
 @pytest.mark.parametrize(
     ("size", "load", "shown"),
     [
