@@ -255,14 +255,14 @@ def _as_if(recording: Recorded, moved: SmoothedMotion, tire: TireModel, alike: B
     offset = float(missed[alike].mean())
     factor = float(force[alike] @ missed[alike]) / max(float(force[alike] @ force[alike]), 1e-300)
     whose, more = f"of {recording.name}", "more" if factor > 0.0 else "less"
-    percent = f"{100.0 * abs(factor):.2g} % {more}"
-    changes = (
+    changes = [
         (float(shift.fun), f"the zero of the deflection {whose} were {1e3 * abs(shift.x):#.3g} mm off"),
         (rmse([missed[alike] - offset]), f"the zero of the force {whose} were {newtons(abs(offset))} off"),
-        (
-            rmse([(missed - factor * force)[alike]]),
-            f"the force {whose} were {percent}, by another {'pressure or tire' if tire.inflated else 'part'}",
-        ),
-    )
+    ]
+    if factor > -1.0:  # no part's force is that of another one turned round
+        percent = f"{100.0 * factor:.0f}" if factor > 1.0 else f"{100.0 * abs(factor):.2g}"
+        by = "pressure or tire" if tire.inflated else "part"
+        told = f"the force {whose} were {percent} % {more}, by another {by}"
+        changes.append((rmse([(missed - factor * force)[alike]]), told))
     left, change = min(changes)
     return f"It is as if {change}." if left < EXPLAINED * own else ""

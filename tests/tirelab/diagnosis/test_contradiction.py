@@ -181,6 +181,16 @@ def test_a_held_out_recording_that_no_zero_and_no_factor_reconciles_is_not_named
     assert verdict.contradiction is None
 
 
+def test_no_factor_turns_a_force_round() -> None:
+    """A part that is driven beyond the resonance of its mass: its force has the other sign, which no other part has."""
+    part = TireModel(PowerLaw(550.0, 1.42), tested_range=None, two_sided=True, inflated=False)
+    turned = pressed("turned", 2)
+    verdict = diagnose(
+        [pressed("a", 1)], part, held_out=[replace(turned, force=-0.6 * turned.force)], catalogue=FEW
+    )
+    assert verdict.contradiction is None or "less" not in verdict.contradiction.as_if
+
+
 def test_a_held_out_recording_that_refuses_one_of_two_effects_is_named() -> None:
     """The dampers of both are alike and found. The law is 5 % more than believed in one and 5 % less in the other."""
     fitted, kept = (
