@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .jumps import jump_doubt
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
 from .sign_convention import CLEAR, work_share
@@ -105,6 +106,7 @@ def doubts_of(
     loops += tuple(
         _placed(where(name, None), sentence) for name, sentence in _state_doubts(values, units, part)
     )
+    loops += tuple(_placed(where("deflection", at), said) for at, said in jump_doubt(values["deflection"]))
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]
