@@ -247,15 +247,22 @@ def explain_misfit(
     if again is not sets or sets.work >= sets.most_work:
         sets = replace(again, most_work=left)
         ranking = ranked(sets, alike)
-    if beyond := max(ranking.fits, key=lambda fit: fit.in_any_range).beyond:
+    if beyond := _beyond_range(ranking):
         # What would have to be more than it can be is another effect's, which a search beside it does not find.
         others_of = [name for name in catalogue if name not in beyond]
-        return explain_misfit(
-            recordings, baseline, others_of, progress, held_out=held_out, most_work=most_work
-        )
+        left = max(most_work - sets.work, FIRST_PART * most_work)
+        return explain_misfit(recordings, baseline, others_of, progress, held_out=held_out, most_work=left)
     ranking = _read_best(corrected(ranking, blocks.samples), blocks.samples.recordings)
     like_law = _like_law(tuple(sets.signatures.values()), sets.dataset.misfit, ranking.best.variance)
     return _explanation(blocks.samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+
+
+def _beyond_range(ranking: Ranking) -> tuple[str, ...]:
+    """Return the effects of the set that would be the likeliest that are out of their range there, and in every set."""
+    beyond = max(ranking.fits, key=lambda fit: fit.in_any_range).beyond
+    return tuple(
+        name for name in beyond if all(name in fit.beyond for fit in ranking.fits if name in fit.names)
+    )
 
 
 def _read_best(ranking: Ranking, recordings: Sequence[Recorded]) -> Ranking:
