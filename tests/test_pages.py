@@ -52,6 +52,8 @@ ELSEWHERE = {
     ),
     "python -m tirelab.validation.restate DIR": "tests/tirelab/validation/test_restate.py::"
     "test_the_verdicts_of_a_folder_are_restated_and_scored",
+    "python -m tirelab.validation.calibrate --proof DIR --out FILE": "tests/tirelab/validation/test_calibrate.py::"
+    "test_finished_proofs_are_calibrated_on",
     "python -m tirelab.fmu.native.make": "tests/tirelab/fmu/native/test_make.py::"
     "test_the_other_binaries_are_those_of_the_sources",
     **{
@@ -82,6 +84,8 @@ NOT_RUN = {
     "sh tests/tirelab/fmu/hosts/install.sh": "it installs programs of Debian on the machine",
     "python tests/benchmarks/bench_real.py FOLDER": "its recordings may not be kept here; "
     "tests/examples/test_real_recordings.py runs its parts where they are",
+    "python tests/benchmarks/bench_scales.py DIR --trials 18": "it diagnoses the trials of a proof for half an hour; "
+    "tests/tirelab/estimation/test_explanation.py::test_the_scale_of_a_recording_changes_nothing tries two rides",
 }
 """Commands that no test can run, each with the reason."""
 

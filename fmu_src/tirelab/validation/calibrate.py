@@ -181,10 +181,12 @@ def diagnosed(folder: Path, seed: int, number: int, kind: str | None) -> dict[st
 
 
 def proved(folder: Path) -> dict[str, dict[str, Any]]:
-    """Return the trials of a finished proof as plain values, by seed and number; raises TirelabError where one does not
-    say on which grounds its effects were doubted.
+    """Return the trials of a finished proof as plain values, by seed and number; raises TirelabError where there is
+    none, or one does not say on which grounds its effects were doubted.
     """
     folders, found = Folders(folder), dict[str, dict[str, Any]]()
+    if not (folders.root / "scores").is_dir():
+        raise TirelabError(f"{folder} holds no scores; finish `tirelab prove` there first")
     seed = read_json(folders.root / "settings.json")["seed"]
     for path in sorted((folders.root / "scores").glob("*.json")):
         score = Score.from_json(read_json(path))
@@ -222,7 +224,7 @@ def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
 @click.option("--seed", type=int, multiple=True, help="Seeds, each with that many trials.")
 @click.option(
     "--proof",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=click.Path(file_okay=False, path_type=Path),
     multiple=True,
     help="Folders of finished proofs, of which all trials are taken.",
 )

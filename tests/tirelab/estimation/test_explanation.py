@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from drives import damped, flat_force, read, ride, triangle
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from rivals import rivals
 from tirelab.estimation import first_sets
-from tirelab.estimation.explanation import Explanation, catalogue_names, explain_misfit
+from tirelab.estimation.explanation import Explanation, _beyond_range, catalogue_names, explain_misfit
 from tirelab.names import REFITTED_LAW
 from tirelab.preprocessing.motion import motion_of
 from tirelab.preprocessing.noise import Noise
@@ -142,6 +144,24 @@ def test_what_would_have_to_be_more_than_it_can_be_is_as_if_it_were_unknown() ->
     assert said[0] == 2 * said[1]  # it is searched again, beside nothing that is impossible
     assert found.evidence == without.evidence
     assert found.error == without.error
+
+
+@pytest.mark.parametrize(
+    ("others", "left_out"),
+    [
+        ([(-9.0, ("lag", "damping"), ())], ()),
+        ([(-9.0, ("lag", "damping"), ("lag",)), (-20.0, ("damping",), ())], ("lag",)),
+        ([(1.0, ("damping",), ())], ()),
+    ],
+    ids=["in its range beside another effect", "out of it everywhere", "not the likeliest"],
+)
+def test_an_effect_is_left_out_where_it_is_out_of_its_range_in_every_set(
+    others: list[tuple[float, tuple[str, ...], tuple[str, ...]]], left_out: tuple[str, ...]
+) -> None:
+    sets = [(0.0, ("lag",), ("lag",)), (-30.0, (), ()), *others]
+    fits = [SimpleNamespace(in_any_range=p, names=names, beyond=beyond) for p, names, beyond in sets]
+    ranking: Any = SimpleNamespace(fits=fits)
+    assert _beyond_range(ranking) == left_out
 
 
 def test_of_the_sets_that_leave_less_the_likeliest_is_told(found: Explanation) -> None:

@@ -143,6 +143,12 @@ def test_a_proof_that_does_not_say_why_effects_were_doubted_is_refused(proof: Pa
     assert "run its `tirelab prove` again" in told.output
 
 
+def test_a_folder_that_is_no_finished_proof_is_refused(tmp_path: Path) -> None:
+    told = CliRunner().invoke(main, ["--proof", str(tmp_path), "--out", str(tmp_path / "calibration.json")])
+    assert told.exit_code == 1
+    assert "holds no scores; finish `tirelab prove` there first" in told.output
+
+
 def test_without_trials_nothing_is_calibrated(tmp_path: Path) -> None:
     told = CliRunner().invoke(main, ["--out", str(tmp_path / "calibration.json")])
     assert told.exit_code == 1
