@@ -271,6 +271,8 @@ def _read_best(ranking: Ranking, recordings: Sequence[Recorded]) -> Ranking:
     Of a fast motion that is sampled sparsely a part looks like noise of the reading: what follows less of it than a
     rate does follows less of the force.
     """
+    if not ranking.best.tire.differentiates:
+        return ranking  # no rate is tracked, and the guard does nothing
     exact = [fit.reading_exactly() for fit in ranking.fits]
     left = (_residuals(fit.tire, recordings) for fit in (ranking.best, exact[0]))
     guarded, followed = (sum(float(own @ own) for own in residuals) for residuals in left)

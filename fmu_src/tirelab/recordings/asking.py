@@ -343,8 +343,9 @@ def _guessed_columns(
             beside = places[other]
             guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
-    if len(free) > len(both) and known:
-        rates = rates_among({i: values[i] for i in free}, values[known[0]])
+    clock = guessed["time"] if "time" in guessed else matches["time"].index if "time" in matches else -1
+    if len(free) > len(both) and clock in values:
+        rates = rates_among({i: values[i] for i in free}, values[clock])
         free = [i for i in free if i not in rates]
     if len(free) >= len(both):
         # Of many columns the first ones: of trials side by side those of one trial.
