@@ -18,7 +18,7 @@ from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor
 from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
-from ..regressors.excitation import Excitation, excitation_of, of_deflection
+from ..regressors.excitation import Excitation, excitation_of, misread, of_deflection
 from ..regressors.signature import (
     AS_GOOD,
     LAW,
@@ -29,11 +29,7 @@ from ..regressors.signature import (
     single_valued,
     size_of,
 )
-from ..selection.search import (
-    LOST,
-    PRIOR_ODDS,
-    discrepancy_of,
-)
+from ..selection.search import LOST, PRIOR_ODDS, discrepancy_of
 from ..simulation.simulate import simulate
 from .findings import (
     Estimate,
@@ -58,6 +54,9 @@ Progress = Callable[[str], None]
 
 FIRST_PART = 0.5
 """Budget: part of that of an explanation in which the set is found whose distortion by the blocks is subtracted."""
+
+LIKE_READING = "the noise of the deflection makes as large a response: move faster, or use a finer gauge"
+"""Why an effect cannot be shown of which other readings of the motion give another response."""
 
 LIKE_LAW = "it depends on the deflection only in this motion: load and unload to two depths, at two speeds"
 """Why an effect cannot be shown that no law depends on elsewhere."""
@@ -229,6 +228,7 @@ def explain_misfit(
     shown = [name for name in allowed if name not in hidden]
     progress("comparing the effects' signatures")
     dataset, raw, quiet = with_signatures(dataset, recordings, shown, catalogue)
+    hidden |= dict.fromkeys(misread(raw, dataset.read_anew(recordings)), LIKE_READING)
     hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
     if baseline.two_sided and LAW in catalogue:
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)

@@ -51,6 +51,21 @@ def deflection_noise(deflection: FloatArray, *, timed: bool = True) -> float:
     return float(max(random, rounding, least))
 
 
+def read_again(
+    deflection: FloatArray, read: FloatArray, noise: float, step: float, random: np.random.Generator
+) -> FloatArray:
+    """Return other readings [m] of a motion (n,) [m] that a gauge with this noise [m] has `read` (n,) [m].
+
+    step [m]: in which it reads, 0 for none; the steps are part of the noise, and now lie between those of `read`
+    """
+    beside_steps = float(np.sqrt(max(noise**2 - step**2 / 12.0, 0.0)))
+    anew = deflection + random.normal(0.0, beside_steps, deflection.size)
+    if step == 0.0:
+        return np.asarray(anew)
+    between = float(read[0]) + 0.5 * step
+    return np.asarray(between + step * np.rint((anew - between) / step))
+
+
 def _trembles(deflection: FloatArray) -> bool:
     """Return whether readings turn twice within three steps more than now and then, as a motion does not.
 

@@ -20,7 +20,7 @@ from ..preprocessing.noise import Noise
 from ..preprocessing.samples import Recorded, is_timed
 from ..simulation.kept_stages import KeptStages
 from ..simulation.simulate import SmoothedMotion, elastic_stage, simulate, smoothed_motion
-from .experiment import Experiment, experiment_in_blocks, read_deflection
+from .experiment import Experiment, experiment_in_blocks, read_anew, read_deflection
 
 __all__ = ["BLOCKS", "Dataset", "Experiment", "Samples", "Scales", "arranged", "dataset_of", "samples_of"]
 
@@ -149,6 +149,11 @@ class Dataset:
         """Return the dataset with another noise [N] of each averaged misfit."""
         pairs = zip(self.experiments, noises, strict=True)
         return replace(self, experiments=tuple(e.with_noise(noise) for e, noise in pairs))
+
+    def read_anew(self, recordings: Sequence[Recorded]) -> Dataset:
+        """Return the dataset as other readings of the same motions would show it; recordings: those of the dataset."""
+        pairs = zip(recordings, self.experiments, strict=True)
+        return replace(self, experiments=tuple(read_anew(r, e, self.tire) for r, e in pairs))
 
     def only(self, kept: Sequence[BoolArray]) -> Dataset:
         """Return the dataset in which only blocks count whose samples are all in `kept` (n,), one array per recording;

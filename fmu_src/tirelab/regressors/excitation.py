@@ -25,7 +25,7 @@ from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
 from .draws import drawn
-from .signature import ALIKE, DRAWS, size_of
+from .signature import ALIKE, DRAWS, LAW, Signature, baseline_of, likeness, size_of
 
 FloatArray = NDArray[np.float64]
 
@@ -215,6 +215,19 @@ class Excitation:
 def of_deflection(name: str) -> bool:
     """Whether an effect depends on deflection and surface only, as a law does, and on no channel."""
     return "static" in CATALOGUE[name].traits and CATALOGUE[name].reads is None
+
+
+def misread(signatures: Sequence[Signature], anew: Dataset) -> frozenset[str]:
+    """Return the effects of which other readings of the same motion give another response (see `ALIKE`).
+
+    The noise of the deflection makes such a response, and through the stiffness the force shows that noise too: the
+    acceleration that is read of a slow press is the rounding of its gauge, and a mass would be found in it.
+    anew: the recordings by other readings (`Dataset.read_anew`)
+    """
+    beside = baseline_of(anew)
+    return frozenset(
+        s.name for s in signatures if s.name != LAW and not s.silent and likeness(s, anew, beside) < ALIKE
+    )
 
 
 def acts_on_reading(name: str) -> bool:

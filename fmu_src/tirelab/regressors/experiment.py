@@ -20,7 +20,7 @@ from radialtire import TireModel
 from radialtire.model import READING_NOISE
 
 from ..preprocessing.data_checks import are_rare, compared, spikes
-from ..preprocessing.gauge import destepped, staircase_step
+from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_step
 from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
 from ..preprocessing.noise import (
     SHARE_OF_STEP,
@@ -179,6 +179,32 @@ def experiment_in_blocks(
         reading=reading,
         measured=averaged.measured,
     )
+
+
+def read_anew(recording: Recorded, experiment: Experiment, tire: TireModel) -> Experiment:
+    """Return an experiment as other readings of the same motion, with the noise and the steps of the same gauge, would
+    show it, but for the reversals within a sample; tire: the baseline
+    """
+    random = np.random.default_rng(1)  # the same each time, so that a recording has one verdict
+    read, step = read_deflection(recording)
+    timed = is_timed([recording])
+    motion = motion_of(recording.time, read, timed=timed)
+    if step > 0.0:
+        stepped = read_again(motion.deflection, recording.deflection, 0.0, step, random)
+        other = destepped(recording.time, stepped, step)
+    else:
+        other = read_again(motion.deflection, read, motion.noise, gauge_step(read), random)
+    anew = motion_of(recording.time, other, timed=timed)
+    blocks = experiment.blocks
+    averaged = _averaged(smoothed_motion(recording, anew), np.zeros(other.size, dtype=bool), blocks)
+    known = blocks.of(motion.resolved & anew.resolved).all(axis=1)
+    changed = replace(
+        experiment,
+        deflection=np.where(known, averaged.deflection, experiment.deflection),
+        rate=np.where(known, averaged.rate, experiment.rate),
+        acceleration=np.where(known, averaged.acceleration, experiment.acceleration),
+    )
+    return replace(changed, baseline=simulate(tire, changed, changed))
 
 
 def _noise_along(moved: SmoothedMotion, misfit: FloatArray, interval: float) -> Noise:

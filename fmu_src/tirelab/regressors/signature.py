@@ -330,18 +330,23 @@ def drawn_beside(signature: Signature, dataset: Dataset, beside: Beside) -> Sign
     """Return the signature of the same effect beside another tire: the same one where most draws have the same response
     (ALIKE).
     """
-    effect = CATALOGUE[signature.name]
-    if signature.silent:
+    if signature.silent or likeness(signature, dataset, beside) < ALIKE:
         return signature_of(signature.name, dataset, beside)
+    return signature
+
+
+def likeness(signature: Signature, dataset: Dataset, beside: Beside) -> float:
+    """Return the median cosine between drawn responses of an effect and those of the same parameters beside another
+    tire, or in other readings of the same motion.
+    """
     cosines = []
     for k in range(0, len(signature.values), DRAWS // PROBED):
-        tire = arranged(beside.tire, [(effect.name, signature.values[k])])
+        tire = arranged(beside.tire, [(signature.name, signature.values[k])])
         curve = dataset.response(tire) - beside.response
         size = size_of(curve) * np.sign(signature.sizes[k])
         cosines.append(np.mean(curve * signature.curves[k]) / size if size else 0.0)
-    if not np.median(cosines) < ALIKE:
-        return signature
-    return signature_of(signature.name, dataset, beside)
+    found = float(np.median(cosines))
+    return 1.0 if np.isnan(found) else found
 
 
 def _strength(effect: Effect, values: Sequence[float]) -> float:

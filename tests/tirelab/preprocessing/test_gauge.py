@@ -7,7 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.preprocessing.gauge import LEAST_NOISE, deflection_noise, destepped, gauge_step, staircase_step
+from tirelab.preprocessing.gauge import (
+    LEAST_NOISE,
+    deflection_noise,
+    destepped,
+    gauge_step,
+    read_again,
+    staircase_step,
+)
 
 DEPTH = 25e-3
 DURATION = 60.0
@@ -211,3 +218,14 @@ def test_readings_that_are_not_even_in_time_have_the_noise_that_turns_them_to_an
     assert deflection_noise(driven) > 1e-4
     slow = 1e-6 * way / way[-1] + 1e-5 * rng.standard_normal(way.size)
     assert deflection_noise(slow, timed=False) == deflection_noise(slow) == pytest.approx(1e-5, rel=0.1)
+
+
+def test_another_reading_has_the_noise_of_the_first_and_steps_between_its_own() -> None:
+    time = np.linspace(0.0, DURATION, 6000)
+    motion, step = sine(time, 0.0413), 1.9e-5
+    plain = read_again(motion, motion, 4e-6, 0.0, np.random.default_rng(1))
+    assert np.std(plain - motion) == pytest.approx(4e-6, rel=0.05)
+    read = rounded(motion, step)
+    other = read_again(motion, read, step / np.sqrt(12.0), step, np.random.default_rng(1))
+    np.testing.assert_allclose((other - read) / step % 1.0, 0.5, atol=1e-6)
+    assert np.abs(other - motion).max() <= 0.5 * step * (1.0 + 1e-9)

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import dataset_of
-from tirelab.regressors.excitation import Excitation, excitation_of
+from tirelab.regressors.excitation import Excitation, excitation_of, misread
+from tirelab.regressors.signature import candidates, signatures_of
 from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
@@ -151,3 +152,22 @@ def test_on_one_surface_a_law_could_be_all_that_is_static() -> None:
     r = triangle(1)
     two = excitation(r, recorded(r.time, r.deflection, 0.3))
     assert not any(two.within_law(n) for n in CATALOGUE)
+
+
+def misread_in(recording: Recording) -> frozenset[str]:
+    data = dataset_of([recording], TireModel())
+    return misread(signatures_of(candidates(), data), data.read_anew([recording]))
+
+
+def test_the_acceleration_of_a_slow_press_is_the_rounding_of_its_gauge() -> None:
+    """A hundred samples pass 169 steps: the roundings make a wave, which a spline follows."""
+    slow = triangle(2, seconds=23.7)
+    read = recorded(slow.time, 2e-5 * np.round(slow.deflection / 2e-5))
+    assert misread_in(read) == {"inertia"}
+    assert misread_in(slow) == frozenset()
+
+
+def test_a_quick_motion_shows_its_acceleration_through_the_same_gauge() -> None:
+    time = np.arange(0.0, 4.0, 0.001)
+    x = 0.01 * (1.0 - np.cos(2.0 * np.pi * 4.0 * time))
+    assert misread_in(recorded(time, 2e-5 * np.round(x / 2e-5))) == frozenset()
