@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from radialtire.tracking import PAUSE
-from scipy.stats import binom, t
+from scipy.stats import binom, norm, t
 
 from ..errors import TirelabError
 from .gauge import deflection_noise
@@ -174,23 +174,25 @@ def after_pauses(recording: Recorded) -> BoolArray:
 
 
 BY_CHANCE = 0.01
-"""Significance level of the test that single outliers are more frequent than RARE."""
+"""Significance level of a single outlier among all samples, and of the test that outliers are more frequent than
+RARE."""
 
 RARE = 0.02
 """Part of all samples below which samples that differ from both their neighbours are outliers, and not noise."""
 
 
 def spikes(misfit: FloatArray) -> BoolArray:
-    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction.
+    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction, by more
+    than white noise makes one of all samples differ (BY_CHANCE).
 
-    The first and the last one have one neighbour: they differ from it by far more than that one from the next.
+    Both differences are larger than a limit only if their mean is, whose variance is 1.5 times that of a sample. The
+    first and the last one have one neighbour: they differ from it by far more than that one from the next.
     """
     level = white_level(misfit)
+    least = float(np.sqrt(1.5) * norm.isf(BY_CHANCE / (2.0 * misfit.size))) * level
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
-    lone[1:-1] = (
-        (np.abs(before) > STANDS_OUT * level) & (np.abs(after) > STANDS_OUT * level) & (before * after > 0.0)
-    )
+    lone[1:-1] = (np.abs(before) > least) & (np.abs(after) > least) & (before * after > 0.0)
     for end, near, next_one in ((0, 1, 2), (-1, -2, -3)):
         step, usual = abs(misfit[end] - misfit[near]), abs(misfit[near] - misfit[next_one])
         lone[end] = step > STANDS_OUT * max(level, float(usual))

@@ -1,4 +1,6 @@
-"""A jump of the deflection between two samples, as where two runs stand one below the other in a table."""
+"""Jumps of the deflection between two samples: where two runs stand one below the other in a table, and where a gauge
+lost a reading.
+"""
 
 from __future__ import annotations
 
@@ -31,3 +33,41 @@ def jump_doubt(deflection: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
         "between any two others: if these are two runs in one table, give the rows of one of them, as in FILE@1:2000"
     )
     return ((at + 1, said),)
+
+
+LOST = 2.0
+"""A lost reading is this many times as far from both its neighbours as any other two neighbours are apart."""
+
+RARE = 0.02
+"""Most of the readings that may be lost; more are how the gauge reads."""
+
+
+def lost_readings(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the samples at which a gauge lost its reading, which is there again in the next one; arrays (n,).
+
+    No motion goes so far and comes back within one sample, unless the force follows it.
+    """
+    with np.errstate(all="ignore"):  # a damaged number may be any
+        found = _alone(deflection)
+        return np.setdiff1d(found, _alone(force)) if found.size else found
+
+
+def _alone(values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the samples (k,) that stand alone, in rising order; none where more than RARE would."""
+    nothing = np.empty(0, dtype=np.intp)
+    steps = np.diff(values)
+    if steps.size < FEWEST:
+        return nothing
+    sizes, most = np.abs(steps), int(RARE * values.size)
+    back = np.where(steps[:-1] * steps[1:] < 0.0, np.minimum(sizes[:-1], sizes[1:]), 0.0)
+    usual = float(np.partition(sizes, -1 - 2 * most)[-1 - 2 * most])
+    likely = 1 + np.flatnonzero(back > LOST * usual)
+    # Between two lost readings a good one stands as far from both: the median of five tells them apart.
+    away = [abs(float(values[i] - np.median(values[max(i - 2, 0) : i + 3]))) for i in likely]
+    far = np.minimum(away, back[likely - 1])
+    lost, order = nothing, np.argsort(-far, kind="stable")[:most]
+    for count, i in enumerate(order, start=1):
+        sizes[likely[i] - 1 : likely[i] + 1] = 0.0
+        if far[i] > LOST * sizes.max() > 0.0:
+            lost = likely[order[:count]]
+    return np.sort(lost)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .channels import CHANNELS
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
+from .jumps import lost_readings
 from .origin import Origin
 
 FloatArray = NDArray[np.float64]
@@ -60,7 +61,8 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     """The rows with a value in every required channel; an optional channel with many blanks is left out.
 
     Of equal rows with one time the first is kept, with a note: some machines write the end of a step of a test twice.
-    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them.
+    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them, and rows whose
+    deflection was lost.
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
     """
     values = dict(zip(headers, columns.values, strict=True))
@@ -72,20 +74,17 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
         if NOT_MEASURED <= column.max() < np.inf:
             values[name] = np.where(column >= NOT_MEASURED, np.nan, column)
     values, kept, notes = _without_blanks(origin, columns, values)
-    repeated = _repeated(values)
-    if len(repeated):
-        whole = np.arange(samples) if kept is None else kept
-        notes.append(
-            f"skipped as equal to the row before, its time among it: {_places(columns, whole[repeated])}"
-        )
-        kept = np.delete(whole, repeated)
-        values = {name: np.delete(column, repeated) for name, column in values.items()}
-    waiting = _before_the_clock(values)
-    if waiting:
-        whole = np.arange(samples) if kept is None else kept
-        notes.append(f"skipped as before the clock runs: {_places(columns, whole[:waiting])}")
-        kept = whole[waiting:]
-        values = {name: column[waiting:] for name, column in values.items()}
+    for which, said in (
+        (_repeated, "equal to the row before, its time among it"),
+        (_before_the_clock, "before the clock runs"),
+        (_lost, "readings that the gauge of the deflection lost, far from those before and after"),
+    ):
+        skipped = which(values)
+        if len(skipped):
+            whole = np.arange(samples) if kept is None else kept
+            notes.append(f"skipped as {said}: {_places(columns, whole[skipped])}")
+            kept = np.delete(whole, skipped)
+            values = {name: np.delete(column, skipped) for name, column in values.items()}
     left = samples if kept is None else len(kept)
     if left < 2:
         raise RecordingError(
@@ -139,19 +138,28 @@ def _repeated(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
     return found[np.logical_and.reduce(same)] if len(found) else found
 
 
-def _before_the_clock(values: Mapping[str, FloatArray]) -> int:
-    """Return how many rows at the beginning have the time of the row after them; 0 where other rows repeat one too.
+def _before_the_clock(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+    """Return the rows at the beginning that have the time of the row after them; none where other rows repeat one too.
 
     A machine may write what it reads while it waits for the start of the test. One row alone may be a slip; it is none
     where the deflection has not changed after it.
     """
     time, deflection = values.get("time"), values.get("deflection")
+    none = np.empty(0, dtype=np.intp)
     if time is None or len(time) < 2 or not time[0] < time[-1]:
-        return 0
+        return none
     still = np.flatnonzero(time[1:] == time[:-1])
     if len(still) == 1 and (deflection is None or deflection[0] != deflection[1]):
-        return 0
-    return len(still) if np.array_equal(still, np.arange(len(still))) else 0
+        return none
+    return still if np.array_equal(still, np.arange(len(still))) else none
+
+
+def _lost(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+    """Return the rows whose deflection was lost."""
+    deflection, force = values.get("deflection"), values.get("force")
+    if deflection is None or force is None:
+        return np.empty(0, dtype=np.intp)
+    return lost_readings(deflection, force)
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

@@ -261,6 +261,17 @@ def test_one_sample_far_off_is_an_outlier_also_at_an_end(place: int) -> None:
     assert np.flatnonzero(spikes(with_lone(**{f"at_{place}": -40.0}))).tolist() == [place]
 
 
+def test_an_outlier_is_what_the_noise_of_all_samples_does_not_show() -> None:
+    """By chance at most one sample in a hundred recordings is taken for one; with 3, that has a probability of 2 %.
+
+    The mean of both differences of 8 N has a deviation of 1.2 N, and the limit is 5.4 N.
+    """
+    noises = np.random.default_rng(5).normal(size=(100, 1000))
+    assert sum(int(spikes(noise).sum()) for noise in noises) <= 3
+    noises[:, 500] += 8.0
+    assert np.mean([spikes(noise)[500] for noise in noises]) > 0.85
+
+
 def test_noise_and_a_steep_misfit_have_no_outliers() -> None:
     assert not spikes(with_lone()).any()
     steep = 40.0 * np.arange(1000.0) + with_lone()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from house_form import write_rows
 from tirelab.recordings.choices import Choices
-from tirelab.recordings.jumps import jump_doubt
+from tirelab.recordings.jumps import jump_doubt, lost_readings
 from tirelab.recordings.recording import understand
 
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -55,3 +55,36 @@ def test_the_doubt_names_the_row(tmp_path: Path) -> None:
 )
 def test_one_run_is_not_doubted(deflection: np.ndarray) -> None:
     assert jump_doubt(deflection) == ()
+
+
+def lost_at(*samples: int, value: float = 0.0) -> np.ndarray:
+    read = CYCLES.copy()
+    read[list(samples)] = value
+    return read
+
+
+def test_readings_that_are_there_again_in_the_next_sample_were_lost() -> None:
+    """Of a sine of 5 mm at 1 Hz, read at 100 Hz, no step is over 0.32 mm; two lost ones may enclose a good one."""
+    force = 100.0 * CYCLES
+    assert lost_readings(CYCLES, force).size == 0
+    assert lost_readings(lost_at(222, 525, 527), force).tolist() == [222, 525, 527]
+    assert lost_readings(lost_at(222, value=-0.02), force).tolist() == [222]
+
+
+def test_what_the_force_follows_or_stays_or_is_frequent_was_not_lost() -> None:
+    tapped = lost_at(222, 525)
+    assert lost_readings(tapped, 100.0 * tapped).size == 0
+    assert lost_readings(lost_at(222, 223, 224), CYCLES).size == 0
+    often = lost_at(*range(20, 1980, 12))
+    assert lost_readings(often, CYCLES).size == 0
+    stepped = np.where(TIME % 2.0 < 1.0, 0.0, 5e-3)
+    assert lost_readings(stepped, CYCLES).size == 0
+
+
+def test_a_row_whose_deflection_was_lost_is_skipped_and_named(tmp_path: Path) -> None:
+    read = 1e3 * lost_at(222, 525)
+    path = write_rows(tmp_path / "a.csv", "time [s],deflection [mm],force [N]", TIME, read, 1e5 * CYCLES)
+    found = understand(path, Choices(part=True)).recording
+    (said,) = [note for note in found.notes if "lost" in note]
+    assert said.endswith(": row 224, row 527")  # the header is row 1
+    assert len(found) == TIME.size - 2
