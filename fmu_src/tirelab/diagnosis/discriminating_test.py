@@ -1,10 +1,11 @@
-"""The discriminating test: the waveform on which two fitted models differ most, after a refit of the alternative.
+"""The discriminating test: the waveform on which two fitted models differ most, after a refit of one of them.
 
 For every waveform that the rig can drive, both tires are simulated. The part of their difference that a refit of the
-alternative's own parameters could follow is projected out (a T-optimal design, Atkinson & Fedorov 1975). The rest is
-judged as in a diagnosis, by its log likelihood under the noise and the usual form errors of the accepted effects on
-that waveform (`selection.search`). With the noise alone, a test would count as decisive whose difference a slightly
-wrong form causes as well.
+alternative's own parameters could follow is projected out (a T-optimal design, Atkinson & Fedorov 1975). Where the
+alternative is the accepted set and one effect more, it follows the accepted one exactly, without that effect: then the
+accepted model is refitted to the alternative. The rest is judged as in a diagnosis, by its log likelihood under the
+noise and the usual form errors of the effects on that waveform (`selection.search`). With the noise alone, a test would
+count as decisive whose difference a slightly wrong form causes as well.
 """
 
 from __future__ import annotations
@@ -51,7 +52,8 @@ class DiscriminatingTest:
 
     between: the two sets; gain: expected log likelihood ratio; separation: expected distance in units of the noise, all
     samples together; typical: root mean square distance of one sample in units of the noise; missed: root mean square
-    of the form errors of the accepted effects, in the same unit; ground: whether the test is on a surface
+    of the form errors of the effects of the set that is not refitted, in the same unit; ground: whether the test is on
+    a surface
     """
 
     test: Test
@@ -109,25 +111,28 @@ def discriminate(
 ) -> DiscriminatingTest:
     """Return the test within `limits` that distinguishes the two fitted models best.
 
-    noise [N]: of one sample. The alternative may follow the accepted model with its free parameters.
+    noise [N]: of one sample. The alternative may follow the accepted model with its free parameters; an alternative
+    that has all effects of the accepted model and more is followed by that model.
     """
     best: DiscriminatingTest | None = None
     radii = alternative.radii
     between = (accepted.names, alternative.names)
+    contains = set(accepted.names) < set(alternative.names)
+    true, refitted = (alternative, accepted) if contains else (accepted, alternative)
     known = [r for r in radii if r in (limits.surfaces or radii)] or list(limits.surfaces)
     surfaces = known if len(known) == 1 else [known[0], known[-1]]
     for name, waveform in WAVEFORMS.items():
         for radius in surfaces:
             path = waveform(limits)
             test = Test(name, sample_times(limits), path, np.full(path.size, radius))
-            difference = simulate(accepted.tire, test) - simulate(alternative.tire, test)
-            sensitivities = alternative.sensitivities(test)
+            difference = simulate(true.tire, test) - simulate(refitted.tire, test)
+            sensitivities = refitted.sensitivities(test)
             if sensitivities.shape[1]:
                 difference = (
                     difference - sensitivities @ np.linalg.lstsq(sensitivities, difference, rcond=1e-8)[0]
                 )
             typical = float(np.sqrt(np.mean(difference**2))) / noise
-            missed = accepted.missed(test) / noise
+            missed = true.missed(test) / noise
             gain = expected_gain(path.size, typical, missed)
             if best is None or gain > best.gain:
                 separation = typical * float(np.sqrt(path.size))

@@ -7,7 +7,17 @@ import unicodedata
 
 FOREIGN: dict[str, tuple[str, ...]] = {
     "time": (
-        *("zeit", "testzeit", "prufzeit", "pruefzeit", "messzeit", "versuchszeit", "laufzeit", "zeitstempel"),
+        *(
+            "zeit",
+            "gesamtzeit",
+            "testzeit",
+            "prufzeit",
+            "pruefzeit",
+            "messzeit",
+            "versuchszeit",
+            "laufzeit",
+            "zeitstempel",
+        ),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),

@@ -97,6 +97,16 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
     assert fitted(6.0).sufficient
 
 
+def test_one_effect_more_is_decided_by_what_the_smaller_set_cannot_follow() -> None:
+    """20 N at every deflection: friction cannot follow it, whichever of the two sets was accepted."""
+    more = model_of({**SLIPPING, "force_offset": {"offset": 20.0}})
+    added, left_out = (discriminate(*pair, 6.0, Limits()) for pair in ((friction(), more), (more, friction())))
+    assert added.sufficient
+    assert added.typical == pytest.approx(left_out.typical)
+    assert added.between == (friction().names, more.names)
+    assert "It decides whether the force offset acts: " in added.sentence
+
+
 def test_it_is_driven_on_a_recorded_surface_that_can_be_mounted():
     limits = Limits(deepest=0.02, fastest=0.1, longest=60.0, surfaces=(-0.381, 0.254))
     assert set(discriminate(viscous(), friction(-0.381), 6.0, limits).test.surface_radius) == {-0.381}
