@@ -201,7 +201,7 @@ def spikes(misfit: FloatArray) -> BoolArray:
 
 
 def are_rare(lone: BoolArray) -> bool:
-    """Whether the number of outliers is compatible with a frequency of RARE."""
+    """Whether the number of outliers, or of turns (n,) with one, is compatible with a frequency of RARE."""
     return bool(binom.sf(int(lone.sum()) - 1, lone.size, RARE) > BY_CHANCE)
 
 

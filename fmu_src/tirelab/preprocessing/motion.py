@@ -367,7 +367,7 @@ def followed_turns(misfit: FloatArray, resolved: BoolArray, noise: float) -> Boo
     misfit.
     """
     found = np.zeros(misfit.size, dtype=bool)
-    for begin, end in _runs(~resolved):
+    for begin, end in runs(~resolved):
         if begin < 2 or end > misfit.size - 2:
             continue
         before, after = misfit[begin - 2 : begin], misfit[end : end + 2]
@@ -382,7 +382,7 @@ def through_turns(
 ) -> tuple[FloatArray, FloatArray]:
     """Return rate [m/s] and acceleration [m/s^2] with a rate that changes linearly within each of the `turns`."""
     rate, acceleration = rate.copy(), acceleration.copy()
-    for begin, end in _runs(turns):
+    for begin, end in runs(turns):
         whole = slice(begin - 1, end + 1)
         ends = time[[begin - 1, end]], rate[[begin - 1, end]]
         rate[whole] = np.interp(time[whole], *ends)
@@ -390,7 +390,7 @@ def through_turns(
     return rate, acceleration
 
 
-def _runs(inside: BoolArray) -> list[tuple[int, int]]:
+def runs(inside: BoolArray) -> list[tuple[int, int]]:
     """Return begin and end of each run of samples `inside`."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]])))
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -44,8 +44,8 @@ NEGLIGIBLE = 0.05
 """Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior."""
 
 STANDS_OUT = 8.0
-"""Noise standard deviations beyond which the first or the last reading is an outlier; a gauge whose reading stays within
-so many stands still."""
+"""Noise standard deviations beyond which the first or the last reading is an outlier; a gauge whose reading stays
+within so many stands still."""
 
 FEWEST_EVENTS = 10
 """Fewest events that are not taken for chance: samples of a hold, changes that the next sample undoes, memories of

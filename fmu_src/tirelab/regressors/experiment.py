@@ -21,7 +21,7 @@ from radialtire.model import READING_NOISE
 
 from ..preprocessing.data_checks import are_rare, compared, spikes
 from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_step
-from ..preprocessing.motion import Motion, followed_turns, motion_of, through_turns
+from ..preprocessing.motion import Motion, followed_turns, motion_of, runs, through_turns
 from ..preprocessing.noise import (
     SHARE_OF_STEP,
     STILL,
@@ -149,7 +149,7 @@ def experiment_in_blocks(
     reading = reading or _noise_along(moved, misfit, interval)
     lone = spikes(misfit)
     turns = followed_turns(misfit, motion.resolved, reading.level)
-    turns &= ~(lone & are_rare(lone[turns]))
+    turns &= ~(lone & are_rare(np.array([lone[begin:end].any() for begin, end in runs(turns)], dtype=bool)))
     resolved = motion.resolved & ~lone
     blocks = _blocks(recording.time, motion, resolved, sizes, reading)
     averaged = _averaged(moved, turns, blocks)

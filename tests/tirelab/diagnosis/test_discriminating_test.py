@@ -100,7 +100,9 @@ def test_the_same_force_under_other_names_cannot_be_told_apart():
 def test_one_effect_more_is_decided_by_what_the_smaller_set_cannot_follow() -> None:
     """20 N at every deflection: friction cannot follow it, whichever of the two sets was accepted."""
     more = model_of({**SLIPPING, "force_offset": {"offset": 20.0}})
-    added, left_out = (discriminate(*pair, 6.0, Limits()) for pair in ((friction(), more), (more, friction())))
+    added, left_out = (
+        discriminate(*pair, 6.0, Limits()) for pair in ((friction(), more), (more, friction()))
+    )
     assert added.sufficient
     assert added.typical == pytest.approx(left_out.typical)
     assert added.between == (friction().names, more.names)
