@@ -196,7 +196,9 @@ def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
 
 
 def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
-    """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
+    """Return the noise whose level stays constant over growing lags, without what repeats; None where none does, or
+    none without what repeats.
+    """
     last = _plateau(levels.values)
     if last == 0:
         return None
@@ -206,10 +208,13 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     if levels.oscillates(found):
         return Noise(min(levels.values), 1)
     visits = _seen_visits(driven, found.memory, levels.lags[-1], levels.slow)
-    between = ([_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits)
-    return min(
-        (found, *(_noise_of_level(own, _plateau(own)) for own in between)), key=lambda noise: noise.level
-    )
+    noises = [found]
+    for v in visits:
+        own = [_level_between(levels.residual, lag, *v) for lag in levels.lags]
+        if _plateau(own) == 0:
+            return None
+        noises.append(_noise_of_level(own, _plateau(own)))
+    return min(noises, key=lambda noise: noise.level)
 
 
 def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Noise]:

@@ -171,6 +171,16 @@ def test_filtered_noise_does_not_come_again(motion: FloatArray) -> None:
     assert taken <= 5
 
 
+def test_a_memory_that_visits_do_not_show_is_seen_by_the_whole_variation() -> None:
+    """A slow and a quick sine come by each place at many rates: the levels between visits stay constant by chance."""
+    time = np.arange(6000)
+    motion = 0.01 * (1.0 - np.cos(2.0 * np.pi * time / 1000.0)) + 0.003 * np.sin(2.0 * np.pi * time / 87.0)
+    for seed in range(20):
+        white = np.random.default_rng(seed).standard_normal(12_000)
+        noise = lfilter(*butter(2, 0.121), white)[6000:]
+        assert noise_beside(noise / np.std(noise), motion).level == pytest.approx(1.0, rel=0.2)
+
+
 def test_a_quick_part_does_not_hide_the_memory_that_a_slow_part_shows() -> None:
     """Of the last quarter a cycle has 24 samples; a memory of nine shows over lags of 32 and more."""
     noise = lfilter(*butter(2, 0.1), WHITE)
