@@ -78,6 +78,7 @@ DERIVED = (
     "preprocessing/motion.UNUSED",
     "preprocessing/motion.WEIGHT_ROUNDS",
     "preprocessing/motion.WINDOW",
+    "preprocessing/noise.FEWEST_IN_STATE",
     "preprocessing/noise.LONGEST_PHASE",
     "preprocessing/noise.OF_THIRD",
     "preprocessing/noise.SHARE_OF_STEP",

@@ -93,7 +93,7 @@ def diagnose(
     explanation, validation = accepted.explanation, accepted.validation
     fit = _errors(data, explanation, validation)
     remainder = _remainder(data, explanation, fit.noise)
-    unexplained = _unexplained(data, explanation.left, remainder, levels)
+    unexplained = _unexplained(data, explanation.left, remainder, explanation.noises)
     models = residual_models(unexplained, data.samples, explanation.residuals, validation)
 
     grounds = grounds_of_verdict(explanation, validation, remainder, unexplained=bool(unexplained))
@@ -105,7 +105,7 @@ def diagnose(
         fit = replace(fit, not_named=_not_named(candidates, validate))
     located = law_corrected(fitted, data.before, explanation.model.baseline, explanation.model.tire)
     noise = None if unexplained else explanation.residuals
-    where = data.shown(localize(fitted, data.samples, located, levels, noise))
+    where = data.shown(localize(fitted, data.samples, located, explanation.noises, noise))
 
     motions = [e.motion for e in data.samples.experiments]
 
@@ -244,10 +244,10 @@ def _remainder(data: _Data, explanation: Explanation, noise: float) -> Remainder
 
 
 def _unexplained(
-    data: _Data, residuals: Sequence[FloatArray], remainder: Remainder, levels: Sequence[float]
+    data: _Data, residuals: Sequence[FloatArray], remainder: Remainder, noises: Sequence[FloatArray]
 ) -> tuple[str, ...]:
     """Return the coordinates on which an unexplained remainder depends; none where nothing is unexplained."""
-    places = data.shown(localize(data.recordings, data.samples, residuals, levels, residuals))
+    places = data.shown(localize(data.recordings, data.samples, residuals, noises, residuals))
     return tuple(by for by in unexplained_by(remainder, places) if data.timed or by not in OF_TIME)
 
 

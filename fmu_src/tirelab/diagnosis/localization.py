@@ -104,15 +104,16 @@ def localize(
     recordings: Sequence[Recorded],
     dataset: RawDataset,
     residuals: Sequence[FloatArray],
-    levels: Sequence[float],
+    noises: Sequence[FloatArray],
     left: Sequence[FloatArray] | None = None,
 ) -> tuple[Span, ...]:
     """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
 
-    levels [N]: noise floor of each recording; left [N]: residuals of a correction that explains everything: they are
-    noise, and their correlation gives the number of independent samples; None: the noise counts as white
+    noises (n,) [N]: noise floor of every sample of each recording; left [N]: residuals of a correction that explains
+    everything: they are noise, and their correlation gives the number of independent samples; None: the noise counts as
+    white
     """
-    samples = _samples(dataset, residuals, levels, left, compared(recordings))
+    samples = _samples(dataset, residuals, noises, left, compared(recordings))
     axes = [(axis, _bins(axis, samples)) for axis in axes_of(recordings, dataset, samples.kept)]
     looked_at = 3 * sum(sum(n * (n + 1) // 2 for n in np.diff(axis.parts)) for axis, _ in axes)
     # If the noise floor is too high, the densest span has more excess than all samples together.
@@ -170,20 +171,20 @@ class _Samples:
 def _samples(
     dataset: RawDataset,
     residuals: Sequence[FloatArray],
-    levels: Sequence[float],
+    noises: Sequence[FloatArray],
     left: Sequence[FloatArray] | None,
     followed: Sequence[BoolArray],
 ) -> _Samples:
     parts, kept = [], []
-    for record, residual, level, seen in zip(dataset.experiments, residuals, levels, followed, strict=True):
+    for record, residual, noise, seen in zip(dataset.experiments, residuals, noises, followed, strict=True):
         chosen = np.flatnonzero((seen & ~spikes(residual))[record.rows])
-        variance = np.full(chosen.size, level**2)
+        variance = noise[record.rows][chosen] ** 2
         own = residual[record.rows][chosen]
         excess = own**2 - variance
         parts.append((own, variance, excess, *_alike(record, chosen, (excess, own))))
         kept.append(chosen)
     own, variance, excess, alike, usual = (np.concatenate(values) for values in zip(*parts, strict=True))
-    together = [(np.ones(1), np.ones(1)) for _ in levels]
+    together = [(np.ones(1), np.ones(1)) for _ in noises]
     if left is not None:
         rows = zip(dataset.experiments, left, kept, strict=True)
         together = [_correlation(values[record.rows][chosen]) for record, values, chosen in rows]

@@ -48,8 +48,6 @@ from .ranking import MOST_WORK, Ranking, corrected, ranked, with_parts
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-
-
 Progress = Callable[[str], None]
 
 FIRST_PART = 0.5
@@ -113,6 +111,11 @@ class Explanation:
     def error(self) -> float:
         """RMS residual [N] of the set over all compared samples."""
         return self._rms(self.residuals)
+
+    @property
+    def noises(self) -> tuple[FloatArray, ...]:
+        """Noise floor [N] of every sample, one array for each recording."""
+        return self._samples.noises(self.model.fit.problem.dataset)
 
     @cached_property
     def left(self) -> tuple[FloatArray, ...]:

@@ -169,11 +169,9 @@ class Remainder:
 def remainder_of(fit: Fit) -> Remainder:
     """Return the remainder of a fitted set; each block counts with the number of its samples."""
     dataset = fit.problem.dataset
-    counts, sizes, noises, levels = np.array(
-        [(e.counts.sum(), e.size, e.noise, e.floor.level) for e in dataset.experiments]
-    ).T
+    counts, sizes, levels = np.array([(e.counts.sum(), e.size, e.floor.level) for e in dataset.experiments]).T
     samples = np.repeat(sizes, counts.astype(int))
-    variance = np.repeat(noises**2, counts.astype(int))
+    variance = dataset.gathered([e.noises**2 for e in dataset.experiments])
     left, missed = (
         max(float(samples @ (variance * (values**2 - 1.0)) / samples.sum()), 0.0)
         for values in (fit.residual, dataset.misfit)

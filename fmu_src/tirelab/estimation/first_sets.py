@@ -7,6 +7,7 @@ subtracted.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.noise import Driven, noise_of
+from ..preprocessing.noise import Driven, levels_by_state, noise_of, resting
 from ..preprocessing.samples import Recorded, surface_numbers
-from ..regressors.dataset import Dataset, Samples, dataset_of
+from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (
     LAW,
     Signature,
@@ -109,21 +110,53 @@ def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Da
     """Return the dataset with the noise of the blocks that the saturated model leaves.
 
     By how much that is more than the noise of the readings is no noise but what the recordings contradict each other,
-    or what no effect explains: it counts alike in all of them, or the one that is fitted best would count most.
+    or what no effect explains: it counts alike in all of them, or the one that is fitted best would count most. Within
+    a recording the noise may be another one while the tire rests; then the model is fitted again with that, since it
+    followed most of all what is loud.
     """
+    quiet = _left_by_saturated(dataset, signatures)
+    if all(
+        e.uneven == before.uneven for e, before in zip(quiet.experiments, dataset.experiments, strict=True)
+    ):
+        return quiet
+    return _left_by_saturated(quiet, [in_other_noise(s, dataset, quiet) for s in signatures])
+
+
+def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(_left_by_all(equations, dataset.misfit))
-    found = []
+    found, states = [], []
     for number, (e, own) in enumerate(zip(dataset.experiments, left, strict=True)):
         x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
         (surface,) = surface_numbers([e.surface_radius[e.counts]])
         driven = Driven(e.interval, x, rate, acceleration, surface)
         noise = noise_of(own, driven, partial(_left_in_one, equations, [r.size for r in left], number))
-        found.append(replace(noise, level=e.noise * max(noise.level, 1e-3)))
+        own_level, uneven = _by_state(e, own, e.noise * max(noise.level, 1e-3))
+        louder = own_level / (e.noise * max(noise.level, 1e-3))
+        found.append(replace(noise, level=own_level))
+        states.append((uneven, replace(e.floor, amplifier=louder * e.floor.amplifier)))
     read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
     more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
     shared = np.sqrt(np.minimum(levels, read) ** 2 + more)
-    return dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
+    quiet = dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
+    pairs = zip(quiet.experiments, states, strict=True)
+    return replace(quiet, experiments=tuple(replace(e, uneven=own, floor=floor) for e, (own, floor) in pairs))
+
+
+def _by_state(experiment: Experiment, left: FloatArray, level: float) -> tuple[float, tuple[float, float]]:
+    """Return the noise [N] of all counted blocks, and that of blocks at rest and of moving ones over it: a machine that
+    moves may be louder than one that rests.
+
+    left (m,): what is left of the counted blocks, in units of the noise; level [N]: of most of it. At rest the steps of
+    gauge and force err alike in neighbouring blocks, which no difference between them shows.
+    """
+    rests, before = resting(experiment.rate)[experiment.counts], experiment.uneven
+    parts = levels_by_state(left, rests, differ=before[0] != before[1])
+    at_rest, moving = (level * part * known for part, known in zip(parts, before, strict=True))
+    if at_rest < moving:
+        at_rest = max(at_rest, math.hypot(STEPS_LEFT * experiment.floor.steps, experiment.resting))
+    whole = size_of(np.where(rests, at_rest, moving))
+    return whole, (at_rest / whole, moving / whole)
 
 
 def _left_by_all(equations: NormalEquations, values: FloatArray) -> FloatArray:

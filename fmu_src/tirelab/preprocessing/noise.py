@@ -64,6 +64,9 @@ FEWEST_LAGS = 20
 """Fewest lags in a recording: the level of noise that is independent a lag apart is then known to a sixth. A kink is
 tried in each of as many parts of it."""
 
+FEWEST_IN_STATE = 5 * FEWEST_LAGS
+"""Fewest samples at rest, or moving: their noise is known to a tenth then, and a factor of STAYS is seen."""
+
 LONGEST_PHASE = float(2.0 * np.pi / 3.0)
 """Phase p [rad] of the motion over the longest lag. Third differences of a sine are (2 sin(p / 2))^3 times it, at this
 phase five times those over half the lag; a level that does not rise so much is that of noise."""
@@ -100,6 +103,26 @@ def white_level(residual: FloatArray) -> float:
     if residual.size < 8:
         return float(np.std(residual))
     return _level(_third_differences(residual, 1))
+
+
+def resting(rate: FloatArray) -> BoolArray:
+    """Return at which samples (n,) the tire rests; rate (n,) [m/s]."""
+    return np.asarray(np.abs(rate) <= STILL * float(np.abs(rate).max()))
+
+
+def levels_by_state(residual: FloatArray, rests: BoolArray, *, differ: bool = False) -> tuple[float, float]:
+    """Return the white parts of a residual (n,) while the tire rests and while it moves, over that of all samples; 1
+    and 1 where they are alike, or one of the two is hardly seen.
+
+    rests (n,): where it does; differ: whether they are known not to be alike
+    """
+    states = rests, ~rests
+    if min(int(state.sum()) for state in states) < FEWEST_IN_STATE:
+        return 1.0, 1.0
+    whole = max(white_level(residual), 1e-300)
+    at_rest, moving = (_level_of(residual, 1, state) / whole for state in states)
+    alike = at_rest <= STAYS * moving and moving <= STAYS * at_rest
+    return (1.0, 1.0) if alike and not differ else (at_rest, moving)
 
 
 Left = Callable[[FloatArray], FloatArray]

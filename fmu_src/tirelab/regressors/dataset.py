@@ -16,7 +16,7 @@ from radialtire.effect import PLACES
 from radialtire.model import READING_NOISE
 
 from ..preprocessing.motion import Motion, motion_of
-from ..preprocessing.noise import Noise
+from ..preprocessing.noise import Noise, resting
 from ..preprocessing.samples import Recorded, is_timed
 from ..simulation.kept_stages import KeptStages
 from ..simulation.simulate import SmoothedMotion, elastic_stage, simulate, smoothed_motion
@@ -112,7 +112,8 @@ class Dataset:
 
     def stacked(self, values: Sequence[FloatArray]) -> FloatArray:
         """Return forces (n,) or (n, k) [N] of each experiment in units of its noise, counted blocks in a row."""
-        return np.concatenate([v[e.counts] / e.noise for e, v in zip(self.experiments, values, strict=True)])
+        pairs = zip(self.experiments, values, strict=True)
+        return np.concatenate([(v.T / e.noises).T[e.counts] for e, v in pairs])
 
     def gathered(self, values: Sequence[FloatArray]) -> FloatArray:
         """Return any values (n,) of each experiment at the counted blocks in a row."""
@@ -146,7 +147,7 @@ class Dataset:
         return replace(self, experiments=tuple(changed))
 
     def with_noise(self, noises: Sequence[Noise]) -> Dataset:
-        """Return the dataset with another noise [N] of each averaged misfit."""
+        """Return the dataset with another noise [N] of each averaged misfit, that of its blocks in proportion."""
         pairs = zip(self.experiments, noises, strict=True)
         return replace(self, experiments=tuple(e.with_noise(noise) for e, noise in pairs))
 
@@ -209,6 +210,11 @@ class Samples:
         """Return the residuals [N] of a tire where it is given the noise-free deflection."""
         pairs = zip(self.recordings, self.motions, strict=True)
         return tuple(r.force - simulate(tire, m, m) for r, m in pairs)
+
+    def noises(self, dataset: Dataset) -> tuple[FloatArray, ...]:
+        """Return the noise floor [N] of every sample (n,), at rest and moving as in the blocks of the dataset."""
+        pairs = zip(self.motions, dataset.experiments, strict=True)
+        return tuple(e.floor.level * np.where(resting(m.rate), *e.uneven) for m, e in pairs)
 
     def left_out(self, dataset: Dataset, tire: TireModel) -> tuple[FloatArray, ...]:
         """Return the distortion [N] of `tire`'s response by averaging: its mean over the samples of a block minus the

@@ -31,6 +31,7 @@ from ..preprocessing.noise import (
     Scalar,
     noise_floor,
     noise_of,
+    resting,
 )
 from ..preprocessing.samples import Recorded, is_timed, surface_numbers
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
@@ -91,7 +92,8 @@ class Experiment:
 
     time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
     baseline [N]: force of the baseline tire there; misfit [N]: recorded force minus that of the baseline, averaged over
-    the block; counts: whether a block is compared; noise [N]: standard deviation of the noise of the averaged misfit
+    the block; counts: whether a block is compared; noise [N]: standard deviation of the noise of the averaged misfit,
+    of all blocks together; uneven: that of blocks at rest and of moving ones over it
     least_noise [N]: noise that the steps of the force reading cause at least; resting [N]: the part of it that
     neighbouring blocks have in common, where the force rests on a step for longer than a block
     floor: noise floor of the samples; gauge [m]: noise of the deflection reading; blocks: of the samples
@@ -119,11 +121,17 @@ class Experiment:
     reading: Noise
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
     left_out: FloatArray | float = 0.0
+    uneven: tuple[float, float] = (1.0, 1.0)
 
     @property
     def size(self) -> int:
         """Number of samples in a block."""
         return self.blocks.size
+
+    @property
+    def noises(self) -> FloatArray:
+        """Standard deviation of the noise of each block (n,) [N]."""
+        return self.noise * np.where(resting(self.rate), *self.uneven)
 
     def with_noise(self, noise: Noise) -> Experiment:
         """Return the experiment with another noise [N] of its averaged misfit."""

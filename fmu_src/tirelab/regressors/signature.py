@@ -249,7 +249,7 @@ def _mostly_below_form_error(
     signatures: Sequence[Signature], dataset: Dataset, apart: Callable[[FloatArray], float]
 ) -> frozenset[str]:
     """Return the effects of which most drawn responses [N] are `apart` by less than their form error."""
-    noise = dataset.gathered([np.full(e.time.size, e.noise) for e in dataset.experiments])
+    noise = dataset.gathered([e.noises for e in dataset.experiments])
 
     def usually(signature: Signature) -> float:
         return float(np.median([apart(f) / max(size_of(f), 1e-300) for f in signature.curves * noise]))
@@ -385,7 +385,7 @@ def _basis(deviations: FloatArray) -> FloatArray:
 def in_other_noise(signature: Signature, before: Dataset, after: Dataset) -> Signature:
     """Return a signature in units of the noise of another dataset of the same recordings."""
     pairs = zip(before.experiments, after.experiments, strict=True)
-    factor = np.concatenate([np.full(int(b.counts.sum()), b.noise / a.noise) for b, a in pairs])
+    factor = np.concatenate([(b.noises / a.noises)[b.counts] for b, a in pairs])
     curves = signature.curves * factor
     sizes = np.sqrt(np.mean(curves**2, axis=1)) if len(curves) else np.ones(0)
     unit = float(sizes.mean()) if sizes.size else float(np.sqrt(np.mean(factor**2)))

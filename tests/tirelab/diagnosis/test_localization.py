@@ -18,7 +18,7 @@ LEVEL = 5.0
 def places(drives, residuals, noises):
     """Return the places of residuals of which a correction that explains everything leaves the noises."""
     dataset = raw_dataset_of(drives, TireModel())
-    return localize(drives, dataset, residuals, [LEVEL] * len(drives), noises)
+    return localize(drives, dataset, residuals, [np.full(r.size, LEVEL) for r in residuals], noises)
 
 
 def noise(seed, samples, colour=0.0):
@@ -241,15 +241,30 @@ def test_places_are_those_of_the_physics_where_the_law_is_wrong_too():
     assert law_corrected([drive], before, believed, TireModel(effects=damped))[0] is before[0]
 
 
+def test_noise_that_is_louder_in_motion_is_no_place() -> None:
+    """Of noise ten times as large while the tire moves, every sample is judged by that of its own state."""
+    time = np.arange(0.0, 100.0, 0.02)
+    moves = time % 10.0 < 2.0
+    drive = read(
+        "holds", time, np.interp(time % 10.0, [0.0, 2.0], [0.0, 0.02]), np.zeros(time.size), 4, noise=0.0
+    )
+    along = np.where(moves, 10.0, 1.0) * LEVEL
+    own = along * np.random.default_rng(3).standard_normal(time.size)
+    dataset = raw_dataset_of([drive], TireModel())
+    found = [localize([drive], dataset, [own], [n], None) for n in (along, np.full(time.size, LEVEL))]
+    assert found[0] == ()
+    assert found[1] != ()
+
+
 def test_noise_that_wanders_is_no_place_where_the_correction_leaves_it():
     time, deflection, _ = ride(3)
     drive = read("ride", time, deflection, flat_force(deflection), 4, noise=0.0)
     dataset = raw_dataset_of([drive], TireModel())
-    found = {True: 0, False: 0}
+    found, level = {True: 0, False: 0}, [np.full(time.size, LEVEL)]
     for seed in range(10):
         own = noise(seed, time.size) + 0.4 * noise(100 + seed, time.size, colour=0.999)
         for known in found:
-            found[known] += bool(localize([drive], dataset, [own], [LEVEL], [own] if known else None))
+            found[known] += bool(localize([drive], dataset, [own], level, [own] if known else None))
     # 0.4 noises that last a thousand samples: eight correlation times to a recording, which a level does not tell.
     assert found[False] >= 8
     assert found[True] <= 1

@@ -34,6 +34,26 @@ def test_the_noise_is_that_beside_what_all_effects_together_explain() -> None:
     assert quiet.noise * np.sqrt(quiet.size) == pytest.approx(5.0, rel=0.2)
 
 
+def test_noise_that_is_louder_in_motion_is_that_of_moving_blocks() -> None:
+    """A tenth of the samples moves, under 20 N beside 1 N: together the root of 0.9 + 0.1 x 400 N^2."""
+    time = np.arange(0.0, 400.0, 0.1)
+    x = np.interp(time % 100.0, [0.0, 5.0, 50.0, 55.0, 100.0], [2e-3, 0.02, 0.02, 2e-3, 2e-3])
+    noise = np.where(np.gradient(x, time) ** 2 < 1e-8, 1.0, 20.0)
+    silent = Recording("holds", time, x, np.full(time.size, np.inf), np.zeros(time.size))
+    force = simulate(TireModel(), silent) + noise * np.random.default_rng(5).normal(size=time.size)
+    holds = replace(silent, force=force)
+    dataset = in_quiet_units(dataset_of([holds], TireModel()))
+    (e,) = dataset.experiments
+    assert e.size == 1
+    moves = np.abs(e.rate) > 1e-4
+    assert np.median(e.noises[moves]) == pytest.approx(20.0, rel=0.15)
+    assert np.median(e.noises[~moves]) == pytest.approx(1.0, rel=0.15)
+    assert e.floor.level == pytest.approx(np.sqrt(0.9 + 0.1 * 400.0), rel=0.15)
+    assert float(np.mean(dataset.misfit**2)) == pytest.approx(1.0, rel=0.2)
+    (along,) = samples_of([holds], TireModel()).noises(dataset)
+    assert np.median(along[noise == 20.0]) == pytest.approx(20.0, rel=0.15)
+
+
 def test_nothing_and_what_the_signatures_find_are_fitted_first() -> None:
     _, sets = first_of(damped(1, samples=2000))
     assert frozenset() in sets.fits

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
-from tirelab.preprocessing.noise import Driven, Noise, noise_floor, noise_of, white_level
+from tirelab.preprocessing.noise import (
+    Driven,
+    Noise,
+    levels_by_state,
+    noise_floor,
+    noise_of,
+    resting,
+    white_level,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -69,6 +77,20 @@ def test_a_place_that_comes_again_at_the_very_end_says_nothing_of_long_lags() ->
     noise = noise_beside(filtered, motion)
     assert noise.level == pytest.approx(np.sqrt(0.5), rel=0.1)
     assert noise.memory == 2
+
+
+def test_a_machine_may_be_louder_while_it_moves() -> None:
+    """The white part of both together lies between the two; where they are alike, or one is hardly seen, both are 1."""
+    rests = np.arange(8000) % 1000 < 900
+    at_rest, moving = levels_by_state(np.where(rests, 1.0, 7.0) * WHITE + SLOW, rests)
+    assert moving / at_rest == pytest.approx(7.0, rel=0.15)
+    assert at_rest <= 1.0 <= moving
+    assert levels_by_state(WHITE + SLOW, rests) == (1.0, 1.0)
+    assert levels_by_state(np.where(rests, 1.0, 7.0) * WHITE, np.arange(8000) > 50) == (1.0, 1.0)
+
+
+def test_a_tire_rests_where_its_speed_is_next_to_nothing() -> None:
+    assert resting(np.array([0.0, 1e-3, -0.1, 0.019, 1.0])).tolist() == [True, True, False, True, False]
 
 
 def test_white_noise_has_no_memory() -> None:
