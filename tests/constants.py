@@ -98,6 +98,7 @@ DERIVED = (
     "estimation/findings.DETERMINED",
     "estimation/findings.SENSITIVITY_STEP",
     "estimation/minimise.DAMPING",
+    "estimation/first_sets.LEAST_LEFT",
     "estimation/fit.FORM_SCALES",
     "estimation/fit.LAW_SCALES",
     "estimation/minimise.STEP",

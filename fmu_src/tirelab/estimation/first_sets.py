@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.noise import Driven, levels_by_state, noise_of, resting
+from ..preprocessing.noise import Driven, Noise, levels_by_state, noise_of, resting, white_level
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (
@@ -45,6 +45,10 @@ FloatArray = NDArray[np.float64]
 
 BEGUN = 3
 """Number of the likeliest sets of the search that are fitted first, in addition to the best one of each size."""
+
+LEAST_LEFT = 1e-3
+"""Least noise of what the saturated model leaves, over that of the readings: it may follow forces that rest on a step
+to the last digit."""
 
 
 def with_signatures(
@@ -119,10 +123,11 @@ def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Da
         e.uneven == before.uneven for e, before in zip(quiet.experiments, dataset.experiments, strict=True)
     ):
         return quiet
-    return _left_by_saturated(quiet, [in_other_noise(s, dataset, quiet) for s in signatures])
+    return _left_by_saturated(quiet, [in_other_noise(s, dataset, quiet) for s in signatures], white=True)
 
 
-def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature]) -> Dataset:
+def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, white: bool = False) -> Dataset:
+    """The same after one fit of the saturated model; white: whether the noise is known to have no memory."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(_left_by_all(equations, dataset.misfit))
     found, states = [], []
@@ -130,10 +135,11 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature]) -> Dat
         x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
         (surface,) = surface_numbers([e.surface_radius[e.counts]])
         driven = Driven(e.interval, x, rate, acceleration, surface)
-        noise = noise_of(own, driven, partial(_left_in_one, equations, [r.size for r in left], number))
-        own_level, uneven = _by_state(e, own, e.noise * max(noise.level, 1e-3))
-        louder = own_level / (e.noise * max(noise.level, 1e-3))
-        found.append(replace(noise, level=own_level))
+        others = partial(_left_in_one, equations, [r.size for r in left], number)
+        noise = Noise(white_level(own), 1) if white else noise_of(own, driven, others)
+        noise = replace(noise, level=e.noise * max(noise.level, LEAST_LEFT))
+        level, uneven, louder = _by_state(e, own, noise)
+        found.append(replace(noise, level=level))
         states.append((uneven, replace(e.floor, amplifier=louder * e.floor.amplifier)))
     read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
     more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
@@ -143,20 +149,27 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature]) -> Dat
     return replace(quiet, experiments=tuple(replace(e, uneven=own, floor=floor) for e, (own, floor) in pairs))
 
 
-def _by_state(experiment: Experiment, left: FloatArray, level: float) -> tuple[float, tuple[float, float]]:
-    """Return the noise [N] of all counted blocks, and that of blocks at rest and of moving ones over it: a machine that
-    moves may be louder than one that rests.
+def _by_state(
+    experiment: Experiment, left: FloatArray, noise: Noise
+) -> tuple[float, tuple[float, float], float]:
+    """Return the noise [N] of all counted blocks, that of blocks at rest and of moving ones over it, and by how much
+    all samples are louder than most of them: a machine that moves may be louder than one that rests.
 
-    left (m,): what is left of the counted blocks, in units of the noise; level [N]: of most of it. At rest the steps of
-    gauge and force err alike in neighbouring blocks, which no difference between them shows.
+    left (m,): what is left of the counted blocks, in units of the noise; noise [N]: of most of it; only of a white one
+    differences between neighbours show both parts. At rest the steps of gauge and force err alike in neighbouring
+    blocks, which no difference shows.
     """
     rests, before = resting(experiment.rate)[experiment.counts], experiment.uneven
-    parts = levels_by_state(left, rests, differ=before[0] != before[1])
-    at_rest, moving = (level * part * known for part, known in zip(parts, before, strict=True))
+    parts = levels_by_state(left, rests, LEAST_LEFT, differ=before[0] != before[1])
+    if noise.memory > 1 or parts == (1.0, 1.0):
+        return noise.level, before, 1.0
+    own = [part * known for part, known in zip(parts, before, strict=True)]
+    louder = max(white_level(left) * size_of(np.where(rests, *own)), 1.0)
+    at_rest, moving = (noise.level * part for part in own)
     if at_rest < moving:
         at_rest = max(at_rest, math.hypot(STEPS_LEFT * experiment.floor.steps, experiment.resting))
     whole = size_of(np.where(rests, at_rest, moving))
-    return whole, (at_rest / whole, moving / whole)
+    return whole, (at_rest / whole, moving / whole), louder
 
 
 def _left_by_all(equations: NormalEquations, values: FloatArray) -> FloatArray:

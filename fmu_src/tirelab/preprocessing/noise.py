@@ -110,17 +110,19 @@ def resting(rate: FloatArray) -> BoolArray:
     return np.asarray(np.abs(rate) <= STILL * float(np.abs(rate).max()))
 
 
-def levels_by_state(residual: FloatArray, rests: BoolArray, *, differ: bool = False) -> tuple[float, float]:
+def levels_by_state(
+    residual: FloatArray, rests: BoolArray, least: float, *, differ: bool = False
+) -> tuple[float, float]:
     """Return the white parts of a residual (n,) while the tire rests and while it moves, over that of all samples; 1
     and 1 where they are alike, or one of the two is hardly seen.
 
-    rests (n,): where it does; differ: whether they are known not to be alike
+    rests (n,): where it does; least: that counts; differ: whether they are known not to be alike
     """
     states = rests, ~rests
     if min(int(state.sum()) for state in states) < FEWEST_IN_STATE:
         return 1.0, 1.0
-    whole = max(white_level(residual), 1e-300)
-    at_rest, moving = (_level_of(residual, 1, state) / whole for state in states)
+    whole = max(white_level(residual), least)
+    at_rest, moving = (max(_level_of(residual, 1, state), least) / whole for state in states)
     alike = at_rest <= STAYS * moving and moving <= STAYS * at_rest
     return (1.0, 1.0) if alike and not differ else (at_rest, moving)
 

@@ -82,11 +82,18 @@ def test_a_place_that_comes_again_at_the_very_end_says_nothing_of_long_lags() ->
 def test_a_machine_may_be_louder_while_it_moves() -> None:
     """The white part of both together lies between the two; where they are alike, or one is hardly seen, both are 1."""
     rests = np.arange(8000) % 1000 < 900
-    at_rest, moving = levels_by_state(np.where(rests, 1.0, 7.0) * WHITE + SLOW, rests)
+    at_rest, moving = levels_by_state(np.where(rests, 1.0, 7.0) * WHITE + SLOW, rests, 1e-3)
     assert moving / at_rest == pytest.approx(7.0, rel=0.15)
     assert at_rest <= 1.0 <= moving
-    assert levels_by_state(WHITE + SLOW, rests) == (1.0, 1.0)
-    assert levels_by_state(np.where(rests, 1.0, 7.0) * WHITE, np.arange(8000) > 50) == (1.0, 1.0)
+    assert levels_by_state(WHITE + SLOW, rests, 1e-3) == (1.0, 1.0)
+    assert levels_by_state(np.where(rests, 1.0, 7.0) * WHITE, np.arange(8000) > 50, 1e-3) == (1.0, 1.0)
+
+
+def test_a_force_that_rests_on_a_step_has_the_least_noise_there() -> None:
+    rests = np.arange(8000) % 1000 < 900
+    at_rest, moving = levels_by_state(np.where(rests, 0.0, WHITE), rests, 0.01)
+    assert at_rest == 1.0
+    assert moving == pytest.approx(100.0, rel=0.15)
 
 
 def test_a_tire_rests_where_its_speed_is_next_to_nothing() -> None:
