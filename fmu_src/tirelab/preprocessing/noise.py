@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from .spread import trimmed_sigma
+from .spread import TRIMMED, trimmed_sigma
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -38,14 +38,13 @@ IntArray = NDArray[np.intp]
 
 
 STILL = 0.02
-"""Speed over its root mean square below which the tire rests."""
+"""Speed over its root mean square, or its largest, below which the tire rests."""
 
 NEGLIGIBLE = 0.05
 """Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior."""
 
 STANDS_OUT = 8.0
-"""Noise standard deviations beyond which the first or the last reading is an outlier; a gauge whose reading stays
-within so many stands still."""
+"""Standard deviations beyond which a first or last reading is an outlier; a gauge that stays within them stands."""
 
 FEWEST_EVENTS = 10
 """Fewest events that are not taken for chance: samples of a hold, changes that the next sample undoes, memories of
@@ -113,16 +112,19 @@ def resting(rate: FloatArray) -> BoolArray:
 def levels_by_state(
     residual: FloatArray, rests: BoolArray, least: float, *, differ: bool = False
 ) -> tuple[float, float]:
-    """Return the white parts of a residual (n,) while the tire rests and while it moves, over that of all samples; 1
-    and 1 where they are alike, or one of the two is hardly seen.
-
-    rests (n,): where it does; least: that counts; differ: whether they are known not to be alike
+    """Return the white parts of a residual (n,) while the tire rests (n,) and while it moves, over that of all samples;
+    1 and 1 where they are alike, one is hardly seen, or one follows the motion, so that it grows with the lag. least:
+    that counts; differ: whether they are known not to be alike
     """
-    states = rests, ~rests
-    if min(int(state.sum()) for state in states) < FEWEST_IN_STATE:
+    levels = [
+        [max(_level_of(residual, lag, state), least) for lag in (1, 2, 4)]
+        for state in (rests, ~rests)
+        if state.sum() >= FEWEST_IN_STATE
+    ]
+    if len(levels) < 2 or any(any(_rises(own)) for own in levels):
         return 1.0, 1.0
     whole = max(white_level(residual), least)
-    at_rest, moving = (max(_level_of(residual, 1, state), least) / whole for state in states)
+    at_rest, moving = (own[0] / whole for own in levels)
     alike = at_rest <= STAYS * moving and moving <= STAYS * at_rest
     return (1.0, 1.0) if alike and not differ else (at_rest, moving)
 
@@ -198,12 +200,18 @@ class _Levels:
     values: tuple[float, ...]
 
     def oscillates(self, noise: Noise) -> bool:
-        """Whether differences over the memory of a noise are larger than over longer lags, or than the whole variation.
-
-        The level of third differences of a sine is up to 1.8 times its own at one lag, and next to none at others.
+        """Whether differences over the memory of a noise are larger than over longer lags, or than the whole variation,
+        or fall with the lag by more than they are known to (TRIMMED) and than counts as constant: the level of third
+        differences of a sine is up to 1.8 times its own at one lag, and next to none at others.
         """
-        level = _level_of(self.residual, noise.memory, self.slow)
-        return level > STAYS**2 * min(noise.level, _local_rms(self.residual, noise.memory, self.slow))
+        most = min(noise.level, _local_rms(self.residual, noise.memory, self.slow))
+        if _level_of(self.residual, noise.memory, self.slow) > STAYS**2 * most:
+            return True
+        # Over lags that are powers of two a period of twelve has one level.
+        lags = np.array(sorted({*self.lags, *(3 * lag // 2 for lag in self.lags[1:-1])}))
+        levels = np.array([_level_of(self.residual, lag, self.slow) for lag in lags.tolist()])
+        known = 1.0 - TRIMMED / np.sqrt(2.0 * np.maximum(self.slow.sum() / lags, 1.0))
+        return bool(np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels)))
 
 
 def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
@@ -233,12 +241,10 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     if levels.oscillates(found):
         return Noise(min(levels.values), 1)
     visits = _seen_visits(driven, found.memory, levels.lags[-1], levels.slow)
-    noises = [found]
-    for v in visits:
-        own = [_level_between(levels.residual, lag, *v) for lag in levels.lags]
-        if _plateau(own) == 0:
-            return None
-        noises.append(_noise_of_level(own, _plateau(own)))
+    between = [[_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits]
+    if not all(map(_plateau, between)):
+        return None
+    noises = (found, *(_noise_of_level(own, _plateau(own)) for own in between))
     return min(noises, key=lambda noise: noise.level)
 
 

@@ -87,6 +87,10 @@ def test_a_machine_may_be_louder_while_it_moves() -> None:
     assert at_rest <= 1.0 <= moving
     assert levels_by_state(WHITE + SLOW, rests, 1e-3) == (1.0, 1.0)
     assert levels_by_state(np.where(rests, 1.0, 7.0) * WHITE, np.arange(8000) > 50, 1e-3) == (1.0, 1.0)
+    swings = np.where(rests, 0.0, 9.0) * np.sin(
+        np.arange(8000) / 5.0
+    )  # a force that follows the motion is no noise
+    assert levels_by_state(WHITE + swings, rests, 1e-3) == (1.0, 1.0)
 
 
 def test_a_force_that_rests_on_a_step_has_the_least_noise_there() -> None:
@@ -134,6 +138,15 @@ def test_a_ripple_that_comes_again_at_the_same_deflection_is_no_noise() -> None:
     ripple = np.sin(2.0 * np.pi * MOTION / 1e-3)
     found = noise_beside(0.1 * WHITE + ripple, MOTION)
     assert found.level < 0.2
+
+
+@pytest.mark.parametrize("period", [11.85, 12.0, 12.2])
+def test_an_oscillation_that_swells_is_no_noise(period: float) -> None:
+    """Its differences fall again over some longer lag, as those of a noise with a memory never do."""
+    time = np.arange(15_000)
+    swelling = (1.0 + 0.5 * np.sin(time / 700.0)) * 50.0 * np.sin(2.0 * np.pi * time / period + 5.0)
+    white = np.random.default_rng(1).normal(size=time.size)
+    assert noise_beside(swelling + white, 0.02 * np.sin(2.0 * np.pi * time / 150.0)).level < 5.0
 
 
 def test_what_comes_again_with_the_other_sign_on_the_way_back_is_no_noise() -> None:
