@@ -186,16 +186,16 @@ def spikes(misfit: FloatArray) -> BoolArray:
     than white noise makes one of all samples differ (BY_CHANCE).
 
     Both differences are larger than a limit only if their mean is, whose variance is 1.5 times that of a sample. The
-    first and the last one have one neighbour: they differ from it by far more than that one from the next.
+    first and the last one have one neighbour: they differ from it by as much more than the misfit rises there.
     """
     level = white_level(misfit)
-    least = float(np.sqrt(1.5) * norm.isf(BY_CHANCE / (2.0 * misfit.size))) * level
+    far = float(np.sqrt(1.5) * norm.isf(BY_CHANCE / (2.0 * misfit.size)))
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
-    lone[1:-1] = (np.abs(before) > least) & (np.abs(after) > least) & (before * after > 0.0)
-    for end, near, next_one in ((0, 1, 2), (-1, -2, -3)):
-        step, usual = abs(misfit[end] - misfit[near]), abs(misfit[near] - misfit[next_one])
-        lone[end] = step > STANDS_OUT * max(level, float(usual))
+    lone[1:-1] = (np.abs(before) > far * level) & (np.abs(after) > far * level) & (before * after > 0.0)
+    for end, near, inwards in ((0, 1, misfit), (-1, -2, misfit[::-1])):
+        step, *others = np.diff(inwards[: FEWEST_STEPS + 1]).tolist()
+        lone[end] = not lone[near] and abs(step) > far * max(level, abs(float(np.median(others))))
     # Frequent ones are noise of a part of the recording, such as the steps of a gauge while the tire moves.
     return lone if lone.mean() < RARE else np.zeros_like(lone)
 

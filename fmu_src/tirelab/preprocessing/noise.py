@@ -44,7 +44,7 @@ NEGLIGIBLE = 0.05
 """Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior."""
 
 STANDS_OUT = 8.0
-"""Standard deviations beyond which a first or last reading is an outlier; a gauge that stays within them stands."""
+"""Noise standard deviations: a gauge whose reading stays within them stands still, what is beyond them is no noise."""
 
 FEWEST_EVENTS = 10
 """Fewest events that are not taken for chance: samples of a hold, changes that the next sample undoes, memories of

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,7 +129,7 @@ class Experiment:
         """Number of samples in a block."""
         return self.blocks.size
 
-    @property
+    @cached_property
     def noises(self) -> FloatArray:
         """Standard deviation of the noise of each block (n,) [N]."""
         return self.noise * np.where(resting(self.rate), *self.uneven)
