@@ -82,6 +82,7 @@ DERIVED = (
     "preprocessing/noise.LONGEST_PHASE",
     "preprocessing/noise.OF_THIRD",
     "preprocessing/noise.SHARE_OF_STEP",
+    "preprocessing/noise.STATE_LAGS",
     "preprocessing/noise.STAYS",
     "preprocessing/spread.MEDIAN_TO_SIGMA",
     "preprocessing/spread.TRIMMED",

@@ -164,7 +164,9 @@ def _by_state(
     if noise.memory > 1 or parts == (1.0, 1.0):
         return noise.level, before, 1.0
     own = [part * known for part, known in zip(parts, before, strict=True)]
-    louder = max(white_level(left) * size_of(np.where(rests, *own)), 1.0)
+    lasting = np.gradient(experiment.time)[experiment.counts]  # a long rest has few blocks for its samples
+    usual = float(np.average(np.where(rests, *own) ** 2, weights=lasting))
+    louder = max(white_level(left) * math.sqrt(usual), 1.0)
     at_rest, moving = (noise.level * part for part in own)
     if at_rest < moving:
         at_rest = max(at_rest, math.hypot(STEPS_LEFT * experiment.floor.steps, experiment.resting))

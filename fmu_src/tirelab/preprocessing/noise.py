@@ -64,7 +64,8 @@ FEWEST_LAGS = 20
 tried in each of as many parts of it."""
 
 FEWEST_IN_STATE = 5 * FEWEST_LAGS
-"""Fewest samples at rest, or moving: their noise is known to a tenth then, and a factor of STAYS is seen."""
+STATE_LAGS = (1, 2, 4, 8, 16)
+"""Fewest samples at rest, or moving, whose noise is then known to a tenth, and the lags over which it has to stay."""
 
 LONGEST_PHASE = float(2.0 * np.pi / 3.0)
 """Phase p [rad] of the motion over the longest lag. Third differences of a sine are (2 sin(p / 2))^3 times it, at this
@@ -112,21 +113,19 @@ def resting(rate: FloatArray) -> BoolArray:
 def levels_by_state(
     residual: FloatArray, rests: BoolArray, least: float, *, differ: bool = False
 ) -> tuple[float, float]:
-    """Return the white parts of a residual (n,) while the tire rests (n,) and while it moves, over that of all samples;
-    1 and 1 where they are alike, one is hardly seen, or one follows the motion, so that it grows with the lag. least:
-    that counts; differ: whether they are known not to be alike
+    """Return the noise of a residual (n,) while the tire rests (n,) and while it moves, over its white part; 1 and 1
+    where their white parts are alike, one is hardly seen, or one keeps growing with the lag, as what follows a motion.
+    least: that counts; differ: whether they are known not to be alike
     """
-    levels = [
-        [max(_level_of(residual, lag, state), least) for lag in (1, 2, 4)]
-        for state in (rests, ~rests)
-        if state.sum() >= FEWEST_IN_STATE
-    ]
-    if len(levels) < 2 or any(any(_rises(own)) for own in levels):
+    states = [state for state in (rests, ~rests) if state.sum() >= FEWEST_IN_STATE]
+    levels = [[max(_level_of(residual, lag, s), least) for lag in STATE_LAGS] for s in states]
+    if len(levels) < 2 or not all(map(_plateau, levels)):
         return 1.0, 1.0
-    whole = max(white_level(residual), least)
-    at_rest, moving = (own[0] / whole for own in levels)
-    alike = at_rest <= STAYS * moving and moving <= STAYS * at_rest
-    return (1.0, 1.0) if alike and not differ else (at_rest, moving)
+    white = [own[0] for own in levels]
+    if not differ and max(white) < STAYS**4 * min(white):
+        return 1.0, 1.0
+    at_rest, moving = (max(own) / max(white_level(residual), least) for own in levels)
+    return at_rest, moving
 
 
 Left = Callable[[FloatArray], FloatArray]
