@@ -63,11 +63,15 @@ def _alone(values: NDArray[np.float64]) -> NDArray[np.intp]:
     usual = float(np.partition(sizes, -1 - 2 * most)[-1 - 2 * most])
     likely = 1 + np.flatnonzero(back > LOST * usual)
     # Between two lost readings a good one stands as far from both: the median of five tells them apart.
-    away = [abs(float(values[i] - np.median(values[max(i - 2, 0) : i + 3]))) for i in likely]
-    far = np.minimum(away, back[likely - 1])
-    lost, order = nothing, np.argsort(-far, kind="stable")[:most]
-    for count, i in enumerate(order, start=1):
-        sizes[likely[i] - 1 : likely[i] + 1] = 0.0
-        if far[i] > LOST * sizes.max() > 0.0:
-            lost = likely[order[:count]]
-    return np.sort(lost)
+    around = values[np.clip(likely[:, None] + np.arange(-2, 3), 0, values.size - 1)]
+    far = np.minimum(np.abs(values[likely] - np.median(around, axis=1)), back[likely - 1])
+    order = np.argsort(-far, kind="stable")[:most]
+    # Each step goes with the first sample beside it that is left out; what stays then are the steps of higher rank.
+    rank = np.full(sizes.size, order.size)
+    for side in (likely[order] - 1, likely[order]):
+        np.minimum.at(rank, side, np.arange(order.size))
+    largest = np.zeros(order.size + 1)
+    np.maximum.at(largest, rank, sizes)
+    stays = np.maximum.accumulate(largest[::-1])[::-1][1:]
+    alone = np.flatnonzero((far[order] > LOST * stays) & (stays > 0.0))
+    return np.sort(likely[order[: alone[-1] + 1]]) if alone.size else nothing

@@ -25,7 +25,6 @@ from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_s
 from ..preprocessing.motion import Motion, followed_turns, motion_of, runs, through_turns
 from ..preprocessing.noise import (
     SHARE_OF_STEP,
-    STILL,
     Driven,
     Noise,
     NoiseFloor,
@@ -276,7 +275,7 @@ def _blocks(
 
 def _rest(time: FloatArray, rate: FloatArray) -> FloatArray:
     """Return for how long the tire has rested at each sample [s], 0 where it moves."""
-    moved = np.where(np.abs(rate) > STILL * float(np.abs(rate).max()), time, -np.inf)
+    moved = np.where(resting(rate), -np.inf, time)
     moved[0] = time[0]
     return np.asarray(time - np.maximum.accumulate(moved))
 
