@@ -167,6 +167,12 @@ def unit_of_column(header: Header, channel: str) -> str | None:
     return parts[1] if parts is not None and fits else None
 
 
+def bare_name(header: Header, unit: str) -> str:
+    """Return the name of a column in small letters, without one of these units behind it: `fz` of `Fz_N`."""
+    parts = name_and_unit(header.name.replace("_", " "))
+    return (parts[0] if parts is not None and measures(parts[1], unit) else header.name).lower()
+
+
 def says_absolute(header: Header) -> bool:
     """Whether the name of a pressure column says that it is absolute."""
     return bool({"abs", "absolute"} & set(_words(header.name).split()))

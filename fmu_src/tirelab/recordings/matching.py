@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from .channels import (
     CHANNELS,
     Channel,
+    bare_name,
     known_channel,
     may_be,
     may_be_counted,
@@ -140,6 +141,7 @@ def _matched(
             matches["time"] = Match(time_axis)
             continue
         found[channel.name] = _found(headers, channel, assigned)
+    found |= _on_axis_of_force(headers, found)
     trials = _trials(found)
     if trials > 1:
         found = _of_trial(origin, found, trials, trial)
@@ -202,6 +204,21 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
             break
     found = _without_counted_again(headers, found)
     return _in_fitting_units(headers, channel, found) if channel.required or len(found) == 1 else []
+
+
+def _on_axis_of_force(headers: Sequence[Header], found: Mapping[str, list[int]]) -> dict[str, list[int]]:
+    """Return what may be the deflection where x, y and z are axes: that along which the force acts, else all of them.
+
+    Beside y and z an x is no symbol of a deflection: of `x, y, z, Fz` the z belongs to the force.
+    """
+    of_axis = {bare_name(header, "m"): i for i, header in enumerate(headers)}
+    axes = [of_axis[letter] for letter in "xyz" if letter in of_axis]
+    if len(axes) < 2 or "deflection" not in found or set(found["deflection"]) - set(axes):
+        return {}
+    axes = _in_fitting_units(headers, next(c for c in CHANNELS if c.name == "deflection"), axes)
+    forces = {bare_name(headers[i], "N")[-1:] for i in found.get("force", ())}
+    along = [i for i in axes if bare_name(headers[i], "m") in forces]
+    return {"deflection": along if len(along) == 1 else axes}
 
 
 def _without_counted_again(headers: Sequence[Header], found: list[int]) -> list[int]:

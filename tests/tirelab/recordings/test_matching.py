@@ -164,6 +164,39 @@ class TestColumns:
         np.testing.assert_allclose(found.force, force, rtol=1e-5)
         np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
 
+    @pytest.mark.parametrize(
+        ("header", "along"),
+        [
+            ("x [cm],y [cm],z [cm],Fx [N],Fy [N],Fz [N]", "z"),
+            ("x_cm,y_cm,z_cm,Fz_N", "z"),
+            ("X (cm),Y (cm),Fy (N)", "y"),
+        ],
+    )
+    def test_of_three_axes_that_along_which_the_force_acts_is_taken(
+        self, tmp_path: Path, header: str, along: str
+    ) -> None:
+        time, deflection, force = loading()
+        names = header.lower().split(",")
+        values = [force if name.startswith("f") else 0.1 * deflection for name in names]
+        values[[name[0] for name in names].index(along)] = deflection
+        path = write_rows(tmp_path / "a.csv", f"time [s],{header}", time, *values)
+        found = read_recording(path, radius="flat")
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+
+    def test_of_axes_beside_a_force_along_none_no_one_is_chosen(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "time [s],x [cm],y [cm],z [cm],force [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, *(deflection * k for k in (1, 2, 3)), force)
+        said = refusal(path, radius="flat")
+        assert "'x [cm]' (#2) and 'y [cm]' (#3) and 'z [cm]' (#4) may each be the deflection" in said
+
+    def test_an_x_alone_is_the_deflection(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "time [s],x [cm],F [N]", time, deflection, force)
+        np.testing.assert_allclose(
+            read_recording(path, radius="flat").deflection, deflection / 100.0, rtol=1e-5
+        )
+
     def test_of_two_horizontal_forces_none_is_chosen(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         path = write_rows(
