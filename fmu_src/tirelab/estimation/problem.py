@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -308,7 +308,7 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         if bend or twist or any(kinks):
             reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
             effects.append((SHAPE, (bend, twist, reference, *_heights(SHAPE, kinks))))
-    return arranged(replace(tire, law=Recalibrated(tire.law, rows), preload=preload), effects)
+    return arranged(tire, effects, law=Recalibrated(tire.law, rows), preload=preload)
 
 
 def _heights(shape: str, kinks: Sequence[float]) -> list[float]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -241,12 +242,14 @@ def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:
     return Samples(tuple(recordings), motions, tuple(simulate(tire, m, m) for m in motions))
 
 
-def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]]) -> TireModel:
-    """Return `tire` with the effects of these names and values, in the order of the signal path."""
+def arranged(tire: TireModel, effects: Sequence[tuple[str, tuple[float, ...]]], **changes: Any) -> TireModel:
+    """Return `tire` with the effects of these names and values, in the order of the signal path.
+
+    changes: of the other fields of the tire
+    """
     chosen = {e.name: (e, v) for e, v in tire.effects} | {n: (CATALOGUE[n], v) for n, v in effects}
-    names = list(CATALOGUE)
-    order = sorted(chosen.values(), key=lambda p: (PLACES.index(p[0].place), names.index(p[0].name)))
-    return replace(tire, effects=tuple(order))
+    own = [chosen[name] for name in CATALOGUE if name in chosen]
+    return replace(tire, effects=tuple(sorted(own, key=lambda p: PLACES.index(p[0].place))), **changes)
 
 
 def own_deflection(tire: TireModel, experiment: Experiment) -> FloatArray:

@@ -40,6 +40,14 @@ def loop(name: str, key: str, function: Callable[..., Any] | None = None) -> Cal
     return compiled
 
 
+@cache
+def names_read(function: FunctionType) -> frozenset[str]:
+    """Return the names that a function and those of `radialtire` that it calls read, of attributes too."""
+    names = function.__code__.co_names
+    called = (function.__globals__.get(name) for name in names)
+    return frozenset(names).union(*(names_read(f) for f in called if isinstance(f, FunctionType)))
+
+
 def _compiled_globals(function: FunctionType, compile_one: Callable[..., Any]) -> dict[str, Any]:
     """Return the functions of `radialtire` that `function` calls by their names, compiled with those they call."""
     found: dict[str, Any] = {}

@@ -11,12 +11,14 @@ linear fit.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import FLAT_RADIUS, Effect, State, TireModel
+from radialtire import CHANNELS, FLAT_RADIUS, Effect, State, TireModel
+from radialtire.effect import Response
 from radialtire.flat_step import AHEAD
 from radialtire.model import Law
 from radialtire.part_curve import PartCurve
@@ -138,7 +140,16 @@ class Stages:
         def make() -> FloatArray:
             return respond_series(effect, values, np.full(history.time.size, start), history)
 
-        return self.once((effect.name, values, start), (history,), make)
+        own = tuple(getattr(history, name) for name in _read_by(effect.respond))
+        return self.once((effect.name, values, start), own, make)
+
+
+@cache
+def _read_by(respond: Response) -> tuple[str, ...]:
+    """Return the fields of a history that a response reads: a damper's force is the same beside another law."""
+    held_by = {"interval": "time", "first": "time"} | {channel.name: "channels" for channel in CHANNELS}
+    read = {held_by.get(name, name) for name in compiled.names_read(respond)}
+    return tuple(f.name for f in fields(History) if f.name in read)
 
 
 def force_after_law(tire: TireModel, history: History, force: FloatArray, stages: Stages) -> FloatArray:

@@ -67,12 +67,24 @@ def test_factors_and_what_is_added_do_not_depend_on_each_other(monkeypatch: pyte
     first = [(CATALOGUE[n], CATALOGUE[n].nominal) for n in names]
     stages.simulate(TireModel(effects=tuple(first)))
     assert run == list(names)
-    for changed, expected in ((1, [names[1], *names[2:]]), (3, [names[3]])):
+    for changed, expected in ((1, [names[1], names[2]]), (3, [names[3]])):
         run.clear()
         effect, values = first[changed]
         own = [*first[:changed], (effect, (1.1 * values[0], *values[1:])), *first[changed + 1 :]]
         stages.simulate(TireModel(effects=tuple(own)))
         assert run == expected
+
+
+def test_beside_another_law_only_what_needs_its_force_is_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    stages, run = KeptStages(MOTION), effects_run(monkeypatch)
+    names = ("rate_independent_hysteresis", "viscous_damping", "force_drift")
+    effects = tuple((CATALOGUE[n], CATALOGUE[n].nominal) for n in names)
+    first = TireModel(effects=effects)
+    stages.simulate(first)
+    run.clear()
+    stages.simulate(replace(first, law=PowerLaw(500.0, 1.5)))
+    assert run[0] == names[0]
+    assert names[1] not in run
 
 
 def test_what_lies_upstream_is_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
