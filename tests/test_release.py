@@ -195,7 +195,7 @@ def test_the_source_archive_installs(built: Built, version: str, tmp_path: Path)
 def test_the_pages_words_install_and_uninstall(built: Built, version: str, tmp_path: Path) -> None:
     """The lines of the page, one after the other, in a fresh environment: from the files, by the wheel, and out."""
     page = (built.tree / "examples" / "docs" / "five_minutes.md").read_text(encoding="utf-8")
-    section = page.partition("## Into an environment of your own")[2].partition("\n## ")[0]
+    section = page.partition("## Installation and removal")[2].partition("\n## ")[0]
     from_clone, by_wheel, out = re.findall(r"```sh\n(.*?)\n```", section, re.DOTALL)
     done(sys.executable, "-m", "venv", tmp_path / "venv", cwd=tmp_path)
     python = tmp_path / "venv" / "bin" / "python"

@@ -22,9 +22,12 @@ FloatArray = NDArray[np.float64]
 def _beside(slopes: FloatArray, variance: float) -> Callable[[FloatArray], FloatArray]:
     """Return the function that takes out of columns (m,) or (m, n) what refitted parameters follow of them.
 
-    slopes (m, k): of these parameters; variance: V
+    slopes (m, k): of these parameters; variance: V. Their products are known to rounding only, which may be more than V
+    beside slopes that are large and nearly alike: nothing less than that is told apart.
     """
-    factor = np.linalg.cholesky(slopes.T @ slopes / variance + np.eye(slopes.shape[1]))
+    gram = slopes.T @ slopes / variance
+    rounding = np.finfo(float).eps * slopes.shape[0] * np.trace(gram)
+    factor = np.linalg.cholesky(gram + (1.0 + rounding) * np.eye(slopes.shape[1]))
     across = solve_triangular(factor, slopes.T, lower=True) / np.sqrt(variance)
     return lambda columns: np.asarray(columns - across.T @ (across @ columns))
 

@@ -31,3 +31,17 @@ def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
     # Damping is linear: twice the response has twice the coefficient, and the same form beside it.
     assert first[0] == pytest.approx(2.0 * damper.values[drawn][0], rel=1e-6)
     assert first[1:] == pytest.approx(damper.values[drawn][1:])
+
+
+@pytest.mark.parametrize("size", [1.0, 1e6, 1e12])
+def test_parameters_of_any_size_that_are_nearly_alike_leave_what_is_across_them(
+    size: float, dataset: Dataset, signatures: tuple[Signature, ...]
+) -> None:
+    """Slopes of a gauge at its ceiling and of its form errors are the same columns, many times the noise."""
+    damper = next(s for s in signatures if s.name == "viscous_damping")
+    missing = 2.0 * damper.sizes[3] * damper.curves[3]
+    depth = (dataset.deflection - dataset.deflection.mean()) / dataset.deflection.std()
+    alike = size * np.column_stack([depth + 1e-9 * depth**k for k in range(12)])
+    first = additions(damper, missing, alike, 1.0, dataset)[0]
+    # A line over the deflection follows next to nothing of a damper.
+    assert first[0] == pytest.approx(2.0 * damper.values[3][0], rel=0.02)
