@@ -1,18 +1,18 @@
 """Rubber softened by the largest deflection so far (Mullins): the first loading is stiffer than all that follow.
 
     F = A x^B (1 - D g (1 - exp(-u - c u^2))),   u = (m_max - m(x)) / (r m_max + m_w)   for m(x) < m_max
-    m(x) = x (A x^B)^e,   m_w = w (A_0 w^B_0)^e,   g = 1 - exp(-s / l)
+    m(x) = x (A x^B)^e,   m_w = m(w),   g = 1 - exp(-s / l)
 
 m measures the load history, m_max is its largest value so far: the deflection itself (e = 0), the stored energy F x /
 (1 + B) (e = 1), or a measure between and beyond these. On one surface all of them are powers of the deflection; from
 one surface to another they differ. D is the fraction lost far below m_max; r and w say how far below it softening sets
-in, in proportion and as a fixed part (rubber has no characteristic length: w stays 0 unless the recordings require it;
-with A_0 and B_0 of Hull's tire on flat ground it is the same on every surface). With c = 0 softening approaches D
-exponentially. With c = 0.62 it is the error function of Ogden & Roxburgh within 0.002 of D, and for u < 0.2 a straight
-line within 0.0002 of D. Far above, it is a Gaussian, which sets in smoothly. Above m_max the tire is as new. `history`
-is the largest deflection before the recording, 0 for a new tire. s is the path length travelled below m_max: with l > 0
-the softening builds up over the cycles, with l = 0 it is complete at once (g = 1). Motion within DEAD_ZONE adds no
-path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in ten seconds.
+in, in proportion and as a fixed part (rubber has no characteristic length: w stays 0 unless the recordings require it).
+With c = 0 softening approaches D exponentially. With c = 0.62 it is the error function of Ogden & Roxburgh within 0.002
+of D, and for u < 0.2 a straight line within 0.0002 of D. Far above, it is a Gaussian, which sets in smoothly. Above
+m_max the tire is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the path length travelled below m_max: with l > 0
+the softening builds up over the cycles, with l = 0 it is complete at once (g = 1). Motion within DEAD_PART of l adds no
+path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in ten seconds. No number of the equation
+has a unit of its own: a part far softer or far smaller than a tire softens alike.
 
 Ogden & Roxburgh write the dependence in the energy. No published Mullins fraction of bicycle tires was found: the
 bounds are wide.
@@ -26,15 +26,14 @@ from __future__ import annotations
 import math
 
 from ..effect import Effect, Instant, State
-from ..hull1996 import FLAT_COEFFICIENT, FLAT_EXPONENT
 from ..parameter import Parameter
 from ..prior import Prior
 
 ERROR_FUNCTION = 0.62
 """c with which 1 - exp(-u - c u^2) is nearest to erf(u / 1.1), within 0.002."""
 
-DEAD_ZONE = 1e-4
-"""Distance [m] from the last counted position within which motion adds nothing to the path length."""
+DEAD_PART = 1.0 / 200.0
+"""Distance from the last counted position, over l, within which motion adds nothing to the path length."""
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
@@ -50,11 +49,11 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     uncounted = abs(max(x, 0.0) - counted)
     if measure >= largest:
         largest, counted, uncounted = measure, max(x, 0.0), 0.0
-    elif uncounted > DEAD_ZONE:
+    elif uncounted > DEAD_PART * gathering:
         path, counted, uncounted = path + uncounted, max(x, 0.0), 0.0
     if share == 0.0 or (x <= 0.0 and not instant.two_sided) or measure >= largest:
         return signal, (largest, counted, path)
-    fixed = FLAT_COEFFICIENT**load * (100.0 * width) ** (1.0 + load * FLAT_EXPONENT)
+    fixed = by_surface * (100.0 * width) ** power
     below = (largest - measure) / (ratio * largest + fixed)
     below += gaussian * below * below
     if gathering > 0.0:

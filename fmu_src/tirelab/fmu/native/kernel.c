@@ -7,14 +7,12 @@
 static const double AHEAD = 1e-06;
 static const double APART = 1000000.0;
 static const double CM_PER_M = 100.0;
-static const double DEAD_ZONE = 0.0001;
+static const double DEAD_PART = 0.005;
 static const double DEPTH = 0.01;
 static const double EXACT = 1e-12;
 static const double FADES = 0.5;
 static const double FAR = 40.0;
 static const double FINEST = 1e-06;
-static const double FLAT_COEFFICIENT = 550.9;
-static const double FLAT_EXPONENT = 1.422;
 static const double FLAT_RADIUS = 100000.0;
 static const double HULL1996 = 0.0;
 static const double JERK_MAX = 32.0;
@@ -696,7 +694,7 @@ static inline Tuple14 mullins_softening_respond(double signal, Instant instant, 
         largest = measure;
         counted = greater(x, 0.0);
         uncounted = 0.0;
-    } else if (uncounted > DEAD_ZONE) {
+    } else if (uncounted > DEAD_PART * gathering) {
         path = path + uncounted;
         counted = greater(x, 0.0);
         uncounted = 0.0;
@@ -704,7 +702,7 @@ static inline Tuple14 mullins_softening_respond(double signal, Instant instant, 
     if (share == 0.0 || (x <= 0.0 && !instant.two_sided) || measure >= largest) {
         return (Tuple14){signal, (Vector3){{largest, counted, path}}};
     }
-    double fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
+    double fixed = by_surface * pow(100.0 * width, power);
     double below = (largest - measure) / (ratio * largest + fixed);
     below += gaussian * below * below;
     if (gathering > 0.0) {
