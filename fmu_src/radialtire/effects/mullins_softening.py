@@ -9,10 +9,11 @@ one surface to another they differ. D is the fraction lost far below m_max; r an
 in, in proportion and as a fixed part (rubber has no characteristic length: w stays 0 unless the recordings require it).
 With c = 0 softening approaches D exponentially. With c = 0.62 it is the error function of Ogden & Roxburgh within 0.002
 of D, and for u < 0.2 a straight line within 0.0002 of D. Far above, it is a Gaussian, which sets in smoothly. Above
-m_max the tire is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the path length travelled below m_max: with l > 0
-the softening builds up over the cycles, with l = 0 it is complete at once (g = 1). Motion within DEAD_PART of l adds no
-path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in ten seconds. No number of the equation
-has a unit of its own: a part far softer or far smaller than a tire softens alike.
+m_max the tire is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the path
+length travelled below m_max: with l > 0 the softening builds up over the cycles, with l = 0 it is complete at once (g =
+1). Motion within DEAD_PART of l adds no path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in
+ten seconds. No number of the equation has a unit of its own: a part far softer or far smaller than a tire softens
+alike.
 
 Ogden & Roxburgh write the dependence in the energy. No published Mullins fraction of bicycle tires was found: the
 bounds are wide.

@@ -68,9 +68,13 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
             f"the force begins at {1e3 * x0:.3g} mm, which is rather a gauge's zero than a gap; give what it reads "
             "there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
         )
-    exponent = 1.0 if fit.name == "linear_gap" else fit.value("B")
-    scale = 10.0 if fit.name == "linear_gap" else 1.0  # N/mm to N/cm
-    law = PowerLaw(scale * fit.value("k" if fit.name == "linear_gap" else "A"), exponent)
+    symbol, scale = ("k", 10.0) if fit.name == "linear_gap" else ("A", 1.0)  # N/mm to N/cm
+    exponent = _exponent(fit, recordings)
+    if scale * fit.value(symbol) <= LEAST_SPRING:
+        raise TirelabError(
+            f"the law {fit.name} has {symbol} = {fit.value(symbol):.3g}; {_other_laws(recordings)}"
+        )
+    law = PowerLaw(scale * fit.value(symbol), exponent)
     gap = next(effect for effect in CATALOGUE.values() if effect.holds_gap)
     effects = ((gap, (-x0,)),)
     return _described(TireModel(law=law, effects=effects), recordings, name)
@@ -117,20 +121,35 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
     if value + SURE * deviation < 0.0:
         raise TirelabError(
             f"the law {fit.name} has {symbol} = {value:.3g}, a force that falls as the deflection grows, which a tire "
-            f"file cannot hold; {_ramp_advice(recordings) or 'check the signs of force and deflection, or '}for a part "
-            "without a spring, such as a damper, give --part constant"
+            f"file does not hold as a power; check the signs of force and deflection; {_other_laws(recordings)}"
         )
     if scale * value <= LEAST_SPRING:
         return _without_spring(constant_fit(recordings).value("F0"))
-    exponent = 1.0 if fit.name == "linear" else fit.value("B")
+    exponent = _exponent(fit, recordings)
+    preload = 0.0 if fit.name == "power" else fit.value("F0")
+    return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
+
+
+def _exponent(fit: LawFit, recordings: Sequence[Recording]) -> float:
+    """Return the exponent B of a law; raises TirelabError where a tire file holds none like it."""
+    if fit.name in ("linear", "linear_gap"):
+        return 1.0
+    exponent = fit.value("B")
     least, most = EXPONENT_BOUNDS
     if not least <= exponent <= most:
         raise TirelabError(
             f"the law {fit.name} has B = {exponent:.3g}, and a tire file holds {least:g} to {most:g}; "
-            f"{_ramp_advice(recordings)}for a part without a spring, such as a damper, give --part constant"
+            f"{_other_laws(recordings)}"
         )
-    preload = 0.0 if fit.name == "power" else fit.value("F0")
-    return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
+    return exponent
+
+
+def _other_laws(recordings: Sequence[Recording]) -> str:
+    """Return the advice where a spring's law does not hold what was recorded."""
+    return (
+        f"{_ramp_advice(recordings)}for a part without a spring, such as a damper, give --part constant; for a force "
+        "that falls as the deflection grows, as between magnets, --part piecewise"
+    )
 
 
 def springless(fit: LawFit, tire: TireModel) -> str:

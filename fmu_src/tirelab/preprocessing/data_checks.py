@@ -24,7 +24,7 @@ BoolArray = NDArray[np.bool_]
 
 
 FEWEST_STEPS = 8
-"""Fewest distinct deflections of a recording: with fewer, a cycle has no shape."""
+"""Fewest distinct deflections of a recording that moves most of the time: with fewer, a cycle has no shape."""
 
 FEWEST_SAMPLES = 100
 """Fewest samples of all recordings: fewer cannot distinguish the effects from each other and from the noise."""
@@ -66,8 +66,9 @@ def check_recordings(
             raise PoorRecording(f"{where} has one constant force; check that the load cell was connected")
         if float(driven.max()) <= 0.0 and not two_sided:
             raise PoorRecording(f"{where} never loads the tire: its deflection stays at or below 0 m")
-        distinct = np.unique(np.round(driven / (1e-3 * np.ptp(driven)))).size
-        if distinct < FEWEST_STEPS:
+        places = np.round(driven / (1e-3 * np.ptp(driven)))
+        distinct, moves = np.unique(places).size, np.mean(np.diff(places) != 0.0)
+        if distinct < FEWEST_STEPS and moves > MAJORITY:
             raise PoorRecording(
                 f"{where} has only {distinct} distinct deflections; sample each cycle at {FEWEST_STEPS} or more points"
             )

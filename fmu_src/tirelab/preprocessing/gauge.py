@@ -123,7 +123,8 @@ def staircase_step(deflection: FloatArray) -> float:
     """Return the step [m] of a gauge whose readings repeat, or 0."""
     changes = np.abs(np.diff(deflection))
     moved = changes[changes > 1e-12]
-    if moved.size == 0 or moved.size > (1.0 - STEPPING) * changes.size:
+    # A reading that changes now and then only is that of a motion which is driven in steps and held.
+    if moved.size < FEWEST_EVENTS or moved.size > (1.0 - STEPPING) * changes.size:
         return 0.0
     # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
     changing = changes > 1e-12

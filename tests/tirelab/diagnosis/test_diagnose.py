@@ -1,6 +1,7 @@
 """From recordings to a verdict."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -115,6 +116,22 @@ def test_what_shows_in_quiet_holds_is_found_beside_loud_motion():
     assert verdict.names == ("viscoelastic_relaxation",)
     assert verdict.effects[0].probability > 0.9
     assert verdict.fit.noise == pytest.approx(np.sqrt(np.mean(noise**2)), rel=0.1)
+
+
+def test_steps_that_are_held_one_recording_each_show_relaxation():
+    """As a relaxation test is made: to four depths at once, there for a minute, and a file for each."""
+    time = np.arange(0.0, 60.0, 0.05)
+    relaxing = CATALOGUE["viscoelastic_relaxation"]
+    tire = TireModel(effects=((relaxing, relaxing.nominal),))
+    steps = []
+    for i, depth in enumerate((6e-3, 10e-3, 15e-3, 20e-3)):
+        x = np.interp(time, [1.0, 1.15], [0.0, depth])
+        noise = np.random.default_rng(i).standard_normal(time.size)
+        step = Drive(f"step {i}", time, x, np.full(time.size, np.inf), noise)
+        steps.append(replace(step, force=simulate(tire, step) + noise))
+    verdict = diagnose(steps[:3], TireModel(), held_out=steps[3:])
+    assert verdict.names == ("viscoelastic_relaxation",)
+    assert verdict.fit.held_out_after < 1.2 * verdict.fit.noise
 
 
 def test_another_tire_is_a_recalibration():

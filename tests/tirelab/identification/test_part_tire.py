@@ -110,6 +110,19 @@ def test_a_part_that_pulls_inside_the_gap_is_not_written_with_one() -> None:
     assert tire_of(fits["linear_gap"], [loose], "").effects[0][1] == pytest.approx((-0.003,), abs=5e-5)
 
 
+def test_two_magnets_are_told_the_curve() -> None:
+    """F = 20 N / (1 + x / 8 mm)^4 is a power with a gap of -8 mm and an exponent below all that a tire file holds."""
+    x = 0.03 * np.arange(300) / 300.0
+    magnets = recording(x, 20.0 / (1.0 + x / 0.008) ** 4, noise=0.01)
+    fits = fit_laws([magnets])
+    for fit in fits:
+        if fit.name in ("power", "power_gap", "linear"):
+            with pytest.raises(TirelabError, match=r"for a force that falls .* --part piecewise"):
+                tire_of(fit, [magnets], "")
+    assert next(f for f in fits if f.name == "power_gap").value("B") == pytest.approx(-4.0, abs=0.1)
+    assert best_writable(fits, [magnets]) in ("constant", "piecewise")
+
+
 def test_a_damper_without_a_spring_has_its_preload_alone() -> None:
     time = np.arange(2000) / 100.0
     x = 0.01 * np.sin(2.0 * np.pi * time)

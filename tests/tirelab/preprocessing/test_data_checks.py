@@ -80,8 +80,8 @@ def test_nothing_is_refused() -> None:
         ({"force": np.full(2000, 10.0)}, "has one constant force"),
         ({"deflection": DEFLECTION - 0.03}, "never loads the tire"),
         (
-            {"deflection": np.where(TIME < 10.0, 0.0, 0.01)},
-            f"has only 2 distinct deflections; sample each cycle at {FEWEST_STEPS} or more points",
+            {"deflection": np.arange(2000) % 3 * 0.01},
+            f"has only 3 distinct deflections; sample each cycle at {FEWEST_STEPS} or more points",
         ),
     ],
 )
@@ -93,10 +93,16 @@ def test_what_holds_no_cycle_is_refused(channels: dict[str, np.ndarray], reason:
 
 def test_a_held_out_hold_is_driven_as_what_was_recorded_before_it() -> None:
     """A range of a file: the ramp to the hold is its history. Alone the same hold is refused."""
-    hold = recording(deflection=np.where(TIME < 10.0, 0.01, 0.01001))
-    with pytest.raises(PoorRecording, match="distinct deflections"):
+    hold = recording(deflection=np.full(2000, 0.01))
+    with pytest.raises(PoorRecording, match="one constant deflection"):
         check_recordings([recording()], [hold])
     check_recordings([recording()], [replace(hold, history=recording(time=TIME - 20.0))])
+
+
+def test_a_step_that_is_held_is_a_recording() -> None:
+    """A relaxation test: pressed within three samples, then held for all others."""
+    step = recording(deflection=np.interp(TIME, [1.0, 1.03], [0.0, 0.01]))
+    check_recordings([step], [step])
 
 
 def test_two_held_out_samples_judge_nothing() -> None:

@@ -229,3 +229,9 @@ def test_another_reading_has_the_noise_of_the_first_and_steps_between_its_own() 
     other = read_again(motion, read, step / np.sqrt(12.0), step, np.random.default_rng(1))
     np.testing.assert_allclose((other - read) / step % 1.0, 0.5, atol=1e-6)
     assert np.abs(other - motion).max() <= 0.5 * step * (1.0 + 1e-9)
+
+
+def test_steps_that_are_held_for_minutes_are_the_rigs() -> None:
+    """Three samples of a rise and 3000 of a hold, as in a relaxation test: no gauge is seen in so few changes."""
+    rise = np.array([0.0, 0.0, 0.0, 9.3865e-3, 9.8332e-3])
+    assert staircase_step(np.concatenate([rise, np.full(3000, 10e-3)])) == 0.0
