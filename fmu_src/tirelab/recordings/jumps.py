@@ -1,11 +1,12 @@
 """Jumps of the deflection between two samples: where two runs stand one below the other in a table, and where a gauge
-lost a reading.
+lost a reading or read falsely.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri
 
 FAR = 10.0
 """A jump is this many times as far as the motion between any two other samples; a corner of a motion is none."""
@@ -50,6 +51,71 @@ def lost_readings(deflection: NDArray[np.float64], force: NDArray[np.float64]) -
     with np.errstate(all="ignore"):  # a damaged number may be any
         found = _alone(deflection)
         return np.setdiff1d(found, _alone(force)) if found.size else found
+
+
+BY_CHANCE = 0.01
+"""Probability that noise makes one of all readings look false."""
+
+ON_GRID = 0.9
+"""Part of the changes between readings that are whole steps, within a quarter, of a gauge that reads in steps; of one
+that does not, half of them are."""
+
+AROUND = 4
+"""Readings before one, and as many after it, by which it is judged."""
+
+
+def false_readings(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the samples at which a gauge read falsely: off the motion by more than its noise can be; arrays (n,).
+
+    Neither the line through the readings before a false one leads to it, nor that through those after it, nor the
+    middle between its neighbours, all to the same side. A corner of the motion lies on one of the two lines, and the
+    bend of a motion is on other sides of line and middle. The readings before and after it lie on one curve but for
+    their noise, and it is more than a step of the gauge. The force does not go along. Bright spots do so to a laser,
+    and dirt to a potentiometer.
+    """
+    with np.errstate(all="ignore"):
+        found = _off_the_motion(deflection)
+        if found.size > RARE * deflection.size:
+            return np.empty(0, dtype=np.intp)
+        along = _off_the_motion(force) if found.size else found
+    return np.setdiff1d(found, (along[:, None] + np.arange(-1, 2)).ravel())
+
+
+def _off_the_motion(values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the samples (k,) that are off those before and after them, in rising order."""
+    n = values.size - 2 * AROUND
+    if n < FEWEST or not np.ptp(values) > 0.0:
+        return np.empty(0, dtype=np.intp)
+    beside = {k: values[AROUND + k : AROUND + k + n] for k in range(-AROUND, AROUND + 1)}
+    at = np.arange(1.0, AROUND + 1.0)
+    line = np.linalg.pinv(np.vander(at, 2, increasing=True))[0]
+    before, after = (sum(line[i] * beside[side * (i + 1)] for i in range(AROUND)) for side in (-1, 1))
+    middle = 0.5 * (beside[-1] + beside[1])
+    own = beside[0] - middle
+    noise = float(np.median(np.abs(own))) / float(ndtri(0.75)) / np.sqrt(1.5)
+    most, usual = (-float(ndtri(BY_CHANCE / (2.0 * count))) * noise for count in (n, 2 * AROUND))
+    off = [own / np.sqrt(1.5), *((beside[0] - p) / np.sqrt(1.0 + line @ line) for p in (before, after))]
+    seen = np.abs(own)[np.abs(own) > usual]
+    apart = (np.min(off, axis=0) > most) | (np.max(off, axis=0) < -most)
+    likely = np.flatnonzero(apart & (np.abs(own) > _of_steps(values, seen)))
+    places = np.concatenate([-at[::-1], at])
+    around = values[AROUND + likely[:, None] + places.astype(int)]
+    curve = np.vander(places, 3, increasing=True)
+    left = around - around @ (curve @ np.linalg.pinv(curve)).T
+    return AROUND + likely[np.max(np.abs(left), axis=1, initial=0.0) < usual]
+
+
+def _of_steps(values: NDArray[np.float64], off: NDArray[np.float64]) -> float:
+    """Return how far off its neighbours a reading is at most by a step of the gauge; 0 of one that reads in no steps.
+
+    off (k,): from the middle of both neighbours, more than by noise: by one step at one reading, by half at the others
+    """
+    if off.size < FEWEST:
+        return 0.0
+    step = 2.0 * float(np.quantile(off, 0.25))
+    changes = np.diff(values) / step
+    on_grid = np.mean(np.abs(changes - np.rint(changes)) < 0.25)
+    return 1.5 * step if on_grid > ON_GRID else 0.0
 
 
 def _alone(values: NDArray[np.float64]) -> NDArray[np.intp]:

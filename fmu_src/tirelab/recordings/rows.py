@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .channels import CHANNELS
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
-from .jumps import lost_readings
+from .jumps import false_readings, lost_readings
 from .origin import Origin
 
 FloatArray = NDArray[np.float64]
@@ -78,6 +78,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
         (_repeated, "equal to the row before, its time among it"),
         (_before_the_clock, "before the clock runs"),
         (_lost, "readings that the gauge of the deflection lost, far from those before and after"),
+        (_false, "false readings of the deflection, off the motion before and after by more than noise"),
     ):
         skipped = which(values)
         if len(skipped):
@@ -160,6 +161,14 @@ def _lost(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
     if deflection is None or force is None:
         return np.empty(0, dtype=np.intp)
     return lost_readings(deflection, force)
+
+
+def _false(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+    """Return the rows whose deflection is none of the motion."""
+    deflection, force = values.get("deflection"), values.get("force")
+    if deflection is None or force is None:
+        return np.empty(0, dtype=np.intp)
+    return false_readings(deflection, force)
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from house_form import write_rows
 from tirelab.recordings.choices import Choices
-from tirelab.recordings.jumps import jump_doubt, lost_readings
+from tirelab.recordings.jumps import false_readings, jump_doubt, lost_readings
 from tirelab.recordings.recording import understand
 
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -87,4 +87,82 @@ def test_a_row_whose_deflection_was_lost_is_skipped_and_named(tmp_path: Path) ->
     found = understand(path, Choices(part=True)).recording
     (said,) = [note for note in found.notes if "lost" in note]
     assert said.endswith(": row 224, row 527")  # the header is row 1
+    assert len(found) == TIME.size - 2
+
+
+STROKES = 20e-3 * np.abs(2.0 * ((TIME / 4.0) % 1.0) - 1.0)
+"""Strokes of 20 mm at 10 mm/s, read at 100 Hz: as far from one reading to the next as a false one is off."""
+
+
+def with_noise(seed: int, size: float = 15e-6) -> np.ndarray:
+    return STROKES + size * np.random.default_rng(seed).normal(size=TIME.size)
+
+
+def test_single_readings_off_the_motion_are_false() -> None:
+    """Off by 13 to 30 times the noise of the gauge, in no two neighbouring windows."""
+    rng = np.random.default_rng(3)
+    at = np.arange(33, 1950, 61)
+    read = with_noise(1)
+    read[at] += rng.choice([-1.0, 1.0], at.size) * rng.uniform(0.2e-3, 0.45e-3, at.size)
+    found = false_readings(read, 300.0 + 2e3 * STROKES)
+    assert set(found) <= set(at)
+    # One in a hundred neighbourhoods is noisier than it may be; those of corners are judged by one side.
+    assert len(found) >= 0.85 * at.size
+
+
+def test_noise_makes_hardly_any_reading_look_false() -> None:
+    seen = sum(false_readings(with_noise(seed), STROKES).size > 0 for seed in range(100))
+    # Once in a hundred by BY_CHANCE; of a noise that is known from the readings themselves a little more often.
+    assert seen <= 5
+
+
+@pytest.mark.parametrize(
+    "deflection",
+    [
+        STROKES,
+        CYCLES,
+        CYCLES[::12],
+        np.round(STROKES / 50e-6) * 50e-6,
+        np.round(with_noise(4) / 50e-6) * 50e-6,
+        np.round(with_noise(4, 4e-6) / 30e-6) * 30e-6,
+        np.round(CYCLES / 0.3e-3) * 0.3e-3,
+        np.interp(TIME, [0.0, 5.0, 5.03, 12.0, 12.02, 20.0], [0.0, 0.0, 5e-3, 5e-3, 1e-3, 1e-3]),
+        np.zeros(2000),
+        STROKES[:15],
+    ],
+    ids=[
+        "corners",
+        "a sine",
+        "a sine read eight times a cycle",
+        "steps of a gauge",
+        "steps and noise",
+        "steps beside less noise",
+        "a coarse gauge",
+        "driven steps",
+        "rest",
+        "few",
+    ],
+)
+def test_what_a_motion_or_the_steps_of_a_gauge_do_is_not_false(deflection: np.ndarray) -> None:
+    assert false_readings(deflection, np.zeros(deflection.size)).size == 0
+
+
+def test_what_the_force_follows_or_is_frequent_was_read_rightly() -> None:
+    tapped = with_noise(1)
+    tapped[[333, 777]] += 0.4e-3
+    assert false_readings(tapped, 1e4 * STROKES).tolist() == [333, 777]
+    assert false_readings(tapped, 1e4 * tapped).size == 0
+    often = with_noise(1)
+    often[20:1980:25] += 0.4e-3
+    assert false_readings(often, 1e4 * STROKES).size == 0
+
+
+def test_a_row_that_was_read_falsely_is_skipped_and_named(tmp_path: Path) -> None:
+    read = with_noise(1)
+    read[[333, 777]] += 0.4e-3
+    header = "time [s],deflection [mm],force [N]"
+    path = write_rows(tmp_path / "a.csv", header, TIME, 1e3 * read, 1e4 * STROKES)
+    found = understand(path, Choices(part=True)).recording
+    (said,) = [note for note in found.notes if "false readings" in note]
+    assert said.endswith(": row 335, row 779")  # the header is row 1
     assert len(found) == TIME.size - 2
