@@ -102,7 +102,7 @@ def _off_the_motion(values: NDArray[np.float64]) -> NDArray[np.intp]:
     around = values[AROUND + likely[:, None] + places.astype(int)]
     curve = np.vander(places, 3, increasing=True)
     left = around - around @ (curve @ np.linalg.pinv(curve)).T
-    return AROUND + likely[np.max(np.abs(left), axis=1, initial=0.0) < usual]
+    return np.asarray(AROUND + likely[np.max(np.abs(left), axis=1, initial=0.0) < usual])
 
 
 def _of_steps(values: NDArray[np.float64], off: NDArray[np.float64]) -> float:
