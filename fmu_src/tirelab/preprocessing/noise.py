@@ -47,8 +47,7 @@ STANDS_OUT = 8.0
 """Noise standard deviations: a gauge whose reading stays within them stands still, what is beyond them is no noise."""
 
 FEWEST_EVENTS = 10
-"""Fewest events that are not taken for chance: samples of a hold, changes that the next sample undoes, memories of
-noise between visits of a place, held-out samples."""
+"""Fewest events that are no chance: samples of a hold, changes of a reading, memories of noise between two visits."""
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -100,9 +99,7 @@ class Noise:
 
 def white_level(residual: FloatArray) -> float:
     """Return the standard deviation of the part of a residual (n,) that is white, from its third differences."""
-    if residual.size < 8:
-        return float(np.std(residual))
-    return _level(_third_differences(residual, 1))
+    return _level(_third_differences(residual, 1)) if residual.size >= 8 else float(np.std(residual))
 
 
 def resting(rate: FloatArray) -> BoolArray:
@@ -198,19 +195,22 @@ class _Levels:
     slow: BoolArray
     values: tuple[float, ...]
 
-    def oscillates(self, noise: Noise) -> bool:
-        """Whether differences over the memory of a noise are larger than over longer lags, or than the whole variation,
-        or fall with the lag by more than they are known to (TRIMMED) and than counts as constant: the level of third
-        differences of a sine is up to 1.8 times its own at one lag, and next to none at others.
+    def beneath(self, noise: Noise) -> Noise:
+        """Return a noise, or what is beneath it where it oscillates: its differences are larger than over longer lags,
+        or than the whole variation, or fall with the lag by more than they are known to (TRIMMED) and than counts as
+        constant. Third differences of a sine are up to 1.8 times its level at one lag, and next to none at others.
         """
         most = min(noise.level, _local_rms(self.residual, noise.memory, self.slow))
-        if _level_of(self.residual, noise.memory, self.slow) > STAYS**2 * most:
-            return True
-        # Over lags that are powers of two a period of twelve has one level.
-        lags = np.array(sorted({*self.lags, *(3 * lag // 2 for lag in self.lags[1:-1])}))
+        lags = np.array(
+            sorted({*self.lags, *(3 * lag // 2 for lag in self.lags[1:-1])})
+        )  # a period of 12 shows
         levels = np.array([_level_of(self.residual, lag, self.slow) for lag in lags.tolist()])
         known = 1.0 - TRIMMED / np.sqrt(2.0 * np.maximum(self.slow.sum() / lags, 1.0))
-        return bool(np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels)))
+        falls = np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels))
+        if not falls and _level_of(self.residual, noise.memory, self.slow) <= STAYS**2 * most:
+            return noise
+        least, white = float(np.min((levels / known)[lags >= noise.memory])), min(self.values)
+        return Noise(least, noise.memory) if least > STAYS * white else Noise(white, 1)
 
 
 def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
@@ -228,17 +228,16 @@ def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
 
 
 def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
-    """Return the noise whose level stays constant over growing lags, without what repeats; None where none does, or
-    none without what repeats.
-    """
+    """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
     last = _plateau(levels.values)
     if last == 0:
         return None
     found = _noise_of_level(levels.values, last)
     if found.memory == 1:
         return Noise(white_level(levels.residual), 1)
-    if levels.oscillates(found):
-        return Noise(min(levels.values), 1)
+    found = levels.beneath(found)
+    if found.memory == 1:
+        return found
     visits = _seen_visits(driven, found.memory, levels.lags[-1], levels.slow)
     between = [[_level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits]
     if not all(map(_plateau, between)):
@@ -248,17 +247,20 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
 
 
 def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Noise]:
-    """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first.
-
-    None of those of which a signal of the motion would reach its variation as well: the level may be that of a misfit
-    that follows it.
+    """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first;
+    none that may be a misfit which follows a signal of the motion, because the signal would reach its variation too.
     """
     residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
         found, lag = _noise_of_level(levels.values, last), levels.lags[last]
         most = _local_rms(residual, lag, slow)
         rises = any(_rises(levels.values)[last:])
-        if found.memory == 1 or rises or levels.values[last] * STAYS < most or levels.oscillates(found):
+        if (
+            found.memory == 1
+            or rises
+            or levels.values[last] * STAYS < most
+            or levels.beneath(found) is not found
+        ):
             continue
         visits = _seen_visits(driven, found.memory, lag, slow)
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
@@ -269,7 +271,7 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
 def _seen_visits(driven: Driven, memory: int, lag: int, seen: BoolArray) -> list[Visits]:
     """Return the pairs of each kind of visit (`_visits`) with both samples `seen`.
 
-    No kind with too few of them, nor one whose pairs are all so near the ends that no difference over the lag is known.
+    No kind with too few of them, or so near the ends that no difference over the lag is known.
     """
     inner = np.zeros_like(seen)
     _inner(inner, lag)[:] = True
@@ -388,8 +390,7 @@ def noise_floor(
     """Return the floor of a recording.
 
     level [N]: noise of the force less what a smooth model makes of it; stiffness [N/m] sample by sample
-    gauge_noise [m]: of the deflection's reading; step [m], force_step [N]: in which the two are
-    read, 0 where none is seen
+    gauge_noise [m]: of the deflection's reading; step [m], force_step [N]: in which the two are read, 0 for none
     """
     mean_square = float(np.sqrt(np.mean(stiffness**2)))
     through_gauge = 0.0 if step > 0.0 else gauge_noise * mean_square

@@ -149,6 +149,20 @@ def test_an_oscillation_that_swells_is_no_noise(period: float) -> None:
     assert noise_beside(swelling + white, 0.02 * np.sin(2.0 * np.pi * time / 150.0)).level < 5.0
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("period", [3.4, 8.33, 16.7])
+def test_a_hum_beside_noise_of_an_amplifier_with_a_filter_leaves_its_level(period: float, seed: int) -> None:
+    """8 N of noise whose memory is some eight samples, and 3 N of the mains: not the tenth of it that is white."""
+    time = np.arange(12_000)
+    white = np.random.default_rng(seed).normal(size=time.size)
+    filtered = lfilter(*butter(2, 0.13), white)
+    filtered *= 8.0 / np.std(filtered)
+    hum = 3.0 * np.sqrt(2.0) * np.sin(2.0 * np.pi * time / period + seed)
+    found = noise_beside(filtered + hum, 0.02 * np.sin(2.0 * np.pi * time / 1500.0))
+    # Between 8 N and what both have together, sqrt(8^2 + 3^2) = 8.5 N, where the level of 12 000 / 8 is known to 4 %.
+    assert 0.9 * 8.0 < found.level < 1.1 * 8.5
+
+
 def test_what_comes_again_with_the_other_sign_on_the_way_back_is_no_noise() -> None:
     ripple = np.sin(2.0 * np.pi * MOTION / 1e-3) * np.sign(np.gradient(MOTION))
     found = noise_beside(0.1 * WHITE + ripple, MOTION)
