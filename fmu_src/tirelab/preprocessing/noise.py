@@ -201,9 +201,8 @@ class _Levels:
         constant. Third differences of a sine are up to 1.8 times its level at one lag, and next to none at others.
         """
         most = min(noise.level, _local_rms(self.residual, noise.memory, self.slow))
-        lags = np.array(
-            sorted({*self.lags, *(3 * lag // 2 for lag in self.lags[1:-1])})
-        )  # a period of 12 shows
+        # Over lags that are powers of two a period of twelve has one level.
+        lags = np.array(sorted({*self.lags, *(3 * lag // 2 for lag in self.lags[1:-1])}))
         levels = np.array([_level_of(self.residual, lag, self.slow) for lag in lags.tolist()])
         known = 1.0 - TRIMMED / np.sqrt(2.0 * np.maximum(self.slow.sum() / lags, 1.0))
         falls = np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels))

@@ -146,7 +146,9 @@ class Stages:
 
 @cache
 def _read_by(respond: Response) -> tuple[str, ...]:
-    """Return the fields of a history that a response reads: a damper's force is the same beside another law."""
+    """Return the fields of a history that a response reads, by the names in its code: a damper's force is the same
+    beside another law.
+    """
     held_by = {"interval": "time", "first": "time"} | {channel.name: "channels" for channel in CHANNELS}
     read = {held_by.get(name, name) for name in compiled.names_read(respond)}
     return tuple(f.name for f in fields(History) if f.name in read)
