@@ -12,8 +12,8 @@ of D, and for u < 0.2 a straight line within 0.0002 of D. Far above, it is a Gau
 m_max the tire is as new. `history` is the largest deflection before the recording, 0 for a new tire. s is the path
 length travelled below m_max: with l > 0 the softening builds up over the cycles, with l = 0 it is complete at once (g =
 1). Motion within DEAD_PART of l adds no path: 0.01 mm of noise on a tire at rest, sampled at 400 Hz, would add 45 mm in
-ten seconds. No number of the equation has a unit of its own: a part far softer or far smaller than a tire softens
-alike.
+ten seconds. m_w is that of Hull's tire on flat ground, so that it is the same on every surface; a part that is held at
+both ends has one law, and m_w is of that: a part far softer or far smaller than a tire softens alike.
 
 Ogden & Roxburgh write the dependence in the energy. No published Mullins fraction of bicycle tires was found: the
 bounds are wide.
@@ -27,6 +27,7 @@ from __future__ import annotations
 import math
 
 from ..effect import Effect, Instant, State
+from ..hull1996 import FLAT_COEFFICIENT, FLAT_EXPONENT
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -55,6 +56,8 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     if share == 0.0 or (x <= 0.0 and not instant.two_sided) or measure >= largest:
         return signal, (largest, counted, path)
     fixed = by_surface * (100.0 * width) ** power
+    if not instant.two_sided:
+        fixed = FLAT_COEFFICIENT**load * (100.0 * width) ** (1.0 + load * FLAT_EXPONENT)
     below = (largest - measure) / (ratio * largest + fixed)
     below += gaussian * below * below
     if gathering > 0.0:

@@ -75,14 +75,17 @@ def test_from_one_surface_to_another_the_measure_goes_on(load: float) -> None:
     assert force[1] / bare[1] == pytest.approx(1.0 + 0.2 * math.expm1(-u), rel=1e-12)
 
 
-def test_what_is_fixed_is_a_deflection_on_every_surface() -> None:
-    # Fixed at 12 mm: pressed to 12 mm, and left, u = m / (r m + m).
+def test_what_is_fixed_is_the_same_on_every_surface() -> None:
+    # Fixed at 12 mm on Hull's tire on flat ground: pressed there to 12 mm, and left, u = 1.
     x = np.array([0.012, 0.0, 1e-9])
     for radius in (np.inf, 0.01905):
         tire = only("mullins_softening", share=0.2, ratio=5e-3, width=0.012, gaussian=0.0, load=1.0)
         force = drive(tire, np.arange(3.0), x, np.full(3, radius))
         bare = drive(TireModel(), np.arange(3.0), x, np.full(3, radius))
-        assert force[2] / bare[2] == pytest.approx(1.0 + 0.2 * math.expm1(-1.0 / (5e-3 + 1.0)), rel=1e-5)
+        work = bare[0] / (550.9 * 1.2**1.422)
+        assert force[2] / bare[2] == pytest.approx(
+            1.0 + 0.2 * math.expm1(-work / (5e-3 * work + 1.0)), rel=1e-5
+        )
 
 
 @pytest.mark.parametrize(("softer", "smaller"), [(1e-3, 1.0), (1.0, 1e-2), (1e4, 1e3)])
@@ -94,8 +97,8 @@ def test_it_is_the_same_in_any_units(softer: float, smaller: float) -> None:
     scaled = only("mullins_softening", **values, **{n: smaller * v for n, v in lengths.items()})
     other = PowerLaw(softer * law.coefficient / smaller**law.exponent, law.exponent)
     time, x = np.arange(303.0), 0.01 * DOWN_UP
-    one = drive(replace(tire, law=law), time, x)
-    same = drive(replace(scaled, law=other), time, smaller * x)
+    one = drive(replace(tire, law=law, two_sided=True), time, x)
+    same = drive(replace(scaled, law=other, two_sided=True), time, smaller * x)
     np.testing.assert_allclose(same, softer * one, rtol=1e-9)
 
 

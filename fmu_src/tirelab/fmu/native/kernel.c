@@ -13,6 +13,8 @@ static const double EXACT = 1e-12;
 static const double FADES = 0.5;
 static const double FAR = 40.0;
 static const double FINEST = 1e-06;
+static const double FLAT_COEFFICIENT = 550.9;
+static const double FLAT_EXPONENT = 1.422;
 static const double FLAT_RADIUS = 100000.0;
 static const double HULL1996 = 0.0;
 static const double JERK_MAX = 32.0;
@@ -703,6 +705,9 @@ static inline Tuple14 mullins_softening_respond(double signal, Instant instant, 
         return (Tuple14){signal, (Vector3){{largest, counted, path}}};
     }
     double fixed = by_surface * pow(100.0 * width, power);
+    if (!instant.two_sided) {
+        fixed = pow(FLAT_COEFFICIENT, load) * pow(100.0 * width, 1.0 + load * FLAT_EXPONENT);
+    }
     double below = (largest - measure) / (ratio * largest + fixed);
     below += gaussian * below * below;
     if (gathering > 0.0) {
