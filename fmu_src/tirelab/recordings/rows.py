@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,8 +78,14 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     for which, said in (
         (_repeated, "equal to the row before, its time among it"),
         (_before_the_clock, "before the clock runs"),
-        (_lost, "readings that the gauge of the deflection lost, far from those before and after"),
-        (_false, "false readings of the deflection, off the motion before and after by more than noise"),
+        (
+            partial(_misread, lost_readings),
+            "readings that the gauge of the deflection lost, far from those before and after",
+        ),
+        (
+            partial(_misread, false_readings),
+            "false readings of the deflection, off the motion before and after by more than noise",
+        ),
     ):
         skipped = which(values)
         if len(skipped):
@@ -155,20 +162,14 @@ def _before_the_clock(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
     return still if np.array_equal(still, np.arange(len(still))) else none
 
 
-def _lost(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
-    """Return the rows whose deflection was lost."""
+def _misread(
+    search: Callable[[FloatArray, FloatArray], NDArray[np.intp]], values: Mapping[str, FloatArray]
+) -> NDArray[np.intp]:
+    """Return the rows whose deflection was not read, as a search in deflection and force finds them."""
     deflection, force = values.get("deflection"), values.get("force")
     if deflection is None or force is None:
         return np.empty(0, dtype=np.intp)
-    return lost_readings(deflection, force)
-
-
-def _false(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
-    """Return the rows whose deflection is none of the motion."""
-    deflection, force = values.get("deflection"), values.get("force")
-    if deflection is None or force is None:
-        return np.empty(0, dtype=np.intp)
-    return false_readings(deflection, force)
+    return search(deflection, force)
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:
