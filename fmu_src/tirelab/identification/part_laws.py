@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -45,11 +46,16 @@ SAMPLES_OF_LINE = 8
 """Fewest samples of one of many lines: four for each of its two numbers. A place is one of as many parts of a line."""
 
 
+UNSEEN = 1e-9
+"""Part of what a law leaves by which a constant moves its force at most where the recordings do not determine it."""
+
+
 @dataclass(frozen=True)
 class LawFit:
     """One law fitted: its constants with standard uncertainties for white noise, and the RMSE [N] it leaves.
 
-    constants: symbol, value, uncertainty and unit of each; bic: Bayesian criterion relative to nothing, lower is better
+    constants: symbol, value, uncertainty (without end where nothing determines it) and unit of each
+    bic: Bayesian criterion relative to nothing, lower is better
     at: the deflections [m] whose forces the constants are, in the piecewise law
     """
 
@@ -66,7 +72,7 @@ class LawFit:
     def to_dict(self) -> dict[str, Any]:
         """Return it for JSON."""
         constants = {
-            symbol: {"value": value, "std": deviation, "unit": unit}
+            symbol: {"value": value, "std": deviation if isfinite(deviation) else None, "unit": unit}
             for symbol, value, deviation, unit in self.constants
         }
         return {"name": self.name, "constants": constants, "rmse": self.rmse, "bic": self.bic}
@@ -143,6 +149,7 @@ def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fi
     seen = derivatives / sizes
     covariance = variance * np.linalg.pinv(seen.T @ seen)
     spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / sizes
+    spread[sizes * np.maximum(np.abs(values), 1.0) <= UNSEEN * np.sqrt(squares)] = np.inf
     constants = tuple(
         (symbol, float(value * factor), float(abs(factor) * deviation), unit)
         for (symbol, factor, unit), value, deviation in zip(symbols, values, spread, strict=True)
@@ -261,7 +268,10 @@ def _shifted(s: _Samples, name: str) -> LawFit:
     values, fitted = min(found, key=lambda f: float(f[1][0] @ f[1][0]))
     gap = ("x0", 10.0, "mm")
     symbols = (("k", 0.1, "N/mm"), gap) if linear else (("A", 1.0, "N/cm^B"), ("B", 1.0, "1"), gap)
-    return _fit(name, symbols, values, fitted)
+    fit = _fit(name, symbols, values, fitted)
+    *others, (symbol, begins, deviation, unit) = fit.constants
+    far = deviation > 10.0 * float(np.ptp(s.x))  # in mm: it lies anywhere
+    return replace(fit, constants=(*others, (symbol, begins, np.inf if far else deviation, unit)))
 
 
 def _power_start(s: _Samples, begins: float) -> Array:

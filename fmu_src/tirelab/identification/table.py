@@ -47,6 +47,8 @@ def law_table(fits: Sequence[LawFit]) -> Table:
     for fit in fits:
         constants = [
             f"{symbol} = {with_uncertainty(value, spread)}{'' if unit == '1' else ' ' + unit}"
+            if math.isfinite(spread)
+            else f"{symbol} not determined"
             for symbol, value, spread, unit in fit.constants
         ]
         if len(constants) > SHOWN:

@@ -18,7 +18,7 @@ def test_a_part_that_is_only_pulled_has_its_line_too(start: float) -> None:
     assert fits["linear"].value("k") == pytest.approx(20.0, rel=0.01)
     assert fits["linear"].value("F0") == pytest.approx(30.0, abs=4.0)
     assert all(np.isfinite(fit.rmse) for fit in fits.values())
-    # the laws with a gap have no force here, so a constant of exactly 0 has no uncertainty to round to
+    # the laws with a gap have no force here, so nothing determines their constants
     assert law_table(tuple(fits.values())).row_count == len(fits)
     assert with_uncertainty(0.0, 0.0) == "0 ± 0"
 
@@ -103,6 +103,16 @@ def test_the_pressure_of_mf_tyre() -> None:
     assert fit.value("q2") == pytest.approx(1.0, rel=0.02)
     assert fit.value("p") == pytest.approx(0.7, abs=0.01)
     assert fit.rmse == pytest.approx(2.0, rel=0.08)
+
+
+def test_constants_that_nothing_determines_have_no_uncertainty() -> None:
+    """A force that falls has no gap: the line through the mean begins anywhere."""
+    x = np.linspace(0.0, 0.03, 400)
+    falling = {fit.name: fit for fit in fit_laws([recording(x, 900.0 / (1.0 + 300.0 * x) ** 2)])}
+    beginning = falling["linear_gap"].constants[1]
+    assert np.isinf(beginning[2])
+    assert falling["linear_gap"].to_dict()["constants"]["x0"]["std"] is None
+    assert all(np.isfinite(std) for _, _, std, _ in falling["polynomial"].constants)
 
 
 def test_one_surface_at_a_time() -> None:
