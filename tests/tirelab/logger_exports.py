@@ -44,6 +44,24 @@ def _(path: Path, m: Motion) -> None:
     path.write_text(head + table((m.time, m.force, mm(m)), "\t"))
 
 
+@export("labview_bare_ends.lvm")
+def _(path: Path, m: Motion) -> None:
+    """Without the tabs at the ends of lines, the names are a cell wider than the numbers, and X_Dimension is not."""
+    head = (
+        "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tOne\n"
+        "***End_of_Header***\n\nChannels\t2\nSamples\t400\t400\nDate\t2025/06/03\t2025/06/03\n"
+        "Y_Unit_Label\tNewtons\tmm\nX_Dimension\tTime\tTime\nX0\t0.0\t0.0\nDelta_X\t0.1\t0.1\n"
+        "***End_of_Header***\nX_Value\tForce\tDisplacement\tComment\n"
+    )
+    path.write_text(head + table((m.time, m.force, mm(m)), "\t"))
+
+
+@export("scale_in_grams.csv")
+def _(path: Path, m: Motion) -> None:
+    columns = (np.round(1e3 * m.time), 1e6 * m.deflection, m.force / 9.80665e-3)
+    path.write_text("millis,position_um,weight_g\n" + table(columns, ","))
+
+
 @export("labview_headings.lvm")
 def _(path: Path, m: Motion) -> None:
     head = (

@@ -17,7 +17,7 @@ from .matching import Match, columns_listed
 from .metadata import Settings
 from .origin import Origin
 from .plausibility import guessed_units
-from .units import is_unit, meant_unit, measures
+from .units import UnitError, given_conversion, is_unit, meant_unit, measures
 from .vocabulary import begins_like, counts_rows, is_strained
 
 FloatArray = NDArray[np.float64]
@@ -105,11 +105,15 @@ def asked(
         )
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
-    likely = guessed_units(sized, settings.part)
+    likely = guessed_units(sized, settings.part, _metres(headers, matches, settings))
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
     without_unit = [*lacking.units, *(n for n, i in guessed.items() if not unit_of_column(headers[i], n))]
     units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
-    units |= {n: unit for n, i in guessed.items() if (unit := meant_unit(headers[i].unit or "", UNIT_OF[n]))}
+    units |= {
+        n: meant
+        for n, i in guessed.items()
+        if (meant := meant_unit(unit_of_column(headers[i], n) or "", UNIT_OF[n]))
+    }
     units |= {name: meant for name, (_, meant) in lacking.wrong.items()}
     radius = "flat" if lacking.radius else None
     whole = Settings(
@@ -196,6 +200,16 @@ def _no_column(
     return what, f"name it with {advice}"
 
 
+def _metres(headers: Sequence[Header], matches: Mapping[str, Match], settings: Settings) -> float | None:
+    """Return the unit of the deflection [m]; None where it is not known."""
+    match = matches.get("deflection")
+    stated = unit_of_column(headers[match.index], "deflection") if match is not None else None
+    try:
+        return given_conversion(settings.units.get("deflection") or stated or "", "m").multiplied
+    except UnitError:
+        return None
+
+
 def _pulls(force: FloatArray | None) -> bool:
     """Whether a force has both signs."""
     if force is None:
@@ -270,9 +284,8 @@ def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> frozenset
 
 def _states(header: Header, name: str) -> bool:
     """Whether a column states a unit of a channel, or one by which it is meant."""
-    return measures(unit_of_column(header, name) or "", UNIT_OF[name]) or bool(
-        meant_unit(header.unit or "", UNIT_OF[name])
-    )
+    unit = unit_of_column(header, name) or ""
+    return measures(unit, UNIT_OF[name]) or bool(meant_unit(unit, UNIT_OF[name]))
 
 
 def _axis(header: Header) -> str:

@@ -9,8 +9,9 @@ from .assignments import assignments
 from .formats import Header, RecordingError
 from .formats.table import quoted
 from .origin import in_quotes
-from .units import measures
+from .units import meant_unit, measures
 from .vocabulary import (
+    any_channel,
     foreign_channel,
     glued_ends,
     is_measured,
@@ -117,6 +118,9 @@ EXAMPLE_UNITS = {channel.name: channel.example for channel in CHANNELS}
 UNIT_OF = {channel.name: channel.unit for channel in CHANNELS}
 """The SI unit of each channel."""
 
+_NAMED = {word: channel.name for channel in CHANNELS for word in channel.words}
+"""The channel of each of these names."""
+
 _GERMAN_SYMBOL = {"deflection": "s"}
 """Symbols of channels in German exports, taken where a fitting unit follows: s [mm]."""
 
@@ -156,11 +160,20 @@ def known_channel(name: str, where: str) -> None:
 
 
 def unit_of_column(header: Header, channel: str) -> str | None:
-    """The unit a column states, in brackets, in its properties, or at the end of its name: force_N."""
+    """The unit a column states, in brackets, in its properties, or at the end of its name: force_N.
+
+    Behind a word for the channel it may be one that stands for another: load_kg.
+    """
     if header.unit:
         return header.unit
-    _, mark, tail = header.name.rpartition("_")
+    base, mark, tail = header.name.rpartition("_")
     if mark and tail not in _NO_SUFFIX_UNITS and measures(tail, UNIT_OF[channel]):
+        return tail
+    if (
+        mark
+        and channel in (_NAMED.get(_words(base)), any_channel(base))
+        and meant_unit(tail, UNIT_OF[channel])
+    ):
         return tail
     parts = name_and_unit(header.name)
     fits = parts is not None and parts[1] not in _NO_SUFFIX_UNITS and measures(parts[1], UNIT_OF[channel])

@@ -361,29 +361,32 @@ def _likely_clock(time: FloatArray) -> str:
     return likely[-1] if likely else "s"
 
 
-def guessed_units(columns: Mapping[str, FloatArray], part: bool = False) -> dict[str, str]:
+def guessed_units(
+    columns: Mapping[str, FloatArray], part: bool = False, metres: float | None = None
+) -> dict[str, str]:
     """Return the likeliest unit of each of the channels time, deflection, radius and force, from their sizes alone.
 
     part: not of a tire, so that the size of the force says nothing and that of the deflection little
+    metres: the unit of the deflection where it is known
     """
     guesses: dict[str, str] = {}
     if "time" in columns:
         guesses["time"] = _likely_clock(columns["time"])
-    stroke = (
-        float(np.nanmax(columns["deflection"]) - np.nanmin(columns["deflection"]))
-        if "deflection" in columns
-        else 0.0
-    )
-    if part and stroke > 0.0:
+    moved = columns.get("deflection", np.zeros(1))
+    stroke = float(np.nanmax(moved) - np.nanmin(moved))
+    if metres is not None:
+        stroke *= metres
+    elif part and stroke > 0.0:
         guesses["deflection"] = next(unit for unit, most in PART_STROKES if stroke <= most)
     elif stroke > 0.0:
         stroke = min(max(stroke, 1e-12), 1e12)  # a damaged number is no length, and its powers are no numbers
         sized = [(abs(float(np.log(stroke * f / 0.02))), name) for name, f in LENGTHS if name != "in"]
         guesses["deflection"] = min(sized)[1]
+        stroke *= dict(LENGTHS)[guesses["deflection"]]
     if "force" in columns and part:
         guesses["force"] = "N"
     elif "force" in columns and stroke > 0.0:
-        usual = USUAL[0] * (100.0 * stroke * dict(LENGTHS)[guesses["deflection"]]) ** USUAL[1]
+        usual = USUAL[0] * (100.0 * stroke) ** USUAL[1]
         load = min(max(float(np.nanmax(np.abs(columns["force"]))), 1e-300), 1e300)
         guesses["force"] = min(
             (abs(float(np.log(load * f / usual))), u) for u, f in (("N", 1.0), ("kN", 1e3))

@@ -246,7 +246,7 @@ def read_recording(
     units: Mapping[str, str] | None = None,
     **more: Unpack[Exported],
 ) -> Recording:
-    """A recording from a file: CSV, TSV, Parquet, .mat, MDF4, TDMS or Excel, by its suffix.
+    """A recording from a file: CSV, TSV, Parquet, JSON, .mat, MDF4, TDMS or Excel, by its suffix.
 
     Parameters
     path      of the file; `press.csv@10s:20s` is that part of it, `@100:2000` those rows, `@trial2` the second of tests

@@ -122,6 +122,11 @@ class Conversion:
     offset: float = 0.0
     absolute_pressure: bool = False
 
+    @property
+    def multiplied(self) -> float:
+        """One of the unit in SI, without an offset."""
+        return self.multiply / self.divide
+
     def to_si(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """The values in SI, NaN and infinities passed on; worked out in place if the array may be written."""
         if (self.multiply, self.divide, self.offset) == (1.0, 1.0, 0.0):

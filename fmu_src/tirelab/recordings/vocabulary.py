@@ -133,7 +133,7 @@ SECOND = {
         *("distance entre mors", "tool separation", "grip to grip separation", "grip separation", "gap"),
         *("depth", "eindringtiefe", "tiefe", "profondeur", "profundidad", "profondita"),
     ),
-    "force": ("fx", "fy"),
+    "force": ("fx", "fy", "weight", "gewicht", "poids", "peso"),
 }
 """Names of each channel, in any language, that are taken where no column has one of the others."""
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from .delimited import DelimitedTable
 from .excel import ExcelTable
 from .hdf5 import Hdf5Table
+from .json import JsonTable
 from .matlab import matlab_table
 from .mdf import MdfTable
 from .parquet import ParquetTable
@@ -38,6 +39,9 @@ LOADERS: dict[str, Callable[[Path], Table]] = {
     ".prn": DelimitedTable,
     ".parquet": ParquetTable,
     ".pq": ParquetTable,
+    ".json": JsonTable,
+    ".jsonl": JsonTable,
+    ".ndjson": JsonTable,
     ".mat": matlab_table,
     ".h5": Hdf5Table,
     ".hdf5": Hdf5Table,

@@ -53,7 +53,8 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     lines: of the text; start: the first that is no comment; separator: of the columns where the file declares it
 
     The longest run of rows of numbers of one width is the table. Its header is the row above it, of the same width and
-    without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run.
+    without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run. So is
+    that one where it is a cell wider or narrower and names as many.
     """
     best: tuple[int, list[_Row], int, str] | None = None
     for candidate in separator or SEPARATORS:
@@ -69,9 +70,11 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     texts = [row for row in texts if _SETTING.match(row.cells[0]) is None]
     above = [row for row in texts if len(row.cells) == width]
     header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
-    if header is None or not _named(header.cells):
-        header = next(iter(_nearly_as_wide(texts, rows, first)), header)
-    else:
+    named = _named(header.cells) if header is not None else 0
+    near = next(iter(_nearly_as_wide(texts, rows, first)), None)
+    if not named or (near is not None and _named(near.cells) >= named):
+        header = near or header
+    elif header is not None:
         header = next(row for row in above if _named(row.cells) == _named(header.cells))
     if header is not None:
         return TablePlace(found, start + header.line)

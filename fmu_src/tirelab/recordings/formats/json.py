@@ -1,0 +1,74 @@
+"""JSON files: a list of samples, {"time": 0.0, "force": 1.5}, one below the other or in brackets, or a list for each
+channel, {"time": [...], "force": [...]}; units stand in the names, as in a CSV header.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from ..origin import Origin
+from .libraries import reading_with
+from .parquet import frame_headers, series_values
+from .table import Columns, Header, RecordingError, Wanted, sample_place
+from .text_column import LOOKED_AT, headers_of_text
+
+LINES = (".jsonl", ".ndjson")
+"""Suffixes of files with one sample in each line."""
+
+
+class JsonTable:
+    """A JSON file; what a sample does not have is blank."""
+
+    time_axis: int | None = None
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with reading_with(path, "JSON"):
+            self.frame = _frame(path)
+        self.rows = self.frame.height
+        named = frame_headers(self.frame.schema)
+        self.headers: Sequence[Header]
+        self.headers, self.above, self.notes = headers_of_text(
+            named, self.frame.head(LOOKED_AT).get_columns()
+        )
+
+    def bytes_needed(self, columns: int) -> int:
+        """The columns as float64; the file is in memory already."""
+        return self.rows * columns * 8
+
+    def read(self, wanted: Sequence[Wanted]) -> Columns:
+        """The columns wanted."""
+        origin, found = Origin(self.path.name), [(self.headers[want.index], want.channel) for want in wanted]
+        values = tuple(
+            series_values(origin, header, self.frame[header.text][self.above :], channel)
+            for header, channel in found
+        )
+        return Columns(values, sample_place, self.notes)
+
+
+def _frame(path: Path) -> pl.DataFrame:
+    if path.suffix.lower() in LINES:
+        return pl.read_ndjson(path, infer_schema_length=None)
+    held = json.loads(path.read_bytes())
+    lists = {name: v for name, v in held.items() if isinstance(v, list)} if isinstance(held, dict) else {}
+    tables = [v for v in ([held] if isinstance(held, list) else lists.values()) if _is_rows(v)]
+    if len(tables) == 1:
+        return pl.from_dicts(tables[0], infer_schema_length=None, strict=False)
+    longest = max(map(len, lists.values()), default=0)
+    if tables or longest < 2:
+        raise RecordingError(
+            f"{path.name}: {f'holds {len(tables)} tables' if tables else 'no table is found in it'}; write one list of "
+            'samples, [{"time": 0.0, "deflection": 0.1, "force": 1.5}, ...], or one list for each channel'
+        )
+    columns = {name: v for name, v in lists.items() if len(v) == longest}
+    return pl.DataFrame(columns, strict=False)
+
+
+def _is_rows(held: Any) -> bool:
+    """Whether this is a list of samples."""
+    return isinstance(held, list) and len(held) > 1 and all(isinstance(row, dict) for row in held)

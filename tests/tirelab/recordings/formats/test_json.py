@@ -1,0 +1,54 @@
+"""The recording comes the same from JSON, in rows, lines or columns, and what is none is refused."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from one_recording import COLUMNS, SAMPLES, TIME, assert_the_recording, refusal
+from tirelab.recordings.recording import read_recording
+
+LISTS = {name: np.asarray(values).tolist() for name, values in COLUMNS.items()}
+ROWS = [dict(zip(LISTS, row, strict=True)) for row in zip(*LISTS.values(), strict=True)]
+
+WRITTEN: dict[str, Callable[[], str]] = {
+    "rows.json": lambda: json.dumps(ROWS),
+    "columns.json": lambda: json.dumps({"operator": "me", "short": [1, 2], **LISTS}),
+    "named.json": lambda: json.dumps({"rig": {"load cell": 3}, "samples": ROWS}),
+    "lines.jsonl": lambda: "\n".join(map(json.dumps, ROWS)),
+    "lines.ndjson": lambda: "\n".join(map(json.dumps, ROWS)) + "\n",
+}
+
+
+class TestJson:
+    @pytest.mark.parametrize("name", WRITTEN)
+    def test_columns_with_units_in_their_names(self, tmp_path: Path, name: str) -> None:
+        (tmp_path / name).write_text(WRITTEN[name](), encoding="utf-8")
+        assert_the_recording(read_recording(tmp_path / name, radius="flat"))
+
+    def test_what_a_sample_does_not_have_is_blank(self, tmp_path: Path) -> None:
+        force = next(name for name in LISTS if "orce" in name)
+        rows = [{n: v for n, v in row.items() if i != 8 or n != force} for i, row in enumerate(ROWS)]
+        (tmp_path / "a.json").write_text(json.dumps(rows), encoding="utf-8")
+        recording = read_recording(tmp_path / "a.json", radius="flat")
+        assert "skipped for want of force: sample 9" in recording.notes
+        np.testing.assert_allclose(recording.time, np.delete(TIME, 8), atol=1e-12)
+
+    @pytest.mark.parametrize(
+        ("held", "said"),
+        [
+            ({"a": ROWS, "b": ROWS}, "holds 2 tables; write one list of samples"),
+            ({"rig": 3}, "no table is found in it"),
+            (5, "no table is found in it"),
+            ([1.0] * SAMPLES, "no table is found in it"),
+        ],
+    )
+    def test_what_is_no_table_is_told(self, tmp_path: Path, held: Any, said: str) -> None:
+        (tmp_path / "a.json").write_text(json.dumps(held), encoding="utf-8")
+        assert said in refusal(tmp_path / "a.json")
+
+    def test_what_is_cut_short_is_told(self, tmp_path: Path) -> None:
+        (tmp_path / "a.json").write_text(json.dumps(ROWS)[:-20], encoding="utf-8")
+        assert "cannot be read as JSON" in refusal(tmp_path / "a.json")
