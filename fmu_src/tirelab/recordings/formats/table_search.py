@@ -53,8 +53,8 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     lines: of the text; start: the first that is no comment; separator: of the columns where the file declares it
 
     The longest run of rows of numbers of one width is the table. Its header is the row above it, of the same width and
-    without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run. So is
-    that one where it is a cell wider or narrower and names as many.
+    without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run. So
+    is that one where it is a cell wider or narrower and names as many.
     """
     best: tuple[int, list[_Row], int, str] | None = None
     for candidate in separator or SEPARATORS:
