@@ -19,12 +19,19 @@ def values_of(name: str, **given: float) -> tuple[float, ...]:
     return tuple(given.get(p.name, p.start) for p in CATALOGUE[name].parameters)
 
 
-def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] = (np.inf,)) -> Fit:
+HULL = TireModel()
+
+
+def fit_of(
+    effects: Mapping[str, Mapping[str, float]],
+    radii: tuple[float, ...] = (np.inf,),
+    tire: TireModel = HULL,
+) -> Fit:
     """Return a fit of these effects, each by some of its parameters, to a ride on each of these surfaces."""
     time, deflection, _ = ride(3, samples=1200)
     drive = read("ride", time, deflection, flat_force(deflection), 3)
     drives = [type(drive)(f"{r}", time, drive.deflection, np.full(time.size, r), drive.force) for r in radii]
-    dataset = dataset_of(drives, TireModel())
+    dataset = dataset_of(drives, tire)
     values = {n: law_start(dataset) if n == LAW else values_of(n, **given) for n, given in effects.items()}
     problem = problem_of(dataset, values, plain=True)
     positions = problem.positions(values)
@@ -35,6 +42,8 @@ def fit_of(effects: Mapping[str, Mapping[str, float]], radii: tuple[float, ...] 
     return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), left, 1.0, {}, 1)
 
 
-def model_of(effects: Mapping[str, Mapping[str, float]], radius: float = np.inf) -> FittedModel:
+def model_of(
+    effects: Mapping[str, Mapping[str, float]], radius: float = np.inf, tire: TireModel = HULL
+) -> FittedModel:
     """Return a fitted model of these effects on one surface."""
-    return FittedModel(fit_of(effects, (radius,)))
+    return FittedModel(fit_of(effects, (radius,), tire))

@@ -146,9 +146,9 @@ def insufficient_excitation(
 
 
 def _hold_level(dataset: RawDataset) -> str:
-    """Return a deflection to hold, with its unit; within the recorded ones where all of them are below 0."""
+    """Return a deflection to hold, with its unit, within the recorded ones."""
     most = dataset.max_deflection
-    least = min(float(e.motion.deflection.min()) for e in dataset.experiments) if most < 0.0 else 0.0
+    least = min(float(e.motion.deflection.min()) for e in dataset.experiments)
     level = 1e3 * (least + HOLD_DEPTH * (most - least))
     return f"{level:.{'0f' if abs(level) >= 1.0 else '2g'}} mm".replace("-", "\N{MINUS SIGN}")
 

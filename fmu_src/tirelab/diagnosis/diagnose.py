@@ -116,7 +116,7 @@ def diagnose(
     contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
     contradiction = contradiction or _contradicted_by(candidates, accepted, fitted, kept)
     report("searching for a test that separates the alternatives")
-    test = _recommend(explanation, alternatives, fit.noise, limits or _limits_of(data))
+    test = _recommend(explanation, alternatives, fit.noise, _limits_of(data, limits, part=baseline.is_part))
     missing = not_compared(fitted)
     sentences = [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(accepted.effects, alternatives, models, confidence, fit, test))
@@ -291,13 +291,20 @@ def _recommend(
     return nearest
 
 
-def _limits_of(data: _Data) -> Limits:
-    """Return the limits of a rig that drove these recordings, and can drive twice as fast."""
-    deepest = data.samples.max_deflection
+def _limits_of(data: _Data, given: Limits | None, *, part: bool) -> Limits:
+    """Return the given limits, or those of a rig that drove these recordings, and can drive twice as fast.
+
+    A tire is pressed from 0; a part moves from the least deflection that was recorded, which may be anywhere.
+    """
+    motions = [e.motion for e in data.samples.experiments]
+    start = min(float(m.deflection.min()) for m in motions) if part else 0.0
+    if given is not None:
+        return replace(given, start=start)
+    stroke = data.samples.max_deflection - start
     if not data.timed:
-        return Limits(deepest=deepest, fastest=USUAL_SPEED)
-    fastest = 2.0 * max(float(np.abs(e.motion.rate).max()) for e in data.samples.experiments)
-    return Limits(deepest=deepest, fastest=max(USUAL_SPEED, fastest))
+        return Limits(deepest=stroke, fastest=USUAL_SPEED, start=start)
+    fastest = 2.0 * max(float(np.abs(m.rate).max()) for m in motions)
+    return Limits(deepest=stroke, fastest=max(USUAL_SPEED, fastest), start=start)
 
 
 __all__ = ["PoorRecording", "Recorded", "catalogue_names", "diagnose"]

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..estimation.findings import FittedModel
-from ..planning.waveforms import WAVEFORMS, Limits, sample_times
+from ..planning.waveforms import WAVEFORMS, Limits, motion, sample_times
 from ..preprocessing.motion import FloatArray
 from ..regressors.dataset import BLOCKS
 from ..report.titles import question
@@ -65,6 +65,11 @@ class DiscriminatingTest:
     ground: bool = True
 
     @property
+    def begins_at(self) -> float:
+        """Least deflection [m], 0 of a tire."""
+        return float(self.test.deflection.min()) if not self.ground else 0.0
+
+    @property
     def sufficient(self) -> bool:
         """Whether the test separates the two sets."""
         return math.sqrt(2.0 * self.gain) >= DECISIVE
@@ -83,8 +88,9 @@ class DiscriminatingTest:
                 return f"{none} less than a hundredth of the noise."
             return f"{none} at most {differ} ({self.test.name}{place})."
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
+        begins = f" from {1e3 * self.begins_at:.1f}" if self.begins_at else ""
         return (
-            f"Drive {self.test.name} to {1e3 * path.max():.1f} mm{place}, at up to {rate:.0f} mm/s, for "
+            f"Drive {self.test.name}{begins} to {1e3 * path.max():.1f} mm{place}, at up to {rate:.0f} mm/s, for "
             f"{self.test.time[-1] - self.test.time[0]:.0f} s. It decides {asked}: the forces differ by {differ}."
         )
 
@@ -94,6 +100,7 @@ class DiscriminatingTest:
         return {
             "waveform": t.name,
             "duration": float(t.time[-1]),
+            "begins_at": self.begins_at,
             "amplitude": float(t.deflection.max()),
             "rate_max": float(np.abs(np.gradient(t.deflection, t.time)).max()),
             "surfaces": [
@@ -123,7 +130,7 @@ def discriminate(
     surfaces = known if len(known) == 1 else [known[0], known[-1]]
     for name, waveform in WAVEFORMS.items():
         for radius in surfaces:
-            path = waveform(limits)
+            path = motion(waveform, limits)
             test = Test(name, sample_times(limits), path, np.full(path.size, radius))
             difference = simulate(true.tire, test) - simulate(refitted.tire, test)
             sensitivities = refitted.sensitivities(test)

@@ -56,8 +56,10 @@ class Diagnosed:
             return rig
         radii = np.unique(np.concatenate([d.surface_radius for d in self.recorded]))
         surfaces = sorted((float(r) for r in radii), key=lambda r: abs(1.0 / r))[:MOST_SURFACES]
-        stroke = max(float(np.abs(d.deflection).max()) for d in self.recorded)
-        return replace(rig, surfaces=tuple(surfaces), stroke=stroke)
+        least = min(float(d.deflection.min()) for d in self.recorded)
+        start = least if self.tire is not None and self.tire.is_part else 0.0
+        stroke = max(float(np.abs(d.deflection - start).max()) for d in self.recorded)
+        return replace(rig, surfaces=tuple(surfaces), stroke=stroke, start=start)
 
 
 def read_diagnosed(path: Path) -> Diagnosed:

@@ -15,7 +15,7 @@ from ..recordings.description import surface_text
 from ..regressors.experiment import Blocks, Experiment
 from ..simulation.simulate import simulate
 from .rig import Rig
-from .waveforms import CORNER, MENU, sample_times
+from .waveforms import CORNER, MENU, motion, sample_times
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -78,7 +78,7 @@ class Drive:
 def drive_of(waveform: str, part: float, radius: float, rig: Rig, pressure: float | None = None) -> Drive:
     """Return a motion of MENU that takes a part of the rig's time on a surface [m]."""
     limits = rig.limits(part * rig.time)
-    path = MENU[waveform](limits)
+    path = motion(MENU[waveform], limits)
     return Drive(waveform, sample_times(limits), path, np.full(path.size, radius), pressure)
 
 

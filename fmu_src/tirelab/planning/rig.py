@@ -38,6 +38,7 @@ class Rig:
     stroke [m]: largest deflection; speed [m/s]: fastest motion; surfaces [m]: radii that can be mounted, flat infinite;
     pressures [Pa]: gauge pressures that can be held, none: as it is; time [s]: of driving, all recordings together;
     sampling [s]: between samples; noise [N]: standard deviation of one sample of the force
+    start [m]: deflection from which a motion goes; of a part what was recorded says it, and no file of a rig
     """
 
     stroke: float = 0.02
@@ -47,10 +48,12 @@ class Rig:
     time: float = 300.0
     sampling: float = 0.005
     noise: float = 5.0
+    start: float = 0.0
 
     def limits(self, duration: float) -> Limits:
         """Return the limits of one motion of this duration [s]."""
-        return Limits(self.stroke, self.speed, self.sampling, duration, self.surfaces, self.pressures)
+        held = self.surfaces, self.pressures
+        return Limits(self.stroke, self.speed, self.sampling, duration, *held, self.start)
 
     @property
     def test_limits(self) -> Limits:
@@ -58,7 +61,7 @@ class Rig:
         return self.limits(min(self.time, Limits().longest))
 
 
-KEYS = tuple(field.name for field in fields(Rig))
+KEYS = tuple(field.name for field in fields(Rig) if field.name != "start")
 
 _EXAMPLES = {
     "stroke": "20mm",

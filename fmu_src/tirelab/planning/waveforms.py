@@ -13,8 +13,9 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Limits:
-    """What the rig can do: largest deflection [m], fastest motion [m/s], sampling step [s], longest test [s].
+    """What the rig can do: longest stroke [m], fastest motion [m/s], sampling step [s], longest test [s].
 
+    start [m]: deflection from which a motion goes, 0: of a tire that just touches
     surfaces [m]: radii that can be mounted; none: those that were recorded
     pressures [Pa]: gauge pressures that can be held; none: not known
     """
@@ -25,6 +26,7 @@ class Limits:
     longest: float = 60.0
     surfaces: tuple[float, ...] = ()
     pressures: tuple[float, ...] = ()
+    start: float = 0.0
 
 
 def second_pressure(limits: Limits | None) -> str:
@@ -47,6 +49,11 @@ CORNER = 8
 def readable_rate(limits: Limits) -> float:
     """Return the fastest rate [m/s] of a motion: the rig's, or what its sampling can read."""
     return min(limits.fastest, limits.deepest / (STROKE * limits.step))
+
+
+def motion(waveform: Waveform, limits: Limits) -> FloatArray:
+    """Return the deflections [m] of a waveform, which goes from 0 to the longest stroke, from the rig's start."""
+    return limits.start + waveform(limits)
 
 
 def rounded(make: Waveform) -> Waveform:

@@ -11,6 +11,7 @@ from .sketches import draw_waveform
 FACTS = (  # key of diagnosis.json, title, unit, and what stands in place of the unit
     ("waveform", "Motion", "", ""),
     ("surfaces", "Surface", "", ""),
+    ("begins_at", "Least deflection", "m", ""),
     ("amplitude", "Largest deflection", "m", ""),
     ("rate_max", "Fastest rate", "m/s", ""),
     ("duration", "Duration", "s", ""),

@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from drives import Drive, damped, flat_force, read, ride
-from radialtire import CATALOGUE, TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from rivals import rivals
 from scipy.signal import butter, lfilter
 from tirelab.diagnosis.confidence import of_confounded, probability, sharing_odds
-from tirelab.diagnosis.diagnose import PoorRecording, catalogue_names, diagnose
+from tirelab.diagnosis.diagnose import PoorRecording, _Data, _limits_of, catalogue_names, diagnose
+from tirelab.planning.waveforms import Limits
+from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.simulation.simulate import simulate
 
 
@@ -258,3 +260,17 @@ def test_slow_noise_beside_a_hum_is_no_drift(seed):
     verdict = diagnose([read("quiet", time, deflection, force, seed, noise=4.0)])
     assert verdict.effects == ()
     assert not verdict.unexplained_by
+
+
+def test_the_next_test_of_a_part_stays_where_it_was_recorded() -> None:
+    """A spring read between 10 and 12 mm on a gauge of its own; of a tire the next test begins at 0."""
+    time = np.arange(0.0, 20.0, 0.01)
+    spring = TireModel(law=PowerLaw(100.0, 1.0), two_sided=True)
+    x = 0.011 + 0.001 * np.sin(time)
+    recordings = [read("spring", time, x, 1e4 * x, 1)]
+    data = _Data(recordings, raw_dataset_of(recordings, spring), [])
+    limits = _limits_of(data, None, part=True)
+    assert (limits.start, limits.deepest) == pytest.approx((0.010, 0.002), abs=1e-5)
+    assert _limits_of(data, Limits(deepest=0.03), part=True).start == limits.start
+    assert _limits_of(data, None, part=False).start == 0.0
+    assert _limits_of(data, None, part=False).deepest == pytest.approx(0.012, rel=1e-3)

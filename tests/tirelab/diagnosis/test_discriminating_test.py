@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fits import model_of
+from radialtire import PowerLaw, TireModel
 from scipy.stats import norm
 from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate, expected_gain
 from tirelab.planning.waveforms import Limits
@@ -71,6 +72,21 @@ def test_the_sentence_says_what_to_drive_and_on_which_surface():
     assert "on a concave surface of radius 38.1 cm, at up to " in found.sentence
     assert "It decides between viscous damping and friction loop: the forces differ by " in found.sentence
     assert discriminate(viscous(), friction(), 6.0, Limits()).sentence.count("on flat ground") == 1
+
+
+def test_a_part_is_driven_where_it_was_recorded():
+    """A joint between -1165 and -659 mm: from one end to the other, no faster than the rig, and it says so."""
+    part = TireModel(law=PowerLaw(1.0, 1.0), two_sided=True)
+    pair = [model_of(effects, tire=part) for effects in ({"viscous_damping": {"damping": 2500.0}}, SLIPPING)]
+    limits = Limits(deepest=0.506, fastest=0.164, start=-1.165)
+    found = discriminate(*pair, 0.5, limits)
+    path = found.test.deflection
+    assert (path.min(), path.max()) == pytest.approx((-1.165, -0.659), abs=0.001)
+    assert np.abs(np.diff(path)).max() / limits.step < 0.164 * 1.02
+    assert found.sentence.startswith(
+        f"Drive {found.test.name} from {1e3 * path.min():.1f} to -659.0 mm, at up to "
+    )
+    assert found.to_dict()["begins_at"] == pytest.approx(path.min())
 
 
 def test_against_the_baseline_it_is_decided_whether_the_effect_acts():
