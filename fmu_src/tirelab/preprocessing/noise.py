@@ -252,16 +252,13 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
     residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
         found, lag = _noise_of_level(levels.values, last), levels.lags[last]
-        most = _local_rms(residual, lag, slow)
-        rises = any(_rises(levels.values)[last:])
-        if (
-            found.memory == 1
-            or rises
-            or levels.values[last] * STAYS < most
-            or levels.beneath(found) is not found
-        ):
+        most, visits = _local_rms(residual, lag, slow), _seen_visits(driven, found.memory, lag, slow)
+        # Where no place is visited again, a level that rises to the last lag is not seen to stay.
+        rises = any(_rises(levels.values)[last if visits else min(last, len(levels.lags) - 2) :])
+        if found.memory == 1 or rises or levels.values[last] * STAYS < most:
             continue
-        visits = _seen_visits(driven, found.memory, lag, slow)
+        if levels.beneath(found) is not found:
+            continue
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
         if least * STAYS >= most and not any(_may_follow(s, lag, slow, visits) for s in driven.signals.T):
             yield Noise(least, found.memory)

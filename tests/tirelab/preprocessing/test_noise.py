@@ -364,3 +364,16 @@ def test_filtered_noise_is_seen_beside_a_model_in_one_press(length: int) -> None
     found = noise_left_by_hats(np.convolve(white, np.ones(length) / length, mode="valid"), 11)
     assert found.level == pytest.approx(1.0 / np.sqrt(length), rel=0.2)
     assert found.memory == length
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_varies_until_the_longest_lag_where_no_place_comes_again_is_no_noise(seed: int) -> None:
+    """A bar is pulled one way beside noise of 1 N: what its law misses goes up and down by 33 N within 85 samples."""
+    drawn, at = np.random.default_rng(seed), np.arange(1200)
+    quicker = 1.0 + 0.3 * np.sin(2.0 * np.pi * at / 400.0) + 0.1 * drawn.normal(size=at.size)
+    waves = 2.0 * np.abs(np.cumsum(2.0 / 85.0 * quicker) % 2.0 - 1.0) - 1.0
+    missed = waves * np.interp(at, np.linspace(0.0, 1199.0, 60), drawn.uniform(0.3, 1.5, 60))
+    rate = 1.7e-5 * (1.0 + 0.05 * np.sin(at / 80.0))
+    driven = Driven(1.0, np.cumsum(rate), rate, np.gradient(rate), np.zeros(at.size, dtype=np.intp))
+    found = noise_of(33.0 / missed.std() * missed + drawn.normal(size=at.size), driven)
+    assert found.level == pytest.approx(1.0, rel=0.15)
