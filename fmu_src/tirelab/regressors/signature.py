@@ -260,15 +260,14 @@ def _mostly_below_form_error(
 
 
 def _beside_lines(values: FloatArray, x: FloatArray, part: NDArray[np.intp]) -> float:
-    """Return the standard deviation of values (m,) about the straight line over x in each part; infinite where no part
-    has more values than a line.
-    """
+    """Return the standard deviation of values (m,) about the line over x in each part; infinite where all are short."""
     count = np.maximum(np.bincount(part), 1)
 
     def centred(v: FloatArray) -> FloatArray:
         return np.asarray(v - (np.bincount(part, v) / count)[part])
 
     over, own = centred(x), centred(values)
+    over[np.abs(over) < 1e-9 * np.ptp(x)] = 0.0  # rounding, of a motion that is driven in exact steps
     slope = np.bincount(part, over * own) / np.maximum(np.bincount(part, over**2), 1e-300)
     freedom = int(np.sum(np.maximum(count - 2, 0)))
     beside = float(np.sum((own - slope[part] * over)[count[part] > 2] ** 2))

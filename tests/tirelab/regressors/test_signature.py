@@ -284,3 +284,14 @@ def test_on_ground_of_ever_another_radius_a_loop_is_no_function_of_the_deflectio
     force = simulate(TireModel(), silent) + NOISE * np.random.default_rng(6).normal(size=time.size)
     data = dataset_of([replace(silent, force=1.05 * force)], TireModel())
     assert single_valued(signatures_of(LOOPS, data), data) == set()
+
+
+def test_on_a_motion_in_exact_steps_a_loop_is_no_function_of_the_deflection() -> None:
+    """What is left of x in each part is the rounding of its numbers, over which a line would follow any two ways."""
+    time = 0.05 * np.arange(1200)
+    x = 1e-3 * np.round(2.0 * np.abs((time / 2.0 + 1.0) % 2.0 - 1.0), 5)
+    spring = TireModel(PowerLaw(200.0, 1.0), two_sided=True, tested_range=None)
+    loop = 3.0 * np.where(time % 4.0 < 2.0, 1.0, -1.0) * (1.0 - np.exp(-(time % 2.0) / 0.3))
+    force = 2e4 * x + loop + 0.05 * np.random.default_rng(7).normal(size=time.size)
+    data = dataset_of([Recording("steps", time, x, np.full(time.size, np.inf), force)], spring)
+    assert single_valued(signatures_of(LOOPS, data), data) == set()
