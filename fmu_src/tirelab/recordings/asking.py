@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import EXAMPLE_UNITS, UNIT_OF, unit_of_column
+from .channels import EXAMPLE_UNITS, UNIT_OF, ends_in_word, unit_of_column
 from .choices import Choices
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
@@ -268,7 +268,7 @@ def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> frozenset
     A damper's force goes with its rate too, but only a rate has the size of it, but for the units, a power of ten.
     """
     found = set()
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):  # a column may hold anything
         for column in values.values():
             rate = np.gradient(column, time)
             for i, other in values.items():
@@ -310,7 +310,7 @@ def _guessed_columns(
     headers: Sequence[Header],
 ) -> dict[str, int]:
     """Return a likely column for each channel that has none: time rises, others go by their unit, else by the beginning
-    of their name ("forc"), else by their size.
+    of their name ("forc") or its end (`Machine_Load`), else by their size.
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
@@ -355,6 +355,11 @@ def _guessed_columns(
         if name in missing and name not in guessed and other in places and len(stating[name]) > 1:
             beside = places[other]
             guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
+    for name in ("deflection", "force"):
+        said = [i for i in free if ends_in_word(headers[i].name, name)]
+        if name in missing and name not in guessed and len(said) == 1:
+            guessed[name] = said[0]
+            free.remove(said[0])
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     clock = guessed["time"] if "time" in guessed else matches["time"].index if "time" in matches else -1
     if len(free) > len(both) and clock in values:

@@ -271,12 +271,14 @@ def may_be_qualified(header: Header, channel: Channel) -> bool:
         return _words(name) in channel.words or foreign_channel(name) == channel.name
     if channel.name not in ("deflection", "force") or unit is None or not measures(unit, channel.unit):
         return False
-    name = header.name if header.unit else header.name.removesuffix(unit)
+    return ends_in_word(header.name if header.unit else header.name.removesuffix(unit), channel.name)
+
+
+def ends_in_word(name: str, channel: str) -> bool:
+    """Whether a name of what is measured ends in a word of the channel: `Lead actuator force`, `Machine_Load`."""
     words = _words(name.partition("(")[0]).split()
     ends = (" ".join(words[i:]) for i in range(1, len(words)))
-    return is_measured(name) and any(
-        end in channel.words or foreign_channel(end) == channel.name for end in ends
-    )
+    return is_measured(name) and any(channel in (_NAMED.get(end), foreign_channel(end)) for end in ends)
 
 
 def _words(name: str) -> str:

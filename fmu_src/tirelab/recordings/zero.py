@@ -167,8 +167,9 @@ def refuse_too_deep(recordings: Iterable[_Driven]) -> None:
         zero = f", such as --zero deflection={quantity_text('deflection', least)}" if least > FARTHEST else ""
         raise RecordingError(
             f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
-            f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit, give what the gauge reads when "
-            f"nothing is loaded{zero}, or choose a range of the file: FILE@10s:20s (times), FILE@100:2000 (rows)"
+            f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit, count a part that is pulled "
+            "further as negative (--columns 'deflection=-NAME,force=-NAME'), give what the gauge reads when nothing is "
+            f"loaded{zero}, or choose a range of the file: FILE@10s:20s (times), FILE@100:2000 (rows)"
         )
 
 

@@ -174,3 +174,23 @@ def test_the_deflection_is_along_the_axis_of_the_force(tmp_path: Path) -> None:
         "--columns",
         "deflection=#3",
     ]
+
+
+@pytest.mark.parametrize("sign", ["_", " "])
+def test_a_name_that_ends_in_a_word_is_guessed_before_sizes(tmp_path: Path, sign: str) -> None:
+    """A fatigue machine's table, where the count of cycles is larger than the load."""
+    time, deflection, force = loading()
+    names = "time [s],Machine_Load,Machine_Displacement,Machine_N_cycles".replace("_", sign)
+    cycles = np.floor(1e4 * time)
+    path = write_rows(tmp_path / "a.csv", names, time, 1e-3 * force, 1e3 * deflection, cycles)
+    assert proposed(path)[:2] == ["--columns", "deflection=#3,force=#2"]
+
+
+def test_a_column_that_holds_anything_is_guessed_at_without_a_warning(
+    tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    time, deflection, force = loading()
+    diverged = 10.0 ** np.linspace(0.0, 300.0, time.size)
+    path = write_rows(tmp_path / "a.csv", "time [s],a,b,c", time, 1e3 * deflection, force, diverged)
+    assert proposed(path)[:2] == ["--columns", "deflection=#2,force=#3"]
+    assert not recwarn.list
