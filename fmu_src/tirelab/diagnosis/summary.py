@@ -41,7 +41,11 @@ def summarise(
     undecided = bool(alternatives) and whole_percent(confidence) < DECIDED
     doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
     said = [_undecided(effects, alternatives, confidence)] if undecided else []
-    said.append(headline(names, bool(regressions), doubted, left, [e.name for e in effects if e.in_baseline]))
+    if undecided and not regressions and not (names and left) and set(names) <= {REFITTED_LAW}:
+        said.append("The elastic law has other coefficients." if names else "No effect is named.")
+    else:
+        changed = [e.name for e in effects if e.in_baseline]
+        said.append(headline(names, bool(regressions), doubted, left, changed))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said += _errors(bool(names), bool(regressions), fit)
     if regressions:
@@ -57,10 +61,11 @@ def summarise(
 def _undecided(effects: Sequence[NamedEffect], alternatives: Sequence[Alternative], confidence: float) -> str:
     """Return what is sure all the same, or else whether the verdict is likelier than each alternative."""
     sure_ones = [e.name for e in effects if confidence_word(e.probability) == SURE]
+    others = max((a.probability for a in alternatives if math.isfinite(a.probability)), default=0.0)
     if sure_ones:
         verb = "is" if len(sure_ones) == 1 else "are"
-        return f"{_capital(set_title(sure_ones))} {verb} sure; what else acts is undecided."
-    others = max((a.probability for a in alternatives if math.isfinite(a.probability)), default=0.0)
+        likelier = ", and an alternative is likelier" if others > LIKELY else ""
+        return f"{_capital(set_title(sure_ones))} {verb} sure; what else acts is undecided{likelier}."
     if whole_percent(others) <= whole_percent(confidence):
         return "Undecided; this is the likeliest explanation."
     return f"Undecided; {'an alternative is likelier' if others > LIKELY else 'no explanation is likely'}."

@@ -77,10 +77,13 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
     names = [effect["name"] for effect in _by_size(verdict["effects"])]
     physics = [words.sentence(CATALOGUE[name].statement) for name in names if name in CATALOGUE]
     if undecided(verdict):
+        others = [d["probability"] or 0.0 for d in verdict.get("alternative_details", [])]
+        most = words.whole_percent(max(others, default=0.0))
+        shown = "an alternative is likelier" if most > verdict["confidence"] else "the likeliest one is shown"
         sure = [words.sentence(CATALOGUE[name].statement) for name in _sure(verdict) if name in CATALOGUE]
         if sure:
-            return f"{sure[0]} These recordings cannot decide what else acts; the likeliest is shown."
-        return "These recordings cannot decide between the explanations; the likeliest one is shown."
+            return f"{sure[0]} These recordings cannot decide what else acts; {shown}."
+        return f"These recordings cannot decide between the explanations; {shown}."
     if physics:
         both = " ".join(physics[:2])
         said = both if len(both) <= LONGEST_LEAD else physics[0]

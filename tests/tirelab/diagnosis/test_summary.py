@@ -97,6 +97,20 @@ def test_what_is_sure_is_said_where_what_acts_beside_it_is_undecided():
     assert summarise(both, others, (), 0.09, STAYED).startswith("Friction loop and inertia are sure; what ")
 
 
+def test_beside_a_likelier_alternative_a_refitted_law_does_not_say_that_nothing_is_missing():
+    law = replace(FRICTION, name="recalibration", probability=0.99)
+    others = [Alternative(("recalibration", "series_compliance"), 2.0, "", 0.8)]
+    told = summarise((law,), others, (), 0.2, replace(STAYED, noise=STAYED.after))
+    assert told.startswith(
+        "Refitted law is sure; what else acts is undecided, and an alternative is likelier. "
+    )
+    assert "The elastic law has other coefficients. " in told
+    assert "missing" not in told
+    assert summarise((), others, (), 0.2, STAYED).startswith(
+        "Undecided; an alternative is likelier. No effect is named."
+    )
+
+
 def test_a_curve_that_does_not_repeat_is_not_offered():
     told = summarise((), (), (regressed("time", -0.2),), 0.85, STAYED)
     assert "no regression of it repeats on held-out blocks of time" in told

@@ -101,6 +101,9 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     assert first_screen.headline(told) == "Relaxation; undecided: refitted law or inertia"
     assert first_screen.lead(told).startswith("The force relaxes")
     assert "cannot decide what else acts" in first_screen.lead(told)
+    assert "the likeliest one is shown" in first_screen.lead(told)
+    told["verdict"]["alternative_details"] = [{"probability": None}, {"probability": 0.5}]
+    assert "an alternative is likelier" in first_screen.lead(told)
     first["probability"] = 0.6
     assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
 
