@@ -56,7 +56,7 @@ FORCE_DRIFT = Effect(
     ),
     initial_state=(),
     respond=respond,
-    statement="the force's zero drifts with time",
+    statement="the force drifts, alike at every deflection: the zero of the load cell moves, or the part creeps",
     tell_tale="the residual grows with time by the same amount at every deflection, also without contact",
     imitators=("pressure_leak", "warm_up", "force_offset"),
     source="warm-up drift of an amplifier, at first a straight line; magnitudes are in its data sheet, bounds wide",

@@ -36,14 +36,8 @@ from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_ou
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
-from .summary import summarise
+from .summary import not_seen, summarise
 from .verdict import FitErrors, NotNamed, Verdict
-
-QUICK = (
-    "Most of it lies in sharp turns of the motion or in changes quicker than what is compared: drive round corners, "
-    "sample faster, or look for what disturbs the force."
-)
-"""Added to the summary where most of the remainder lies in samples by which the sets are not compared."""
 
 MOST_TESTED = 3
 """Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
@@ -120,7 +114,7 @@ def diagnose(
     missing = not_compared(fitted)
     sentences = [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(accepted.effects, alternatives, models, confidence, fit, test))
-    sentences += [QUICK] if unexplained and remainder.uncompared > 0.5 else []
+    sentences += not_seen(remainder.uncompared, models) if unexplained else []
     return Verdict(
         effects=accepted.effects,
         doubted=accepted.doubted,

@@ -9,6 +9,7 @@ from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
+from ..preprocessing.data_checks import MAJORITY
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import DECIDED, SURE, confidence_word, whole_percent
 from .acceptance import LIKELY
@@ -69,6 +70,22 @@ def _undecided(effects: Sequence[NamedEffect], alternatives: Sequence[Alternativ
     if whole_percent(others) <= whole_percent(confidence):
         return "Undecided; this is the likeliest explanation."
     return f"Undecided; {'an alternative is likelier' if others > LIKELY else 'no explanation is likely'}."
+
+
+QUICK = (
+    "Most of it lies in sharp turns of the motion or in changes quicker than what is compared: drive round corners, "
+    "sample faster, or look for what disturbs the force."
+)
+
+
+def not_seen(uncompared: float, regressions: Sequence[ResidualModel]) -> list[str]:
+    """Return the sentence that most of a remainder lies in samples by which the sets are not compared, if so.
+
+    uncompared: their share of its power. Where a regression explains most of it in other blocks of time, it is a shape
+    over that coordinate, however quickly it is passed.
+    """
+    repeats = any(c.r2 > MAJORITY for c in regressions)
+    return [QUICK] if uncompared > MAJORITY and not repeats else []
 
 
 AMPLIFIED = 1.1

@@ -7,7 +7,7 @@ import pytest
 from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
-from tirelab.diagnosis.summary import summarise
+from tirelab.diagnosis.summary import QUICK, not_seen, summarise
 from tirelab.diagnosis.verdict import FitErrors, NotNamed
 from tirelab.estimation.findings import NamedEffect
 
@@ -95,6 +95,15 @@ def test_what_is_sure_is_said_where_what_acts_beside_it_is_undecided():
     assert told.startswith("Friction loop is sure; what else acts is undecided. Left out: friction loop ")
     both = (FRICTION, replace(unsure, probability=0.95))
     assert summarise(both, others, (), 0.09, STAYED).startswith("Friction loop and inertia are sure; what ")
+
+
+def test_a_remainder_that_repeats_over_a_coordinate_is_not_called_too_quick():
+    """A ripple over the angle of a joint is passed within a few samples, in each cycle at the same angles."""
+    assert not_seen(0.8, (regressed("deflection", 0.3),)) == [QUICK]
+    assert not_seen(0.8, (regressed("deflection", NAN),)) == [QUICK]
+    assert not_seen(0.8, ()) == [QUICK]
+    assert not_seen(0.8, (regressed("time", 0.1), regressed("deflection", 0.82))) == []
+    assert not_seen(0.4, ()) == []
 
 
 def test_beside_a_likelier_alternative_a_refitted_law_does_not_say_that_nothing_is_missing():
