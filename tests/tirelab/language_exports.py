@@ -27,6 +27,21 @@ def _(path: Path, m: Motion) -> None:
     path.write_text(_with_commas(m, "Tijd (s);Verplaatsing (mm);Kracht (N)"))
 
 
+@export("polish.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_bytes(_with_commas(m, "Czas [s];Przemieszczenie [mm];Obciążenie [N]").encode("cp1250"))
+
+
+@export("czech.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_bytes(_with_commas(m, "Čas [s];Dráha [mm];Síla [N]").encode("cp1250"))
+
+
+@export("russian.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_bytes(_with_commas(m, "Время [s];Перемещение [mm];Усилие [N]").encode("cp1251"))
+
+
 @export("chinese_units.csv")
 def _(path: Path, m: Motion) -> None:
     head = "试验机,万能\n日期,2025-06-03\n时间(秒),位移（毫米）,力(千牛)\n"

@@ -19,6 +19,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "zeitstempel",
         ),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
+        *("czas", "cas", "время"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
         *(
@@ -65,6 +66,8 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "settlement",
             "displacment",
         ),
+        *("przemieszczenie", "ugiecie", "droga", "posuv", "posunuti", "draha"),
+        *("перемещение", "деформация", "ход"),
         *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量"),
     ),
     "radius": (
@@ -97,6 +100,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
         *("forza", "carico", "forca", "kracht", "belasting"),
         *("compressive load", "axial force", "axial load", "standard force", "compression force", "fz", "fn"),
+        *("siła", "obciazenie", "nacisk", "sila", "zatizeni", "сила", "нагрузка", "усилие"),
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
     "pressure": (

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .careful import LONGEST_LINE, RowReader, Rows
 from .clock import ClockError
 from .cut_short import cut_cell
-from .encoding import BY_BYTES, EAST_ASIAN
+from .encoding import BY_BYTES, LOCAL
 from .layout import Layout, find_layout
 from .number_style import NumberStyle
 from .spaced import block_with_tabs
@@ -144,7 +144,7 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
     """Read a file in blocks; False where only a reading from the first row to the last can judge it."""
     path, layout = reader.path, reader.layout
     line = layout.lines_before_data + 1
-    codec = layout.encoding if layout.encoding in ("latin-1", *EAST_ASIAN) else "utf-8"
+    codec = layout.encoding if layout.encoding in ("latin-1", *LOCAL) else "utf-8"
     wanted = [want.index for want in reader.wanted]
     if reader.guarded:
         wanted.append(0)
@@ -195,7 +195,7 @@ def _parsed(block: bytes, layout: Layout, wanted: Sequence[int]) -> pl.DataFrame
             # polars prints what is raised in its threads; rows that it lost are counted by who called
             warnings.simplefilter("ignore")
             frame = pl.read_csv(
-                block if layout.encoding not in EAST_ASIAN else block.decode(layout.encoding).encode(),
+                block if layout.encoding not in LOCAL else block.decode(layout.encoding).encode(),
                 has_header=False,
                 schema={_named(i): kind for i, kind in kinds.items()},
                 columns=[_named(i) for i in wanted],

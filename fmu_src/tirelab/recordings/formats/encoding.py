@@ -6,7 +6,7 @@ import codecs
 import re
 from pathlib import Path
 
-from ..vocabulary import FOREIGN
+from ..vocabulary import FOREIGN, plain
 from .table import RecordingError
 
 BYTE_ORDER_MARKS = (
@@ -23,10 +23,15 @@ JUDGED = 16_384
 _TOGETHER = re.compile(rb"[\x80-\xff]{2}")
 """Two bytes beyond ASCII side by side, as nearly every Chinese letter has them; one alone is a western one (µm, °C)."""
 
-EAST_ASIAN = {"gb18030": "GBK (GB 18030)", "cp932": "Shift-JIS (CP 932)"}
-"""Encodings of Chinese and Japanese machines, and what a note calls them."""
+LOCAL = {
+    "gb18030": "GBK (GB 18030)",
+    "cp932": "Shift-JIS (CP 932)",
+    "cp1250": "Windows-1250 (Central European)",
+    "cp1251": "Windows-1251 (Cyrillic)",
+}
+"""Encodings that are told from Latin-1 by the words for channels that they make, and what a note calls them."""
 
-BY_BYTES = frozenset({"utf-8", "utf-8-sig", "latin-1", *EAST_ASIAN})
+BY_BYTES = frozenset({"utf-8", "utf-8-sig", "latin-1", *LOCAL})
 """Encodings in which the bytes of separators, quotes, line ends and # stand for nothing else, so far as tables go."""
 
 
@@ -45,9 +50,9 @@ def find_encoding(path: Path, raw: bytes, whole: bool) -> tuple[str, tuple[str, 
         codecs.getincrementaldecoder("utf-8")().decode(raw, final=whole)
     except UnicodeDecodeError as error:
         where = f"not UTF-8 (byte 0x{raw[error.start]:02x} at {error.start})"
-        east = _east_asian(raw, whole)
-        if east:
-            return east, (f"{where}: read as {EAST_ASIAN[east]}",)
+        local = _local(raw, whole)
+        if local:
+            return local, (f"{where}: read as {LOCAL[local]}",)
         return "latin-1", (f"{where}: read as Latin-1",)
     return "utf-8", ()
 
@@ -62,19 +67,30 @@ def _without_mark(path: Path, raw: bytes) -> str:
     )
 
 
-def _east_asian(raw: bytes, whole: bool) -> str:
-    """Return the encoding in which the text has words for channels, else the likelier one; "" for western letters."""
-    words = {word for known in FOREIGN.values() for word in known if not word.isascii() and len(word) > 1}
-    found = []
-    for encoding in EAST_ASIAN:
+def _local(raw: bytes, whole: bool) -> str:
+    """Return the encoding in which the text has most words for channels, if Latin-1 has fewer; else that of Chinese
+    where it is likelier than western letters, or "".
+    """
+    words = {word for known in FOREIGN.values() for word in known}
+    counts = {"": 0}
+    for encoding in ("latin-1", *LOCAL):
         try:
-            text = codecs.getincrementaldecoder(encoding)().decode(raw, final=whole)
+            text = plain(codecs.getincrementaldecoder(encoding)().decode(raw[:JUDGED], final=False))
         except UnicodeDecodeError:
             continue
-        found.append((sum(word in text for word in words), encoding))
-    if found and max(found)[0]:
-        return max(found)[1]
+        counts[encoding] = sum(word in text for word in words)
+    best = max(counts, key=lambda encoding: counts[encoding])
+    if best in LOCAL and _decodes(raw, best, whole):
+        return best
     return "gb18030" if _is_chinese(raw) else ""
+
+
+def _decodes(raw: bytes, encoding: str, whole: bool) -> bool:
+    try:
+        codecs.getincrementaldecoder(encoding)().decode(raw, final=whole)
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def _is_chinese(raw: bytes) -> bool:
@@ -83,5 +99,5 @@ def _is_chinese(raw: bytes) -> bool:
         return False
     from charset_normalizer import from_bytes
 
-    best = from_bytes(raw[:JUDGED], cp_isolation=["cp1252", "gb18030"]).best()
+    best = from_bytes(raw[:JUDGED], cp_isolation=["cp1252", "cp1250", "gb18030"]).best()
     return best is not None and best.encoding == "gb18030"
