@@ -91,7 +91,8 @@ def check_time(time: FloatArray) -> None:
     late = int(np.argmax(steps <= 0.0)) + 1
     before, after = float(time[late - 1]), float(time[late])
     if before > after:
-        what = f"time goes back from {before:.9g} s to {after:.9g} s; sort the rows by time, and keep one of each"
+        what = f"time goes back from {before:.9g} s to {after:.9g} s; sort the rows by time, and keep one of each, or "
+        what += "leave out a clock that is written wrongly"
         raise SampleFault(late, "time", what, anew=int(np.count_nonzero(steps < 0.0)) <= MOST_TESTS)
     what = f"time repeats {after:.9g} s"
     still = int(np.count_nonzero(steps == 0.0))

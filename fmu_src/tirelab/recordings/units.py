@@ -61,6 +61,11 @@ _SPELLINGS = {
     ("N", "Newtons"): "N",
     ("N", "lbF"): "lbf",
     ("N", "kp"): "kgf",
+    # torques, which are no forces: pint's Nm is a length
+    **{("N", f"{force}{arm}"): f"{force}*{arm}" for force in ("N", "kN", "mN") for arm in ("m", "cm", "mm")},
+    **{("N", f"{a}{b}"): "ft*lbf" for a, b in (("ft", "-lb"), ("lb", "-ft"), ("ft", "-lbf"), ("lbf", "-ft"))},
+    **{("N", f"{a}{b}"): "in*lbf" for a, b in (("in", "-lb"), ("lb", "-in"), ("in", "-lbf"), ("lbf", "-in"))},
+    ("m", "°"): "deg",
     # pint's mil is an angle
     ("m", "mil"): "thou",
     ("m", "mils"): "thou",
@@ -182,7 +187,7 @@ def conversion(unit: str, si: str) -> Conversion:
             known or text == "%" or "/" in text
         )
         advice = becomes if measured and of_specimen else _advice(text, si, known=True)
-        advice = _of_torsion(text, si, torque=known == registry.Unit("N*m").dimensionality) or advice
+        advice = _of_torsion(text, si) or advice
         if known == registry.Unit("V").dimensionality:
             usual = "mm" if si == "m" else _COMMON[si][0]
             advice = f"write the {quantity} of 1 {text}, the calibration, as its unit: 250 {usual}"
@@ -215,13 +220,23 @@ def given_conversion(text: str, si: str) -> Conversion:
     return replace(one, unit=text, multiply=value * one.multiply)
 
 
-def _of_torsion(unit: str, si: str, *, torque: bool) -> str:
+def _of_torsion(unit: str, si: str) -> str:
     """Return how an angle stands for a deflection, or a torque for a force; "" where the unit is of neither."""
+    stand_in = _stand_in(unit, si)
+    what = {"mm": "an angle may stand for a deflection", "N": "a torque may stand for a force"}
+    return f"{what[stand_in]}, 1 {unit} as 1 {stand_in}" if stand_in else ""
+
+
+@lru_cache(maxsize=MOST_TEXTS)
+def _stand_in(unit: str, si: str) -> str:
+    """Return the unit of a length or a force as which an angle or a torque is read; "" for any other. J is energy."""
     if si == "m" and unit.casefold() in ANGLES:
-        return f"an angle may stand for a deflection, 1 {unit} as 1 mm"
-    if si == "N" and torque:
-        return f"a torque may stand for a force, 1 {unit} as 1 N"
-    return ""
+        return "mm"
+    spelled = _SPELLINGS.get((si, unit), unit)
+    if si != "N" or "j" in unit.casefold() or not is_unit(spelled) or unit.strip() in ("%", "-"):
+        return ""
+    torque = _registry().Unit("N*m").dimensionality
+    return "N" if _registry().Unit(spelled).dimensionality == torque else ""
 
 
 @lru_cache(maxsize=MOST_TEXTS)
@@ -250,8 +265,10 @@ def measures(unit: str, si: str) -> bool:
 
 
 def meant_unit(unit: str, si: str) -> str:
-    """Return the unit that is meant by one of something else, the force by the mass of a scale; "" where none is."""
-    return _likely(unit.strip(), si, known=True)
+    """Return the unit that is meant by one of something else, the force by the mass of a scale or a torque, the
+    deflection by an angle; "" where none is.
+    """
+    return _likely(unit.strip(), si, known=True) or _stand_in(unit.strip(), si)
 
 
 def split_header(text: str) -> tuple[str, str | None]:

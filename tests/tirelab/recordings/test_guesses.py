@@ -194,3 +194,13 @@ def test_a_column_that_holds_anything_is_guessed_at_without_a_warning(
     path = write_rows(tmp_path / "a.csv", "time [s],a,b,c", time, 1e3 * deflection, force, diverged)
     assert proposed(path)[:2] == ["--columns", "deflection=#2,force=#3"]
     assert not recwarn.list
+
+
+@pytest.mark.parametrize(("angle", "torque"), [("deg", "Nm"), ("rad", "N m"), ("°", "lbf ft")])
+def test_an_angle_and_a_torque_are_guessed_to_stand_for_a_deflection_and_a_force(
+    tmp_path: Path, angle: str, torque: str
+) -> None:
+    time, deflection, force = loading()
+    names = f"time [s],Torque [{torque}],Twist [{angle}],Energy [J]"
+    path = write_rows(tmp_path / "a.csv", names, time, 1e-3 * force, 1e3 * deflection, 2e-3 * force)
+    assert proposed(path)[:4] == ["--columns", "deflection=#3,force=#2", "--units", "deflection=mm,force=N"]
