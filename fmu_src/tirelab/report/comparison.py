@@ -79,7 +79,7 @@ def plot(comparison: Comparison, path: Path) -> None:
     course = r.time if r.timed else np.arange(1.0, len(r.time) + 1.0)
     forces.plot(*envelope(course, r.force), **measured)
     forces.plot(*envelope(course, simulated), **computed)
-    forces.set(ylabel="radial force [N]")
+    forces.set(ylabel="force [N]")
     residuals.plot(*envelope(course, comparison.residual), color="tab:blue", lw=0.7)
     residuals.plot(course[comparison.at], comparison.peak, **mark)
     residuals.axhline(0.0, color="0.3", lw=0.8)
@@ -108,7 +108,7 @@ def _draw_loops(axes: Axes, comparison: Comparison) -> None:
     for i, part in enumerate(np.split(order, breaks)):
         line = envelope(mm[part], simulated[part]) if part.size > 2 * COLUMNS else (mm[part], simulated[part])
         axes.plot(*line, color="tab:blue", lw=1.2, label="simulated" if i == 0 else None)
-    axes.set(xlabel="deflection [mm]", ylabel="radial force [N]", title=r.name)
+    axes.set(xlabel="deflection [mm]", ylabel="force [N]", title=r.name)
 
 
 def _distinct(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -155,7 +155,7 @@
       series: [{}, ...lines],
       axes: [
         { ...axis(view.axis === "time" ? (all.owner.length > 1 ? "time, recordings one after another [s]" : "time [s]") : "deflection [mm]"), size: 34 },
-        { ...axis(view.residual ? "residual [N]" : "radial force [N]"), size: 48 },
+        { ...axis(view.residual ? "residual [N]" : "force [N]"), size: 48 },
       ],
       hooks: {
         drawClear: [(u) => band(u, view)],

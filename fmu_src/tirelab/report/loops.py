@@ -112,7 +112,7 @@ def _loops(axes: Axes, case: Case, which: str, palette: Palette) -> None:
         _line(axes, mm, case.before, frame, palette.before, ORANGE)
     if which != "before" and not case.alike:
         _line(axes, mm, case.after, frame, palette.after, BLUE)
-    axes.set(xlim=frame.across, ylim=frame.up, xlabel="deflection [mm]", ylabel="radial force [N]")
+    axes.set(xlim=frame.across, ylim=frame.up, xlabel="deflection [mm]", ylabel="force [N]")
 
 
 def draw_dots(

@@ -134,7 +134,7 @@ def test_the_loops_are_drawn_on_the_axes_that_are_given(damped_run):
     assert damped_run.verdict.plot_loops(left) is left
     assert damped_run.verdict.plot_residuals(right) is right
     assert left.get_xlabel() == "deflection [mm]"
-    assert left.get_ylabel() == "radial force [N]"
+    assert left.get_ylabel() == "force [N]"
     assert left.get_title() == "ride"
     assert [t.get_text() for t in left.get_legend().get_texts()] == ["recorded", "before", "after"]
     assert damped_run.verdict.plot_loops(recording="kept").get_title() == "kept"
