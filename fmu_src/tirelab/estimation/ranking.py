@@ -29,6 +29,9 @@ FloatArray = NDArray[np.float64]
 TEMPERATURE = 2.0
 """Tempering of the log odds between sets, for fits that stop early and forms that are not quite right."""
 
+REACH = TEMPERATURE * LOST
+"""The neighbours of a set this far behind the best in log posterior are not fitted; as LOST of the search, tempered."""
+
 MOST_FITS = 40
 """Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
 
@@ -271,7 +274,7 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
     """
     while not sets.spent:
         best = sets.posterior(sets.best())
-        open_sets = [n for n in sets.fits if n not in sets.followed and sets.posterior(n) > best - LOST]
+        open_sets = [n for n in sets.fits if n not in sets.followed and sets.posterior(n) > best - REACH]
         if not open_sets:
             break
         names = max(open_sets, key=sets.posterior)
