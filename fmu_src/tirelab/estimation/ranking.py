@@ -1,8 +1,9 @@
 """Sets of effects, fitted with the effects' own equations and ranked by the evidence of these fits.
 
-The sets that the signatures find likely are fitted first, then the neighbours of the best ones, with one candidate
-removed, added or exchanged, as long as they may win. A smaller set starts from the optimum of the larger one, a larger
-set from that of the smaller one, so that no set is ranked below a part of itself.
+The sets that the signatures find likely are fitted first, and promising candidates alone, since what is likely at first
+may lead astray; then the neighbours of the best sets, with one candidate removed, added or exchanged, as long as they
+may win. A smaller set starts from the optimum of the larger one, a larger set from that of the smaller one, so that no
+set is ranked below a part of itself.
 """
 
 from __future__ import annotations
@@ -25,12 +26,8 @@ from .problem import Values
 
 FloatArray = NDArray[np.float64]
 
-
 TEMPERATURE = 2.0
 """Tempering of the log odds between sets, for fits that stop early and forms that are not quite right."""
-
-REACH = TEMPERATURE * LOST
-"""The neighbours of a set this far behind the best in log posterior are not fitted; as LOST of the search, tempered."""
 
 MOST_FITS = 40
 """Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
@@ -272,9 +269,12 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
     alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
     them in its place
     """
+    sets.followed.add(nothing := frozenset[str]())
+    if nothing in sets.fits:
+        _fit_neighbours(sets, nothing)
     while not sets.spent:
         best = sets.posterior(sets.best())
-        open_sets = [n for n in sets.fits if n not in sets.followed and sets.posterior(n) > best - REACH]
+        open_sets = [n for n in sets.fits if n not in sets.followed and sets.posterior(n) > best - LOST]
         if not open_sets:
             break
         names = max(open_sets, key=sets.posterior)

@@ -26,7 +26,7 @@ from tirelab.estimation.ranking import (
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of, samples_of
 from tirelab.regressors.signature import LAW, Signature, law_signature, signatures_of
-from tirelab.selection.search import Discrepancy, discrepancy_of
+from tirelab.selection.search import LOST, Discrepancy, discrepancy_of
 from tirelab.simulation.simulate import simulate
 
 
@@ -49,6 +49,24 @@ def test_a_refitted_law_is_fitted_whatever_was_predicted_of_it(monkeypatch: pyte
     law = law_signature(dataset)
     found = ranked(begun(dataset, (law,), discrepancy_of(dataset.misfit, 0.05), []), lambda name: ())
     assert found.best.names == (LAW,)
+
+
+def test_candidates_are_tried_alone_however_far_nothing_is_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A law of another shape on one ramp, of which a stop imitates the end: what begins far ahead may lead astray."""
+    deflection = np.linspace(0.0005, 0.02, 300)
+    missed = 40.0 * (np.exp(200.0 * (deflection - 0.02)) - 0.5 * np.sin(250.0 * deflection))
+    noise = 0.2 * np.random.default_rng(3).normal(size=300)
+    force = flat_force(deflection) + missed + noise
+    ramp = Recording("ramp", np.linspace(0.0, 9.0, 300), deflection, np.full(300, np.inf), force)
+    dataset = dataset_of([ramp], TireModel())
+    signatures = (*signatures_of(("bottoming",), dataset), law_signature(dataset))
+    begin = (1.0, {"bottoming": dataset.misfit})
+    sets = begun(dataset, signatures, discrepancy_of(dataset.misfit, 0.05), [begin])
+    assert sets.posterior(sets.best()) > sets.posterior(frozenset()) + LOST
+    followed: list[frozenset[str]] = []
+    monkeypatch.setattr("tirelab.estimation.ranking._fit_neighbours", lambda _, names: followed.append(names))
+    ranked(sets, lambda name: ())
+    assert followed == [frozenset(), {"bottoming"}]
 
 
 def test_what_a_set_explains_is_no_slow_noise_though_nothing_is_likeliest_beside_it() -> None:
