@@ -30,7 +30,7 @@ def next_test(test: Mapping[str, Any] | None, waveform: Mapping[str, Any] | None
     facts = []
     for key, title, unit, remark in FACTS:
         value = test.get(key)
-        if value is None or value == []:
+        if not value:  # a tire is pressed from 0
             continue
         if key == "surfaces":
             text = titles.listed([words.surface(radius) for radius in value])
