@@ -127,7 +127,7 @@ EFFORT = (
     "preprocessing/motion.KEPT",
     "preprocessing/motion.KEPT_SAMPLES",
     "preprocessing/motion.MOST_PIECES",
-    "preprocessing/noise.FEWEST_LAGS",
+    "preprocessing/driven.FEWEST_LAGS",
     "preprocessing/samples.ROWS",
     "preprocessing/spread.FIRST_QUANTILE",
     "regressors/experiment.FEWEST_BLOCKS",

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.noise import Driven, Noise, levels_by_state, noise_of, resting, white_level
+from ..preprocessing.driven import Driven
+from ..preprocessing.noise import Noise, levels_by_state, noise_of, resting, white_level
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (

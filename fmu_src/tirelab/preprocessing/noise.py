@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from .driven import FEWEST_LAGS, Driven, Visits
 from .spread import TRIMMED, trimmed_sigma
 
 FloatArray = NDArray[np.float64]
@@ -57,10 +58,6 @@ SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
 STAYS = float(np.sqrt(2.0) ** 0.5)
 """Factor of growth for a doubled lag below which differences count as constant: half the exponent of a random walk, the
 roughest noise that has a memory."""
-
-FEWEST_LAGS = 20
-"""Fewest lags in a recording: the level of noise that is independent a lag apart is then known to a sixth. A kink is
-tried in each of as many parts of it."""
 
 FEWEST_IN_STATE = 5 * FEWEST_LAGS
 STATE_LAGS = (1, 2, 4, 8, 16)
@@ -129,44 +126,11 @@ Left = Callable[[FloatArray], FloatArray]
 """Of signals (n, k) of the motion what a model leaves (n, k), fitted to them as it was to the misfit."""
 
 
-@dataclass(frozen=True)
-class Driven:
-    """A motion. interval [s]: between its samples; at each of them deflection [m], rate [m/s], acceleration [m/s^2] and
-    number of the surface (n,)
-    """
-
-    interval: float
-    deflection: FloatArray
-    rate: FloatArray
-    acceleration: FloatArray
-    surface: IntArray
-
-    @property
-    def signals(self) -> FloatArray:
-        """What a misfit may follow (n, k): deflection, rate and all their products up to the third order, and
-        acceleration.
-
-        A loop of any width and shape has the third harmonic of the motion, which is three times as quick.
-        """
-        place, speed = self.deflection - self.deflection.mean(), self.rate
-        powers = [(i, order - i) for order in (1, 2, 3) for i in range(order + 1)]
-        return np.column_stack([*(place**i * speed**j for i, j in powers), self.acceleration])
-
-    @property
-    def kinks(self) -> FloatArray:
-        """Forces (n, k) that rise beyond one deflection each, as that of a stop, at FEWEST_LAGS deflections, and one
-        that rises and falls between them.
-        """
-        at = np.quantile(self.deflection, (np.arange(FEWEST_LAGS) + 0.5) / FEWEST_LAGS)
-        each = np.maximum(self.deflection[:, None] - at, 0.0)
-        return np.column_stack([each, each @ (-1.0) ** np.arange(FEWEST_LAGS)])
-
-
 def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> Noise:
     """Return the noise of a residual (n,), white or with a memory.
 
     left: of the model that left the residual. What is slow has gone into the model, so what is left of a kink that it
-    cannot follow varies within a few lags, as a noise with a memory does.
+    cannot follow varies within a few lags, as a noise with a memory does; then the residual must have none of it.
     """
     levels = _levels_of(residual, driven)
     plateau = _noise_at_plateau(levels, driven)
@@ -176,14 +140,11 @@ def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> 
             return found
         kinks = left(driven.kinks) if kinks is None else kinks
         visits = _seen_visits(driven, found.memory, found.memory, levels.slow)
-        if not any(_may_follow(kink, found.memory, levels.slow, visits) for kink in kinks.T):
+        could = any(_may_follow(kink, found.memory, levels.slow, visits) for kink in kinks.T)
+        follows = could and _follows(residual, left(driven.shapes(found.memory)), found.memory)
+        if not follows and not _rings(residual, found.memory):
             return found
     return Noise(white_level(residual), 1)
-
-
-Visits = tuple[IntArray, IntArray, FloatArray]
-"""Numbers of two samples of one place, pair by pair, and 1 where both go the same way, -1 where not: what depends on
-the place has third differences of the other sign on the way back."""
 
 
 @dataclass(frozen=True)
@@ -246,8 +207,9 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
 
 
 def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Noise]:
-    """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first;
-    none that may be a misfit which follows a signal of the motion, because the signal would reach its variation too.
+    """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first.
+
+    Where a signal of the motion would reach its variation too, none if the residual has something of such signals.
     """
     residual, slow = levels.residual, levels.slow
     for last in reversed(range(1, len(levels.lags))):
@@ -260,12 +222,16 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
         if levels.beneath(found) is not found:
             continue
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
-        if least * STAYS >= most and not any(_may_follow(s, lag, slow, visits) for s in driven.signals.T):
+        if least * STAYS < most:
+            continue
+        shapes = [driven.signals, driven.shapes(found.memory)]
+        could = any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
+        if not (could and _follows(residual, np.column_stack(shapes), found.memory)):
             yield Noise(least, found.memory)
 
 
 def _seen_visits(driven: Driven, memory: int, lag: int, seen: BoolArray) -> list[Visits]:
-    """Return the pairs of each kind of visit (`_visits`) with both samples `seen`.
+    """Return the pairs of each kind of visit (`Driven.visits`) with both samples `seen`.
 
     No kind with too few of them, or so near the ends that no difference over the lag is known.
     """
@@ -273,7 +239,7 @@ def _seen_visits(driven: Driven, memory: int, lag: int, seen: BoolArray) -> list
     _inner(inner, lag)[:] = True
     pairs = [
         (one[both], other[both], sign[both])
-        for one, other, sign in _visits(driven, memory)
+        for one, other, sign in driven.visits(memory)
         for both in [seen[one] & seen[other]]
     ]
     return [p for p in pairs if p[0].size >= FEWEST_EVENTS * memory and np.any(inner[p[0]] & inner[p[1]])]
@@ -287,6 +253,30 @@ def _may_follow(signal: FloatArray, lag: int, seen: BoolArray, visits: Sequence[
     """
     levels = [_level_of(signal, lag, seen), *(_level_between(signal, lag, *v) for v in visits)]
     return bool(min(levels) ** 2 >= (STAYS**2 - 1.0) * _local_rms(signal, lag, seen) ** 2)
+
+
+def _follows(residual: FloatArray, signals: FloatArray, memory: int) -> bool:
+    """Return whether signals (n, k) explain a part of a residual (n,) that counts, beyond what they explain of a noise
+    with a memory by chance (adjusted coefficient of determination: N. R. Draper, H. Smith, Applied Regression Analysis,
+    1998, 5.2); True where there are too few memories to tell.
+    """
+    centred, columns = residual - residual.mean(), signals - signals.mean(axis=0)
+    columns /= np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    coefficients, _, rank, _ = np.linalg.lstsq(columns, centred, rcond=None)
+    free = residual.size / memory - 1.0
+    if free <= rank:
+        return True
+    left = float(np.sum((centred - columns @ coefficients) ** 2) / np.sum(centred**2))
+    return bool(1.0 - left * free / (free - rank) > NEGLIGIBLE)
+
+
+def _rings(residual: FloatArray, memory: int) -> bool:
+    """Return whether a residual (n,) has a spectral line that a noise with a memory has by a chance of NEGLIGIBLE at
+    most: R. A. Fisher, Proc. R. Soc. A 125 (1929) 54-59. A memory is known to a factor of two.
+    """
+    power = np.abs(np.fft.rfft(residual - residual.mean())) ** 2
+    independent = residual.size / (4.0 * memory)
+    return bool(independent * (1.0 - power.max() / power.sum()) ** (independent - 1.0) < NEGLIGIBLE)
 
 
 def _local_rms(values: FloatArray, lag: int, seen: BoolArray) -> float:
@@ -326,30 +316,6 @@ def _rises(levels: Sequence[float]) -> list[bool]:
     # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
     highest = itertools.accumulate(levels, max)
     return [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
-
-
-def _visits(driven: Driven, memory: int) -> Iterator[Visits]:
-    """Return pairs of samples of two visits of one place, for three meanings of place: the same deflection; the same
-    deflection and direction; the same direction and distance from the last reversal; each on the same surface.
-
-    Samples are of different visits if they are four memories apart, and at one place if they are at most half the path
-    of one memory apart.
-    """
-    deflection = driven.deflection
-    near = 0.5 * float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
-    inwards = np.gradient(uniform_filter1d(deflection, 2 * memory + 1, mode="nearest")) > 0.0
-    begin = np.append(0, np.flatnonzero(np.diff(inwards)) + 1)
-    turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
-    # Added to a place, they keep surfaces apart, and loading and unloading.
-    apart = 2.0 * float(np.ptp(deflection))
-    ground, way = 2.0 * apart * driven.surface, apart * inwards
-    for own in (deflection, deflection + way, np.abs(deflection - deflection[turn]) + way):
-        place = own + ground
-        order = np.argsort(place, kind="stable")
-        one, other = order[:-1], order[1:]
-        pairs = (np.abs(one - other) > 4 * memory) & (place[other] - place[one] <= near)
-        one, other = one[pairs], other[pairs]
-        yield one, other, np.where(inwards[one] == inwards[other], 1.0, -1.0)
 
 
 def _level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArray, sign: FloatArray) -> float:

@@ -21,11 +21,11 @@ from radialtire import TireModel
 from radialtire.model import READING_NOISE
 
 from ..preprocessing.data_checks import are_rare, compared, spikes
+from ..preprocessing.driven import Driven
 from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_step
 from ..preprocessing.motion import Motion, followed_turns, motion_of, runs, through_turns
 from ..preprocessing.noise import (
     SHARE_OF_STEP,
-    Driven,
     Noise,
     NoiseFloor,
     Scalar,
