@@ -22,7 +22,7 @@ from .number_style import (
     NumberStyle,
     maybe_grouped,
     style_of,
-    with_plain_minus,
+    with_plain_marks,
 )
 from .spaced import with_tabs
 from .table import BLANK_WORDS, FloatArray, RecordingError, Wanted, is_comment, not_a_number, quoted
@@ -213,7 +213,7 @@ class RowReader:
                     f"{self.path.name}, row {number}: the line does not end in {LONGEST_LINE} characters; "
                     "the file is damaged there: export it anew"
                 )
-            plain = with_plain_minus(line)
+            plain = with_plain_marks(line)
             yield with_tabs(plain, len(self.layout.headers)) if self.layout.spaced else plain
 
     def _other_width(self, line: int, row: Sequence[str]) -> RecordingError:

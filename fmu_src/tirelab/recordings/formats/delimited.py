@@ -16,7 +16,7 @@ from .clock import ClockError
 from .cut_short import cut_cell
 from .encoding import BY_BYTES, LOCAL
 from .layout import Layout, find_layout
-from .number_style import NumberStyle
+from .number_style import EXPONENTS, NumberStyle, with_plain_marks
 from .spaced import block_with_tabs
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed, quoted
 
@@ -155,6 +155,10 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
                 return False
             if codec == "utf-8":
                 block = block.replace(MINUS, b"-")
+            if any(mark.encode() in block for mark in EXPONENTS):
+                block = with_plain_marks(block.decode(codec, "surrogateescape")).encode(
+                    codec, "surrogateescape"
+                )
             quotes = block.count(b'"') if b'"' in block else 0
             if quotes % 2:
                 return False

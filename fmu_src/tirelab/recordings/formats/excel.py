@@ -18,7 +18,7 @@ from ..units import FLAT_WORDS, measures
 from ..vocabulary import any_channel
 from .cell_units import row_without_units, without_unit
 from .libraries import reading_with
-from .number_style import NumberStyle, with_plain_minus
+from .number_style import NumberStyle, with_plain_marks
 from .sheet import DATES, NUMBER, Sheet, cell_text, holds_any, tables_of
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, listed, not_a_number, quoted
 from .table_search import is_value
@@ -167,7 +167,7 @@ class ExcelTable:
         """Return a number that is stored as text, written as others of its sheet are; None for any other cell."""
         if style is None or not isinstance(cell, str):
             return None
-        text = style.ungrouped(with_plain_minus(cell.strip()))
+        text = style.ungrouped(with_plain_marks(cell.strip()))
         if style.decimal_comma:
             text = "" if "." in text else text.replace(",", ".")
         if NUMBER.fullmatch(text) is None:

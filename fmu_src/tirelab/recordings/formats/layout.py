@@ -16,7 +16,7 @@ from ..units import is_unit, split_header
 from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
-from .number_style import NumberStyle, style_of, with_plain_minus
+from .number_style import NumberStyle, style_of, with_plain_marks
 from .spaced import TAB, spaced_columns, with_tabs
 from .table import (
     BLANK_WORDS,
@@ -327,7 +327,7 @@ def _provenance(lines: Sequence[str], separator: str, declared: str | None) -> t
 
 def _whole_lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     text = codecs.getincrementaldecoder(encoding)(errors="replace").decode(raw)
-    lines = list(io.StringIO(with_plain_minus(text), newline=""))
+    lines = list(io.StringIO(with_plain_marks(text), newline=""))
     if len(raw) < HEAD:
         return lines
     if len(lines) < 2:

@@ -10,8 +10,12 @@ from functools import cached_property
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
 MAYBE_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
 
+EXPONENTS = ("D+", "D-", "d+", "d-")
+"""What is in every text with a number in the double precision of Fortran."""
+
 _PLAIN = re.compile(r"[+-]?\d*[.,]\d+(?:[eE][+-]?\d+)?", re.ASCII)
 _MINUS = re.compile("\N{MINUS SIGN}(?=[\\d.,])")
+_EXPONENT = re.compile(r"(?<![\w.])([+-]?(?:\d+[.,]?\d*|[.,]\d+))[dD](?=[+-]\d{1,3}(?![\w.]))", re.ASCII)
 _SPACES = " \u00a0\u202f\u2009'\u2019"
 _CERTAIN = (
     (".", ",", re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+,\d+")),
@@ -51,9 +55,12 @@ class NumberStyle:
         return not marked or (self.thousands != "." and all(map(self._compiled.match, marked)))
 
 
-def with_plain_minus(text: str) -> str:
-    """Return a text in which the minus of typography before a number is that of a keyboard."""
-    return _MINUS.sub("-", text) if "\N{MINUS SIGN}" in text else text
+def with_plain_marks(text: str) -> str:
+    """Return a text whose numbers have the minus of a keyboard, not that of typography, and the exponent mark E where
+    Fortran writes D: 1.5D+01.
+    """
+    text = _MINUS.sub("-", text) if "\N{MINUS SIGN}" in text else text
+    return _EXPONENT.sub(r"\1E", text) if any(mark in text for mark in EXPONENTS) else text
 
 
 def maybe_grouped(separator: str) -> re.Pattern[str]:

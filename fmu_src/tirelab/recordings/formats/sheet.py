@@ -12,7 +12,7 @@ from typing import Any
 from ..units import split_header
 from .cell_units import lines_without_units, row_without_units, taken_from_cells, units_in_cells
 from .layout import below_names, column_counted
-from .number_style import NumberStyle, style_of, with_plain_minus
+from .number_style import NumberStyle, style_of, with_plain_marks
 from .table import Header, RecordingError, listed, quoted, with_cell_units, with_dates
 from .table_search import SEARCHED, find_table
 from .workbook import Version, opened
@@ -145,7 +145,7 @@ def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
 
 
 def _is_text_number(cell: object) -> bool:
-    return isinstance(cell, str) and NUMBER.fullmatch(with_plain_minus(cell.strip())) is not None
+    return isinstance(cell, str) and NUMBER.fullmatch(with_plain_marks(cell.strip())) is not None
 
 
 def cell_text(cell: object) -> str:
@@ -156,7 +156,7 @@ def cell_text(cell: object) -> str:
         return cell.isoformat()
     if isinstance(cell, datetime.timedelta):
         return repr(cell.total_seconds())
-    return with_plain_minus(" ".join(str(cell).split()).replace('"', "'"))
+    return with_plain_marks(" ".join(str(cell).split()).replace('"', "'"))
 
 
 def holds_any(row: Sequence[Any]) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .cell_units import column_unit, taken_from_cells
 from .clock import Clock, ClockError, is_clock
-from .number_style import style_of, with_plain_minus
+from .number_style import style_of, with_plain_marks
 from .table import BLANK_WORDS, Header
 from .table_search import bare_unit, is_units
 
@@ -50,7 +50,7 @@ def headers_of_text(
         notes.append("units taken from sample 1, below the names")
     heads = [_head(column, above) for column in columns]
     for index, cells in enumerate(heads):
-        unit = column_unit([with_plain_minus(cell.strip()) for cell in cells])
+        unit = column_unit([with_plain_marks(cell.strip()) for cell in cells])
         if unit:
             found[index] = replace(found[index], unit=unit, cell_unit=unit)
         elif cells and is_clock(cells[0]):

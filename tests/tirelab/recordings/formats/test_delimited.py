@@ -44,6 +44,15 @@ class TestText:
         force = read_recording(tmp_path / "a.csv", radius="flat").force
         np.testing.assert_array_equal(force, 10.0 * np.arange(60) - 5.0)
 
+    @pytest.mark.parametrize("mark", ["D", "d"])
+    @pytest.mark.parametrize("separator", [";", ",", "\t", "   "])
+    def test_the_exponents_of_fortran(self, tmp_path: Path, separator: str, mark: str) -> None:
+        rows = [separator.join(f"{v:.4E}" for v in (0.1 * i, 1e-3 * i, 10.0 * i - 5.0)) for i in range(60)]
+        text = separator.join(("t[s]", "stroke[mm]", "load[N]")) + "\n" + "\n".join(rows).replace("E", mark)
+        (tmp_path / "a.csv").write_text(text)
+        force = read_recording(tmp_path / "a.csv", radius="flat").force
+        np.testing.assert_allclose(force, 10.0 * np.arange(60) - 5.0)
+
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32"])
     def test_encodings_that_say_what_they_are(self, tmp_path: Path, encoding: str) -> None:
         path = tmp_path / "a.csv"
