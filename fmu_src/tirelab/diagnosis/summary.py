@@ -11,8 +11,15 @@ from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
 from ..preprocessing.data_checks import MAJORITY
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
-from ..report.words import DECIDED, SURE, confidence_word, whole_percent
-from .acceptance import LIKELY
+from ..report.words import (
+    DECIDED,
+    LIKELIEST,
+    OTHER_LIKELIER,
+    SURE,
+    beside_alternatives,
+    confidence_word,
+    whole_percent,
+)
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -60,16 +67,15 @@ def summarise(
 
 
 def _undecided(effects: Sequence[NamedEffect], alternatives: Sequence[Alternative], confidence: float) -> str:
-    """Return what is sure all the same, or else whether the verdict is likelier than each alternative."""
+    """Return what is sure all the same, or else how the verdict stands beside the alternatives."""
     sure_ones = [e.name for e in effects if confidence_word(e.probability) == SURE]
-    others = max((a.probability for a in alternatives if math.isfinite(a.probability)), default=0.0)
+    others = [a.probability for a in alternatives if math.isfinite(a.probability)]
+    shown = beside_alternatives(confidence, others)
     if sure_ones:
         verb = "is" if len(sure_ones) == 1 else "are"
-        likelier = ", and an alternative is likelier" if others > LIKELY else ""
+        likelier = f", and {shown}" if shown == OTHER_LIKELIER else ""
         return f"{_capital(set_title(sure_ones))} {verb} sure; what else acts is undecided{likelier}."
-    if whole_percent(others) <= whole_percent(confidence):
-        return "Undecided; this is the likeliest explanation."
-    return f"Undecided; {'an alternative is likelier' if others > LIKELY else 'no explanation is likely'}."
+    return f"Undecided; {'this is the likeliest explanation' if shown == LIKELIEST else shown}."
 
 
 QUICK = (
@@ -127,7 +133,10 @@ def _remainder(regressions: Sequence[ResidualModel]) -> str:
         return f"The remainder depends on {by}. Whether it repeats is not known: drive the motion twice."
     best = max(asked, key=lambda c: c.r2)
     if best.r2 < REPEATS:
-        return f"The remainder depends on {by}, but no regression of it repeats on held-out blocks of time."
+        return (
+            f"The remainder depends on {by}, but no regression of it repeats on held-out blocks of time. "
+            "Noise that is as slow as the motion leaves this as well: record for as long at rest."
+        )
     over = "it" if len(regressions) == 1 else dependence(best.by)
     held_out = math.isfinite(best.held_out_after)
     also = f", and to {newtons(best.held_out_after)} on held-out data" if held_out else ""

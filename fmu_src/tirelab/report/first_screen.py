@@ -78,8 +78,7 @@ def lead(diagnosis: Mapping[str, Any]) -> str:
     physics = [words.sentence(CATALOGUE[name].statement) for name in names if name in CATALOGUE]
     if undecided(verdict):
         others = [d["probability"] or 0.0 for d in verdict.get("alternative_details", [])]
-        most, own = (words.whole_percent(p) for p in (max(others, default=0.0), verdict["confidence"]))
-        shown = "an alternative is likelier" if most > own else "the likeliest one is shown"
+        shown = words.beside_alternatives(verdict["confidence"], others)
         sure = [words.sentence(CATALOGUE[name].statement) for name in _sure(verdict) if name in CATALOGUE]
         if sure:
             return f"{sure[0]} These recordings cannot decide what else acts; {shown}."

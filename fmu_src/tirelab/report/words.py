@@ -196,6 +196,20 @@ def whole_percent(confidence: float) -> float:
 DECIDED = 0.5
 """Below this confidence, and with alternatives, the recordings do not decide: that is the headline."""
 
+
+LIKELIEST = "the likeliest one is shown"
+OTHER_LIKELIER = "an alternative is likelier"
+NONE_LIKELY = "no explanation is likely"
+
+
+def beside_alternatives(confidence: float, others: Iterable[float]) -> str:
+    """Return how an undecided verdict stands beside its alternatives, of the known probabilities `others`."""
+    most = whole_percent(max(others, default=0.0))
+    if most >= DECIDED:
+        return OTHER_LIKELIER
+    return LIKELIEST if most <= whole_percent(confidence) else NONE_LIKELY
+
+
 SURE = "sure"
 """The word for a confidence from 0.9 on."""
 

@@ -123,6 +123,7 @@ def test_beside_a_likelier_alternative_a_refitted_law_does_not_say_that_nothing_
 def test_a_curve_that_does_not_repeat_is_not_offered():
     told = summarise((), (), (regressed("time", -0.2),), 0.85, STAYED)
     assert "no regression of it repeats on held-out blocks of time" in told
+    assert "Noise that is as slow as the motion leaves this as well: record for as long at rest." in told
     assert "6.40 N" not in told
 
 

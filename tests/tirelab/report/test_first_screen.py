@@ -104,6 +104,8 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     assert "the likeliest one is shown" in first_screen.lead(told)
     told["verdict"]["alternative_details"] = [{"probability": None}, {"probability": 0.5}]
     assert "an alternative is likelier" in first_screen.lead(told)
+    told["verdict"]["alternative_details"] = [{"probability": 0.3}]
+    assert "no explanation is likely" in first_screen.lead(told)
     first["probability"] = 0.6
     assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
 
