@@ -9,13 +9,17 @@ from .metrics import RIGHT_BEFORE, RIGHT_WITH, discriminations
 from .page import REDRAWN, Proof, interval, judged, value_text
 from .wide_kinds import PARTS, kind_criteria
 
+FIGURE_WIDTH = 40
+"""Characters of the first column, so that no row is broken elsewhere because of how many trials there were."""
+
 COLOURS = {"pass": "[green]pass[/]", "fail": "[red]fail[/]"}
 
 
 def criteria_table(proof: Proof) -> Table:
     """Return every figure with its interval, its limit, and whether it passes."""
     table = Table(title=f"{len(proof.scores)} blind trials, seed {proof.seed}", title_justify="left")
-    for heading in ("figure", "measured", "95 % interval", "limit", ""):
+    table.add_column("figure", width=FIGURE_WIDTH)
+    for heading in ("measured", "95 % interval", "limit", ""):
         table.add_column(heading)
     for criterion in proof.criteria:
         table.add_row(
