@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
+from ..estimation.findings import NamedEffect
 from ..planning.waveforms import Limits, second_pressure
 from ..preprocessing.motion import BoolArray, FloatArray
 from ..preprocessing.noise import STILL
@@ -93,6 +95,22 @@ def alternatives_of(
         for name, why in (*reasons.items(), *explanation.hidden)
     ]
     return (*listed, *unseen)
+
+
+def no_surer_than_alternatives(
+    effects: Sequence[NamedEffect], alternatives: Sequence[Alternative]
+) -> tuple[NamedEffect, ...]:
+    """Return the effects, each at most as probable as the alternatives without it leave: 1 - sum of their
+    probabilities.
+    """
+    known = [a for a in alternatives if math.isfinite(a.probability)]
+    return tuple(
+        replace(
+            e,
+            probability=min(e.probability, 1.0 - sum(a.probability for a in known if e.name not in a.names)),
+        )
+        for e in effects
+    )
 
 
 def reason_of(

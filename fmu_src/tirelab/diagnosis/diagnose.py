@@ -29,7 +29,7 @@ from .acceptance import (
     validation_on,
     without_unlikely,
 )
-from .alternatives import USUAL_SPEED, Alternative, alternatives_of
+from .alternatives import USUAL_SPEED, Alternative, alternatives_of, no_surer_than_alternatives
 from .between_recordings import difference_between
 from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of
@@ -95,6 +95,7 @@ def diagnose(
         grounds, [e.probability for e in accepted.effects], [e.probability for e in accepted.doubted]
     )
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
+    effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:
         fit = replace(fit, not_named=_not_named(candidates, validate))
     located = law_corrected(fitted, data.before, explanation.model.baseline, explanation.model.tire)
@@ -113,10 +114,10 @@ def diagnose(
     test = _recommend(explanation, alternatives, fit.noise, _limits_of(data, limits, part=baseline.is_part))
     missing = not_compared(fitted)
     sentences = [] if contradiction is None else [contradiction.sentences]
-    sentences.append(summarise(accepted.effects, alternatives, models, confidence, fit, test))
+    sentences.append(summarise(effects, alternatives, models, confidence, fit, test))
     sentences += not_seen(remainder.uncompared, models) if unexplained else []
     return Verdict(
-        effects=accepted.effects,
+        effects=effects,
         doubted=accepted.doubted,
         confidence=confidence,
         grounds=grounds,

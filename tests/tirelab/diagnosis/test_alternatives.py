@@ -9,8 +9,15 @@ from typing import Any
 import pytest
 from drives import damped, flat_force, read, triangle
 from radialtire import TireModel
-from tirelab.diagnosis.alternatives import CREDIBLE, alternatives_of, insufficient_excitation, reason_of
-from tirelab.estimation.findings import Evidence
+from tirelab.diagnosis.alternatives import (
+    CREDIBLE,
+    Alternative,
+    alternatives_of,
+    insufficient_excitation,
+    no_surer_than_alternatives,
+    reason_of,
+)
+from tirelab.estimation.findings import Evidence, NamedEffect
 from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.samples import RawDataset, raw_dataset_of
 
@@ -60,6 +67,18 @@ def test_no_set_is_told_as_likelier_beside_the_verdict_than_its_evidence_is() ->
     """The next set has half of the verdict's evidence; what is left of a doubted verdict belongs to none of them."""
     found = alternatives_of(explained_by_sets(*SETS), RIDE, 0.2)
     assert [a.probability for a in found] == pytest.approx([0.1, 0.2 * 0.08 / 0.6, 0.2 * 0.02 / 0.6])
+
+
+def test_an_effect_is_no_surer_than_the_alternatives_without_it_leave() -> None:
+    """Two of three alternatives lack the lag, with 0.12 and 0.05 together; a fourth one's probability is not known."""
+    lag, law = (NamedEffect(n, {}, 0.5, 0.96) for n in ("deflection_lag", "recalibration"))
+    sets = (("recalibration", "viscous_damping"), ("recalibration",), ("deflection_lag",), ("inertia",))
+    several = [
+        Alternative(names, 1.0, "", p) for names, p in zip(sets, (0.12, 0.05, 0.02, math.nan), strict=True)
+    ]
+    found = no_surer_than_alternatives((lag, law), several)
+    assert [e.probability for e in found] == pytest.approx([0.83, 0.96])
+    assert found[1] == law
 
 
 def test_a_sure_verdict_has_no_alternatives() -> None:
