@@ -142,7 +142,8 @@ def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> 
         visits = _seen_visits(driven, found.memory, found.memory, levels.slow)
         could = any(_may_follow(kink, found.memory, levels.slow, visits) for kink in kinks.T)
         follows = could and _follows(residual, left(driven.shapes(found.memory)), found.memory)
-        if not follows and not _rings(residual, found.memory):
+        # Beside a level that stays over long lags, a line is a part of the misfit that they do not see.
+        if not follows and (plateau or not _rings(residual, found.memory)):
             return found
     return Noise(white_level(residual), 1)
 
