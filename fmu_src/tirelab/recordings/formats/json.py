@@ -1,5 +1,5 @@
-"""JSON files: a list of samples, {"time": 0.0, "force": 1.5}, one below the other or in brackets, or a list for each
-channel, {"time": [...], "force": [...]}; units stand in the names, as in a CSV header.
+"""JSON files: a list of samples, {"time": 0.0, "force": 1.5} or [0.0, 1.5], one below the other or in brackets, or a list
+for each channel, {"time": [...], "force": [...]}; units stand in the names, as in a CSV header.
 """
 
 from __future__ import annotations
@@ -57,18 +57,31 @@ def _frame(path: Path) -> pl.DataFrame:
     held = json.loads(path.read_bytes())
     lists = {name: v for name, v in held.items() if isinstance(v, list)} if isinstance(held, dict) else {}
     tables = [v for v in ([held] if isinstance(held, list) else lists.values()) if _is_rows(v)]
-    if len(tables) == 1:
+    if len(tables) == 1 and isinstance(tables[0][0], dict):
         return pl.from_dicts(tables[0], infer_schema_length=None, strict=False)
+    if len(tables) == 1:
+        return _frame_of_lists(tables[0])
     longest = max(map(len, lists.values()), default=0)
     if tables or longest < 2:
         raise RecordingError(
             f"{path.name}: {f'holds {len(tables)} tables' if tables else 'no table is found in it'}; write one list of "
             'samples, [{"time": 0.0, "deflection": 0.1, "force": 1.5}, ...], or one list for each channel'
         )
-    columns = {name: v for name, v in lists.items() if len(v) == longest}
-    return pl.DataFrame(columns, strict=False)
+    return pl.DataFrame({name: v for name, v in lists.items() if len(v) == longest}, strict=False)
+
+
+def _frame_of_lists(rows: Sequence[Sequence[Any]]) -> pl.DataFrame:
+    """Return rows of one length as a table; the names stand in the first one, if it is all text, or are numbers."""
+    names = [f"column {number}" for number in range(1, len(rows[0]) + 1)]
+    named = all(isinstance(cell, str) for cell in rows[0]) and len({*rows[0]}) == len(names)
+    columns = zip(*rows[int(named) :], strict=True)
+    return pl.DataFrame(dict(zip(rows[0] if named else names, columns, strict=True)), strict=False)
 
 
 def _is_rows(held: Any) -> bool:
-    """Whether this is a list of samples."""
-    return isinstance(held, list) and len(held) > 1 and all(isinstance(row, dict) for row in held)
+    """Whether this is a list of samples: each with names, or each a list as long as the others."""
+    if not isinstance(held, list) or len(held) < 2:
+        return False
+    if all(isinstance(row, dict) for row in held):
+        return True
+    return all(isinstance(row, list) for row in held) and len(held[0]) > 1 and len({*map(len, held)}) == 1

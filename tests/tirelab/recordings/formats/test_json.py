@@ -17,6 +17,7 @@ WRITTEN: dict[str, Callable[[], str]] = {
     "rows.json": lambda: json.dumps(ROWS),
     "columns.json": lambda: json.dumps({"operator": "me", "short": [1, 2], **LISTS}),
     "named.json": lambda: json.dumps({"rig": {"load cell": 3}, "samples": ROWS}),
+    "names above.json": lambda: json.dumps([list(LISTS), *(list(row.values()) for row in ROWS)]),
     "lines.jsonl": lambda: "\n".join(map(json.dumps, ROWS)),
     "lines.ndjson": lambda: "\n".join(map(json.dumps, ROWS)) + "\n",
 }
@@ -27,6 +28,17 @@ class TestJson:
     def test_columns_with_units_in_their_names(self, tmp_path: Path, name: str) -> None:
         (tmp_path / name).write_text(WRITTEN[name](), encoding="utf-8")
         assert_the_recording(read_recording(tmp_path / name, radius="flat"))
+
+    @pytest.mark.parametrize("inside", [False, True])
+    def test_rows_of_numbers_are_named_by_their_place(self, tmp_path: Path, inside: bool) -> None:
+        rows = [list(row.values()) for row in ROWS]
+        (tmp_path / "a.json").write_text(json.dumps({"rig": 3, "data": rows} if inside else rows))
+        assert "column 1" in refusal(tmp_path / "a.json")
+        columns = {channel: f"#{i + 1}" for i, channel in enumerate(("time", "deflection", "force"))}
+        units = {"time": "s", "deflection": "mm", "force": "N"}
+        found = read_recording(tmp_path / "a.json", columns=columns, units=units, radius="flat")
+        np.testing.assert_allclose(found.time, TIME, atol=1e-12)
+        assert found.force.size == SAMPLES
 
     def test_what_a_sample_does_not_have_is_blank(self, tmp_path: Path) -> None:
         force = next(name for name in LISTS if "orce" in name)
@@ -43,6 +55,7 @@ class TestJson:
             ({"rig": 3}, "no table is found in it"),
             (5, "no table is found in it"),
             ([1.0] * SAMPLES, "no table is found in it"),
+            ([[1.0, 2.0], [1.0]], "no table is found in it"),
         ],
     )
     def test_what_is_no_table_is_told(self, tmp_path: Path, held: Any, said: str) -> None:
