@@ -51,18 +51,20 @@ class Driven:
         """Forces (n, k) that rise beyond one deflection each, as that of a stop, at FEWEST_LAGS deflections, and one
         that rises and falls between them.
         """
-        each = _kinks(self.deflection)
+        each = _kinks(self.deflection, FEWEST_LAGS)
         return np.column_stack([each, each @ (-1.0) ** np.arange(FEWEST_LAGS)])
 
     def shapes(self, memory: int) -> FloatArray:
         """Forces (n, k) of any shape over each place of `visits`: over the deflection, over the deflection with the
         other sign on the way back, and over the distance from the last reversal with the other sign on the way back.
 
-        memory: of the noise beside them
+        memory: of the noise beside them. Half as many parts of each place as `kinks` has: shapes have to be few beside
+        the memories of a recording, to tell whether it has something of them.
         """
         inwards, turned = _inwards(self.deflection, memory), _from_turn(self.deflection, memory)
-        way, over = np.where(inwards, 1.0, -1.0)[:, None], _kinks(self.deflection)
-        return np.column_stack([over, way, way * over, way * _kinks(np.abs(turned))])
+        way, parts = np.where(inwards, 1.0, -1.0)[:, None], FEWEST_LAGS // 2
+        over, after = _kinks(self.deflection, parts), _kinks(np.abs(turned), parts)
+        return np.column_stack([over, way, way * over, way * after])
 
     def visits(self, memory: int) -> Iterator[Visits]:
         """Return pairs of samples of two visits of one place, for three meanings of place: the same deflection; the
@@ -86,9 +88,9 @@ class Driven:
             yield one, other, np.where(inwards[one] == inwards[other], 1.0, -1.0)
 
 
-def _kinks(place: FloatArray) -> FloatArray:
-    """Return (n, FEWEST_LAGS) functions of a place (n,) that rise beyond one value of it each."""
-    at = np.quantile(place, (np.arange(FEWEST_LAGS) + 0.5) / FEWEST_LAGS)
+def _kinks(place: FloatArray, count: int) -> FloatArray:
+    """Return (n, count) functions of a place (n,) that rise beyond one value of it each."""
+    at = np.quantile(place, (np.arange(count) + 0.5) / count)
     return np.asarray(np.maximum(place[:, None] - at, 0.0))
 
 

@@ -210,23 +210,23 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
 def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Noise]:
     """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first.
 
-    Where a signal of the motion would reach its variation too, none if the residual has something of such signals.
+    Where no place is visited again, or where a signal of the motion would reach its variation too, one more lag has to
+    show that the level stays; of such signals the residual must have nothing.
     """
     residual, slow = levels.residual, levels.slow
+    rises = _rises(levels.values)
     for last in reversed(range(1, len(levels.lags))):
         found, lag = _noise_of_level(levels.values, last), levels.lags[last]
         most, visits = _local_rms(residual, lag, slow), _seen_visits(driven, found.memory, lag, slow)
-        # Where no place is visited again, a level that rises to the last lag is not seen to stay.
-        rises = any(_rises(levels.values)[last if visits else min(last, len(levels.lags) - 2) :])
-        if found.memory == 1 or rises or levels.values[last] * STAYS < most:
+        if found.memory == 1 or any(rises[last:]) or levels.values[last] * STAYS < most:
             continue
         if levels.beneath(found) is not found:
             continue
         least = min([levels.values[last], *(_level_between(residual, lag, *v) for v in visits)])
-        if least * STAYS < most:
+        could = any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
+        if least * STAYS < most or ((could or not visits) and rises[min(last, len(rises) - 1)]):
             continue
         shapes = [driven.signals, driven.shapes(found.memory)]
-        could = any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
         if not (could and _follows(residual, np.column_stack(shapes), found.memory)):
             yield Noise(least, found.memory)
 
@@ -259,13 +259,13 @@ def _may_follow(signal: FloatArray, lag: int, seen: BoolArray, visits: Sequence[
 def _follows(residual: FloatArray, signals: FloatArray, memory: int) -> bool:
     """Return whether signals (n, k) explain a part of a residual (n,) that counts, beyond what they explain of a noise
     with a memory by chance (adjusted coefficient of determination: N. R. Draper, H. Smith, Applied Regression Analysis,
-    1998, 5.2); True where there are too few memories to tell.
+    1998, 5.2); True where there are too few memories for each of them to tell.
     """
     centred, columns = residual - residual.mean(), signals - signals.mean(axis=0)
     columns /= np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     coefficients, _, rank, _ = np.linalg.lstsq(columns, centred, rcond=None)
     free = residual.size / memory - 1.0
-    if free <= rank:
+    if free < FEWEST_EVENTS * rank:
         return True
     left = float(np.sum((centred - columns @ coefficients) ** 2) / np.sum(centred**2))
     return bool(1.0 - left * free / (free - rank) > NEGLIGIBLE)

@@ -29,7 +29,7 @@ def left_of(force: FloatArray, columns: FloatArray) -> float:
 
 @pytest.mark.parametrize("name", ["stop", "friction", "knee after the turn"])
 def test_shapes_follow_what_is_a_function_of_a_place(name: str) -> None:
-    """Straight lines between twenty places follow a curve of one bend to a hundredth, a kink to a step between them."""
+    """Straight lines between ten places follow a curve of one bend to a hundredth, a kink to a step between them."""
     way = np.where(np.gradient(TRIANGLES) > 0.0, 1.0, -1.0)
     turned = np.where(way > 0.0, TRIANGLES, 0.02 - TRIANGLES)
     force = {
@@ -41,7 +41,7 @@ def test_shapes_follow_what_is_a_function_of_a_place(name: str) -> None:
 
 
 def test_shapes_do_not_follow_what_no_place_has() -> None:
-    """White noise: eighty of 800 coefficients take a tenth of its power."""
+    """White noise: thirty of 800 coefficients take little of its power."""
     noise = np.random.default_rng(1).normal(size=TRIANGLES.size)
     assert left_of(noise, driven(TRIANGLES).shapes(1)) > 0.9
 

@@ -393,13 +393,12 @@ def left_by_products(driven: Driven, values: FloatArray) -> FloatArray:
     return np.asarray(values - basis @ (basis.T @ values))
 
 
-@pytest.mark.parametrize("length", [4, 8])
-@pytest.mark.parametrize("highest", [0.02, 0.06])
-@pytest.mark.parametrize("count", [1500, 3000])
+@pytest.mark.parametrize(
+    ("count", "highest", "length"),
+    [(1500, 0.02, 4), (1500, 0.06, 4), (3000, 0.02, 4), (3000, 0.06, 4), (3000, 0.02, 8), (6000, 0.03, 8)],
+)
 def test_filtered_noise_is_seen_beside_a_quick_motion(count: int, highest: float, length: int) -> None:
-    """A kink could vary as quickly as this noise; the noise has none. Its level is known to a fifth from 190 memories,
-    of which the model takes eleven and the trimming a part.
-    """
+    """A kink could vary as quickly as this noise; the noise has none, as ten of its memories for each shape show."""
     driven = swept(count, highest)
     white = np.random.default_rng(0).normal(size=count + length - 1)
     noise = np.sqrt(length) * np.convolve(white, np.ones(length) / length, mode="valid")
@@ -408,6 +407,27 @@ def test_filtered_noise_is_seen_beside_a_quick_motion(count: int, highest: float
     )
     assert found.level == pytest.approx(1.0, rel=0.25)
     assert found.memory in (length // 2, length)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_rises_to_the_longest_lag_of_a_random_motion_is_no_noise(seed: int) -> None:
+    """A damper whose resistance is switched, and that not recorded: its force is as random as the motion and slower
+    than noise of 1 N.
+    """
+    drawn = np.random.default_rng(seed)
+    frequencies = np.linspace(2e-4, 1e-2, 60)
+    phases = drawn.uniform(0.0, 2.0 * np.pi, 60)
+    deflection = 2e-3 * np.cos(2.0 * np.pi * frequencies * np.arange(4000.0)[:, None] + phases).sum(axis=1)
+    rate = np.gradient(deflection)
+    driven = Driven(1.0, deflection, rate, np.gradient(rate), np.zeros(4000, dtype=np.intp))
+    smooth = np.convolve(drawn.normal(size=4120), np.hanning(121), mode="valid")
+    missed = 200.0 * np.tanh(smooth / smooth.std()) * np.tanh(2.0 * rate / rate.std())
+    force = missed + drawn.normal(size=4000)
+    found = noise_of(
+        left_by_products(driven, force), driven, lambda signals: left_by_products(driven, signals)
+    )
+    assert found.level < 3.0
+    assert found.memory == 1
 
 
 @pytest.mark.parametrize("size", [5.0, 30.0])

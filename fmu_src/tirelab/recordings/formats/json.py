@@ -1,5 +1,5 @@
-"""JSON files: a list of samples, {"time": 0.0, "force": 1.5} or [0.0, 1.5], one below the other or in brackets, or a list
-for each channel, {"time": [...], "force": [...]}; units stand in the names, as in a CSV header.
+"""JSON files: a list of samples, {"time": 0.0, "force": 1.5} or [0.0, 1.5], one below the other or in brackets, or a
+list for each channel, {"time": [...], "force": [...]}; units stand in the names, as in a CSV header.
 """
 
 from __future__ import annotations
