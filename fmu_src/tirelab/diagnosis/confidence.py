@@ -178,7 +178,7 @@ def probability_of_effect(name: str, grounds: Grounds) -> float:
 def sharing_odds(probability: float, alike: int) -> float:
     """Return a verdict's probability p where the motion cannot distinguish this many other sets from it.
 
-    All of them have the odds of the verdict: p / (p + (1 - p) (1 + alike)). Calibration alone would not lower p,
+    They share its odds: each has p / (p + (1 - p) (1 + alike)). Calibration alone would not lower p,
     because in the trials the forms of these effects differ in reversals, which need not hold for real ones.
     """
     return probability / (probability + (1.0 - probability) * (1.0 + alike))

@@ -368,7 +368,7 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
     """Return the sets that the motion cannot distinguish from the chosen one: with another effect in place of one of
     its own, or with the refitted law in place of all effects that a law of another shape can imitate.
 
-    Only sets that can still win count: the recorded forces may distinguish what the motion alone would not.
+    Only sets count that can still win or leave no more than the chosen one: that it has fewer parameters is no proof.
     """
     found = []
     for name in chosen.names:
@@ -380,10 +380,10 @@ def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[
             if less.power - fit.power > AS_GOOD * (less.power - chosen.power):
                 found.append(fit)
     shape = frozenset(n for n in chosen.names if n == LAW or not excitation.within_law(n))
-    law_alone = ranking.of(shape) if LAW in shape and len(shape) < len(chosen.names) else None
-    if law_alone is not None:
+    if LAW in shape and len(shape) < len(chosen.names) and (law_alone := ranking.of(shape)) is not None:
         found.append(law_alone)
-    return tuple(fit.names for fit in found if ranking.behind(fit) - ranking.behind(chosen) < LOST)
+    lost = ranking.behind(chosen) + LOST
+    return tuple(f.names for f in found if f.power <= chosen.power or ranking.behind(f) < lost)
 
 
 def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
