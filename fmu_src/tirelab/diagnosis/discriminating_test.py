@@ -88,9 +88,11 @@ class DiscriminatingTest:
                 return f"{none} less than a hundredth of the noise."
             return f"{none} at most {differ} ({self.test.name}{place})."
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
-        begins = f" from {1e3 * self.begins_at:.1f}" if self.begins_at else ""
+        decimals = max(1, 1 + _decimals(1e3 * float(np.abs(path).max())))
+        begins = f" from {1e3 * self.begins_at:.{decimals}f}" if self.begins_at else ""
         return (
-            f"Drive {self.test.name}{begins} to {1e3 * path.max():.1f} mm{place}, at up to {rate:.0f} mm/s, for "
+            f"Drive {self.test.name}{begins} to {1e3 * path.max():.{decimals}f} mm{place}, "
+            f"at up to {rate:.{max(0, _decimals(rate))}f} mm/s, for "
             f"{self.test.time[-1] - self.test.time[0]:.0f} s. It decides {asked}: the forces differ by {differ}."
         )
 
@@ -166,3 +168,8 @@ def _surface(radius: float) -> str:
     if not np.isfinite(radius):
         return "flat ground"
     return f"a {'convex' if radius > 0.0 else 'concave'} surface of radius {100.0 * abs(radius):.4g} cm"
+
+
+def _decimals(value: float) -> int:
+    """Return how many decimals show the first digit of a value above 0, less than none of one above 10."""
+    return -math.floor(math.log10(max(value, 1e-300)))

@@ -141,7 +141,7 @@ def _facts(found: Understood) -> list[tuple[str, str]]:
 def _begins_text(zero: Zero) -> str:
     if zero.off and not zero.seen:
         return f"not seen: {zero.sentence()}"
-    return f"the force begins at {round(1e3 * zero.begins, 1) + 0.0:.1f} mm{'' if zero.seen else ', extrapolated'}"
+    return f"the force begins at {zero.shown}{'' if zero.seen else ', extrapolated'}"
 
 
 def _table_text(found: Understood) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -61,6 +62,11 @@ class Zero:
     def _near(self) -> float:
         return max(EARLY, EARLY_PART * self.stroke)
 
+    @property
+    def shown(self) -> str:
+        """Where the force begins, in mm."""
+        return _mm(self.begins, self.stroke)
+
     def readings(self) -> dict[str, float]:
         """Return what each gauge reads [SI] when nothing is loaded; of an extrapolation where the readings begin."""
         if self._of_deflection:
@@ -71,11 +77,10 @@ class Zero:
     def sentence(self) -> str:
         """Return where the force begins, or that it is not seen."""
         if self.seen:
-            return f"the force begins at {_mm(self.begins)} of deflection"
-        before = f", and it would begin at {_mm(self.begins)}" if self._of_deflection else ""
-        return (
-            f"the readings begin at {_mm(self.low)} of deflection with a force of {self.force:.3g} N{before}"
-        )
+            return f"the force begins at {self.shown} of deflection"
+        before = f", and it would begin at {self.shown}" if self._of_deflection else ""
+        low = _mm(self.low, self.stroke)
+        return f"the readings begin at {low} of deflection with a force of {self.force:.3g} N{before}"
 
     @property
     def _of_deflection(self) -> bool:
@@ -126,7 +131,7 @@ class Gauges:
         if not zero.far:
             return ""
         return (
-            f"{zero.sentence()}, and what is farther off than {_mm(FARTHEST)} is the gauge's zero; give it: "
+            f"{zero.sentence()}, and what is farther off than {_mm(FARTHEST, FARTHEST)} is the gauge's zero; give it: "
             f"{self.origin.zero(self.at_zero(zero.readings()))}"
         )
 
@@ -201,5 +206,7 @@ def quantity_text(name: str, value: float) -> str:
     return f"{1e3 * value:.9g}mm" if name == "deflection" else f"{value:.9g}N"
 
 
-def _mm(length: float) -> str:
-    return f"{round(1e3 * length, 1) + 0.0:.1f} mm"
+def _mm(length: float, stroke: float) -> str:
+    """Return a length [m] to the tenth of a millimetre, or to the tenth of a stroke [m] that is shorter than one."""
+    decimals = max(1, 1 - math.floor(math.log10(max(1e3 * stroke, 1e-12))))
+    return f"{round(1e3 * length, decimals) + 0.0:.{decimals}f} mm"

@@ -89,6 +89,15 @@ def test_a_part_is_driven_where_it_was_recorded():
     assert found.to_dict()["begins_at"] == pytest.approx(path.min())
 
 
+@pytest.mark.parametrize(("scale", "said"), [(1.0, "20.0 mm"), (1e-3, "0.020 mm"), (1e-5, "0.00020 mm")])
+def test_the_stroke_of_a_tiny_part_is_told_with_as_many_decimals_as_show_it(scale: float, said: str):
+    found = discriminate(viscous(), friction(), 6.0, Limits(deepest=0.02, fastest=0.1, longest=60.0))
+    test = replace(found.test, deflection=scale * found.test.deflection / found.test.deflection.max() * 0.02)
+    sentence = replace(found, test=test).sentence
+    assert f" to {said} on flat ground, at up to " in sentence
+    assert "up to 0 mm/s" not in sentence
+
+
 def test_against_the_baseline_it_is_decided_whether_the_effect_acts():
     told = discriminate(friction(), model_of({}), 6.0, Limits()).sentence
     assert "It decides whether the friction loop acts: the forces differ by " in told

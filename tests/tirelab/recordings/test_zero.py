@@ -18,7 +18,7 @@ from tirelab.recordings.inspection import inspect_recording
 from tirelab.recordings.reading import Reading
 from tirelab.recordings.recording import Recording, read_recording, understand
 from tirelab.recordings.settings_file import settings_text
-from tirelab.recordings.zero import FARTHEST, parse_zeros, refuse_far_zeros
+from tirelab.recordings.zero import FARTHEST, Zero, parse_zeros, refuse_far_zeros
 
 HEADER = "time [s],Weg [mm],force [N]"
 
@@ -50,6 +50,21 @@ def test_a_zero_is_subtracted_shown_kept_and_said_in_commands(tmp_path: Path) ->
         *("--radius", "flat"),
         *("--zero", "deflection=30 mm", "--zero", "force=0.2 kN"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("begins", "stroke", "shown"),
+    [
+        (0.0012, 0.025, "1.2 mm"),
+        (-1e-6, 0.025, "0.0 mm"),
+        (2.77e-8, 2.8e-7, "0.00003 mm"),
+        (0.0, 2e-4, "0.00 mm"),
+    ],
+)
+def test_where_the_force_begins_is_told_to_the_tenth_of_what_counts(
+    begins: float, stroke: float, shown: str
+) -> None:
+    assert Zero(begins, stroke, begins, 0.0).shown == shown
 
 
 def test_a_zero_stands_in_the_file_of_settings_in_one_line(tmp_path: Path) -> None:
