@@ -145,7 +145,7 @@ def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> 
         # Beside a level that stays over long lags, a line is a part of the misfit that they do not see.
         if not follows and (plateau or not _rings(residual, found.memory)):
             return found
-    return Noise(white_level(residual), 1)
+    return levels.white(driven)
 
 
 @dataclass(frozen=True)
@@ -156,6 +156,13 @@ class _Levels:
     lags: tuple[int, ...]
     slow: BoolArray
     values: tuple[float, ...]
+
+    def white(self, driven: Driven) -> Noise:
+        """Return the white noise: where the motion is quick, a misfit that follows it varies as quickly as noise."""
+        moving = self.slow & ~resting(driven.rate)
+        whole = white_level(self.residual)
+        enough = moving.sum() >= FEWEST_IN_STATE
+        return Noise(min(whole, _level_of(self.residual, 1, moving)) if enough else whole, 1)
 
     def beneath(self, noise: Noise) -> Noise:
         """Return a noise, or what is beneath it where it oscillates: its differences are larger than over longer lags,
@@ -195,7 +202,7 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
         return None
     found = _noise_of_level(levels.values, last)
     if found.memory == 1:
-        return Noise(white_level(levels.residual), 1)
+        return levels.white(driven)
     found = levels.beneath(found)
     if found.memory == 1:
         return found

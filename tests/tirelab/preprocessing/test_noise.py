@@ -476,3 +476,15 @@ def test_a_slow_line_that_a_model_leaves_does_not_hide_filtered_noise() -> None:
     )
     assert found.level == pytest.approx(1.0, rel=0.1)
     assert found.memory == 4
+
+
+@pytest.mark.parametrize("count", [8000, 11000])
+def test_a_ripple_that_a_quick_motion_passes_in_a_few_samples_is_no_noise(count: int) -> None:
+    """Nine knobs of 30 N along the stroke of a sweep: at its end each passes in two samples, at its begin in thirty;
+    over all samples the third differences show 20 N.
+    """
+    driven = swept(count, 0.03)
+    ripple = 30.0 * np.sin(2.0 * np.pi * driven.deflection / (DEPTH / 9.0))
+    found = noise_of(ripple + np.random.default_rng(5).normal(size=count), driven)
+    assert 0.9 < found.level < 4.0
+    assert found.memory == 1
