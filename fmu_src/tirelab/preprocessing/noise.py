@@ -159,10 +159,10 @@ class _Levels:
 
     def white(self, driven: Driven) -> Noise:
         """Return the white noise: where the motion is quick, a misfit that follows it varies as quickly as noise."""
-        moving = self.slow & ~resting(driven.rate)
-        whole = white_level(self.residual)
-        enough = moving.sum() >= FEWEST_IN_STATE
-        return Noise(min(whole, _level_of(self.residual, 1, moving)) if enough else whole, 1)
+        moving, level = self.slow & ~resting(driven.rate), white_level(self.residual)
+        if moving.sum() >= FEWEST_IN_STATE and (less := _level_of(self.residual, 1, moving)) * STAYS < level:
+            level = less
+        return Noise(level, 1)
 
     def beneath(self, noise: Noise) -> Noise:
         """Return a noise, or what is beneath it where it oscillates: its differences are larger than over longer lags,
