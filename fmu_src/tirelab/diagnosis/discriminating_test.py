@@ -19,8 +19,10 @@ import numpy as np
 from ..estimation.findings import FittedModel
 from ..planning.waveforms import WAVEFORMS, Limits, motion, sample_times
 from ..preprocessing.motion import FloatArray
+from ..recordings.zero import millimetres
 from ..regressors.dataset import BLOCKS
 from ..report.titles import question
+from ..report.words import number
 from ..selection.search import beside_noise
 from ..simulation.simulate import simulate
 
@@ -88,11 +90,11 @@ class DiscriminatingTest:
                 return f"{none} less than a hundredth of the noise."
             return f"{none} at most {differ} ({self.test.name}{place})."
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
-        decimals = max(1, 1 + _decimals(1e3 * float(np.abs(path).max())))
-        begins = f" from {1e3 * self.begins_at:.{decimals}f}" if self.begins_at else ""
+        first, last = (millimetres(x, float(np.abs(path).max())) for x in (self.begins_at, float(path.max())))
+        begins = f" from {first.removesuffix(' mm')}" if self.begins_at else ""
+        speed = f"{rate:.0f}" if rate >= 1.0 else number(rate, 1)
         return (
-            f"Drive {self.test.name}{begins} to {1e3 * path.max():.{decimals}f} mm{place}, "
-            f"at up to {rate:.{max(0, _decimals(rate))}f} mm/s, for "
+            f"Drive {self.test.name}{begins} to {last}{place}, at up to {speed} mm/s, for "
             f"{self.test.time[-1] - self.test.time[0]:.0f} s. It decides {asked}: the forces differ by {differ}."
         )
 
@@ -168,8 +170,3 @@ def _surface(radius: float) -> str:
     if not np.isfinite(radius):
         return "flat ground"
     return f"a {'convex' if radius > 0.0 else 'concave'} surface of radius {100.0 * abs(radius):.4g} cm"
-
-
-def _decimals(value: float) -> int:
-    """Return how many decimals show the first digit of a value above 0, less than none of one above 10."""
-    return -math.floor(math.log10(max(value, 1e-300)))

@@ -42,13 +42,14 @@ STILL = 0.02
 """Speed over its root mean square, or its largest, below which the tire rests."""
 
 NEGLIGIBLE = 0.05
-"""Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior."""
+"""Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior; a chance."""
 
 STANDS_OUT = 8.0
 """Noise standard deviations: a gauge whose reading stays within them stands still, what is beyond them is no noise."""
 
 FEWEST_EVENTS = 10
-"""Fewest events that are no chance: samples of a hold, changes of a reading, memories of noise between two visits."""
+"""Fewest events that are no chance: samples of a hold, changes of a reading, memories of noise between two visits, or
+for each shape that a misfit may have."""
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

@@ -65,7 +65,7 @@ class Zero:
     @property
     def shown(self) -> str:
         """Where the force begins, in mm."""
-        return _mm(self.begins, self.stroke)
+        return millimetres(self.begins, self.stroke)
 
     def readings(self) -> dict[str, float]:
         """Return what each gauge reads [SI] when nothing is loaded; of an extrapolation where the readings begin."""
@@ -79,7 +79,7 @@ class Zero:
         if self.seen:
             return f"the force begins at {self.shown} of deflection"
         before = f", and it would begin at {self.shown}" if self._of_deflection else ""
-        low = _mm(self.low, self.stroke)
+        low = millimetres(self.low, self.stroke)
         return f"the readings begin at {low} of deflection with a force of {self.force:.3g} N{before}"
 
     @property
@@ -130,8 +130,9 @@ class Gauges:
         """Return why no effect holds a zero, and the next step; "" where one does."""
         if not zero.far:
             return ""
+        most = millimetres(FARTHEST, FARTHEST)
         return (
-            f"{zero.sentence()}, and what is farther off than {_mm(FARTHEST, FARTHEST)} is the gauge's zero; give it: "
+            f"{zero.sentence()}, and what is farther off than {most} is the gauge's zero; give it: "
             f"{self.origin.zero(self.at_zero(zero.readings()))}"
         )
 
@@ -206,7 +207,7 @@ def quantity_text(name: str, value: float) -> str:
     return f"{1e3 * value:.9g}mm" if name == "deflection" else f"{value:.9g}N"
 
 
-def _mm(length: float, stroke: float) -> str:
-    """Return a length [m] to the tenth of a millimetre, or to the tenth of a stroke [m] that is shorter than one."""
+def millimetres(length: float, stroke: float) -> str:
+    """Return a length [m] in mm, to the tenth of one or of a shorter stroke [m]."""
     decimals = max(1, 1 - math.floor(math.log10(max(1e3 * stroke, 1e-12))))
     return f"{round(1e3 * length, decimals) + 0.0:.{decimals}f} mm"

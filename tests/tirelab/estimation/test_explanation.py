@@ -16,7 +16,6 @@ from tirelab.estimation import first_sets
 from tirelab.estimation.explanation import (
     Explanation,
     _beyond_range,
-    _confounded,
     catalogue_names,
     explain_misfit,
 )
@@ -285,25 +284,6 @@ def test_friction_at_one_speed_is_told_from_damping_by_how_it_breaks_away(
     assert found.model.names == ("rate_independent_hysteresis",)
     assert "viscous_damping" in found.excitation.alike("rate_independent_hysteresis")
     assert (("viscous_damping",) in found.confounded) == alike
-
-
-@pytest.mark.parametrize(
-    ("left", "behind", "confounded"),
-    [(90.0, 11.5, True), (100.0, 30.0, True), (101.0, 11.5, False), (110.0, 2.0, True)],
-)
-def test_a_form_with_fewer_parameters_is_no_proof_against_one_that_leaves_as_little(
-    left: float, behind: float, confounded: bool
-) -> None:
-    """A lag with one constant leaves 100, a damping with seven leaves less and is far behind for that reason alone."""
-    lag, damping, nothing = ("deflection_lag",), ("viscous_damping",), ()
-    fits = {
-        frozenset(n): SimpleNamespace(names=n, power=p)
-        for n, p in ((lag, 100.0), (damping, left), (nothing, 1e4))
-    }
-    ranking: Any = SimpleNamespace(of=fits.get, behind=lambda fit: behind if fit.names == damping else 0.0)
-    motion: Any = SimpleNamespace(alike=lambda name: damping, within_law=lambda name: False)
-    chosen: Any = fits[frozenset(lag)]
-    assert _confounded(chosen, ranking, motion) == ((damping,) if confounded else ())
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,125 @@
+"""Noise with a memory beside a motion as quick, told from what a misfit that follows the motion has."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.signal import chirp
+from tirelab.preprocessing.driven import Driven
+from tirelab.preprocessing.noise import noise_of
+
+FloatArray = NDArray[np.float64]
+
+DEPTH = 25e-3
+
+
+def swept(count: int, highest: float) -> Driven:
+    """Return a sine whose frequency rises fifteenfold to `highest` cycles per sample."""
+    deflection = 0.5 * DEPTH * (1.0 + chirp(np.arange(count), highest / 15.0, count, highest))
+    rate = np.gradient(deflection)
+    return Driven(1.0, deflection, rate, np.gradient(rate), np.zeros(count, dtype=np.intp))
+
+
+def left_by_products(driven: Driven, values: FloatArray) -> FloatArray:
+    """Return what a model of the products of deflection and rate leaves of values (n,) or (n, k)."""
+    columns = np.column_stack([driven.signals, np.ones(driven.deflection.size)])
+    basis, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
+    return np.asarray(values - basis @ (basis.T @ values))
+
+
+@pytest.mark.parametrize(
+    ("count", "highest", "length"),
+    [(1500, 0.02, 4), (1500, 0.06, 4), (3000, 0.02, 4), (3000, 0.06, 4), (3000, 0.02, 8), (6000, 0.03, 8)],
+)
+def test_filtered_noise_is_seen_beside_a_quick_motion(count: int, highest: float, length: int) -> None:
+    """A kink could vary as quickly as this noise; the noise has none, as ten of its memories for each shape show."""
+    driven = swept(count, highest)
+    white = np.random.default_rng(0).normal(size=count + length - 1)
+    noise = np.sqrt(length) * np.convolve(white, np.ones(length) / length, mode="valid")
+    found = noise_of(
+        left_by_products(driven, noise), driven, lambda signals: left_by_products(driven, signals)
+    )
+    assert found.level == pytest.approx(1.0, rel=0.25)
+    assert found.memory in (length // 2, length)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_rises_to_the_longest_lag_of_a_random_motion_is_no_noise(seed: int) -> None:
+    """A damper whose resistance is switched, and that not recorded: its force is as random as the motion and slower
+    than noise of 1 N.
+    """
+    drawn = np.random.default_rng(seed)
+    frequencies = np.linspace(2e-4, 1e-2, 60)
+    phases = drawn.uniform(0.0, 2.0 * np.pi, 60)
+    deflection = 2e-3 * np.cos(2.0 * np.pi * frequencies * np.arange(4000.0)[:, None] + phases).sum(axis=1)
+    rate = np.gradient(deflection)
+    driven = Driven(1.0, deflection, rate, np.gradient(rate), np.zeros(4000, dtype=np.intp))
+    smooth = np.convolve(drawn.normal(size=4120), np.hanning(121), mode="valid")
+    missed = 200.0 * np.tanh(smooth / smooth.std()) * np.tanh(2.0 * rate / rate.std())
+    force = missed + drawn.normal(size=4000)
+    found = noise_of(
+        left_by_products(driven, force), driven, lambda signals: left_by_products(driven, signals)
+    )
+    assert found.level < 3.0
+    assert found.memory == 1
+
+
+@pytest.mark.parametrize("size", [5.0, 30.0])
+@pytest.mark.parametrize(("count", "highest"), [(600, 0.02), (600, 0.04), (2400, 0.04)])
+def test_friction_that_a_model_cannot_follow_is_no_noise_beside_a_quick_motion(
+    count: int, highest: float, size: float
+) -> None:
+    """What products leave of a force that changes sign with the rate is half of it, and varies within a few samples."""
+    driven = swept(count, highest)
+    force = size * np.sign(driven.rate) + np.random.default_rng(0).normal(size=count)
+    found = noise_of(
+        left_by_products(driven, force), driven, lambda signals: left_by_products(driven, signals)
+    )
+    assert found.memory == 1
+    assert found.level < 1.3
+
+
+@pytest.mark.parametrize(
+    ("count", "highest", "period", "size"),
+    [(600, 0.04, 20.0, 8.0), (1200, 0.06, 25.0, 8.0), (1200, 0.02, 40.0, 20.0), (3000, 0.06, 40.0, 20.0)],
+)
+def test_an_oscillation_that_a_model_leaves_is_no_noise(
+    count: int, highest: float, period: float, size: float
+) -> None:
+    """It swells by two fifths over the recording; no lag that the sweep allows is long enough to see it fall."""
+    driven, time = swept(count, highest), np.arange(float(count))
+    swelling = size * np.sqrt(2.0) * np.linspace(0.8, 1.2, count) * np.sin(2.0 * np.pi * time / period)
+    force = swelling + np.random.default_rng(2).normal(size=count)
+    found = noise_of(
+        left_by_products(driven, force), driven, lambda signals: left_by_products(driven, signals)
+    )
+    assert found.level == pytest.approx(1.0, rel=0.15)
+    assert found.memory == 1
+
+
+def test_a_slow_line_that_a_model_leaves_does_not_hide_filtered_noise() -> None:
+    """Driven at one frequency; what the form of an effect misses has the fifth harmonic, of the noise's size."""
+    time = np.arange(8000.0)
+    deflection = 0.5 * DEPTH * (1.0 - np.cos(2.0 * np.pi * time / 1600.0))
+    rate = np.gradient(deflection)
+    driven = Driven(1.0, deflection, rate, np.gradient(rate), np.zeros(time.size, dtype=np.intp))
+    noise = 2.0 * np.convolve(np.random.default_rng(3).normal(size=8003), np.ones(4) / 4.0, mode="valid")
+    force = noise + np.sqrt(2.0) * np.sin(2.0 * np.pi * time / 320.0)
+    found = noise_of(
+        left_by_products(driven, force), driven, lambda signals: left_by_products(driven, signals)
+    )
+    assert found.level == pytest.approx(1.0, rel=0.1)
+    assert found.memory == 4
+
+
+@pytest.mark.parametrize("count", [11000, 16000])
+def test_a_ripple_that_a_quick_motion_passes_in_a_few_samples_is_no_noise(count: int) -> None:
+    """Nine knobs of 30 N along the stroke of a sweep: at its end each passes in two samples, at its begin in thirty;
+    over all samples the third differences show 20 N.
+    """
+    driven = swept(count, 0.03)
+    ripple = 30.0 * np.sin(2.0 * np.pi * driven.deflection / (DEPTH / 9.0))
+    found = noise_of(ripple + np.random.default_rng(5).normal(size=count), driven)
+    assert 0.9 < found.level < 4.0
+    assert found.memory == 1
