@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..preprocessing.driven import Driven
-from ..preprocessing.noise import Noise, levels_by_state, noise_of, resting, white_level
+from ..preprocessing.levels import white_level
+from ..preprocessing.noise import Noise, levels_by_state, noise_of, resting, white_noise_of
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (
@@ -137,7 +138,7 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
         (surface,) = surface_numbers([e.surface_radius[e.counts]])
         driven = Driven(e.interval, x, rate, acceleration, surface)
         others = partial(_left_in_one, equations, [r.size for r in left], number)
-        noise = Noise(white_level(own), 1) if white else noise_of(own, driven, others)
+        noise = white_noise_of(own, driven) if white else noise_of(own, driven, others)
         noise = replace(noise, level=e.noise * max(noise.level, LEAST_LEFT))
         level, uneven, louder = _by_state(e, own, noise)
         found.append(replace(noise, level=level))

@@ -16,7 +16,8 @@ from scipy.stats import binom, norm, t
 
 from ..errors import TirelabError
 from .gauge import deflection_noise
-from .noise import FEWEST_EVENTS, STANDS_OUT, white_level
+from .levels import white_level
+from .noise import FEWEST_EVENTS, STANDS_OUT
 from .samples import RawDataset, Recorded
 
 FloatArray = NDArray[np.float64]

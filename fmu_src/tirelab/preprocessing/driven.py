@@ -66,6 +66,15 @@ class Driven:
         over, after = _kinks(self.deflection, parts), _kinks(np.abs(turned), parts)
         return np.column_stack([over, way, way * over, way * after])
 
+    def places(self, memory: int) -> Iterator[FloatArray]:
+        """Return numbers (n,) [m] that are near where the place is, one for each meaning of place (`visits`)."""
+        deflection, inwards = self.deflection, _inwards(self.deflection, memory)
+        # Added to a place, they keep surfaces apart, and loading and unloading.
+        apart = 2.0 * float(np.ptp(deflection))
+        ground, way = 2.0 * apart * self.surface, apart * inwards
+        for own in (deflection, deflection + way, np.abs(_from_turn(deflection, memory)) + way):
+            yield own + ground
+
     def visits(self, memory: int) -> Iterator[Visits]:
         """Return pairs of samples of two visits of one place, for three meanings of place: the same deflection; the
         same deflection and direction; the same direction and distance from the last reversal; each on the same surface.
@@ -73,14 +82,9 @@ class Driven:
         Samples are of different visits if they are four memories apart, and at one place if they are at most half the
         path of one memory apart.
         """
-        deflection = self.deflection
+        deflection, inwards = self.deflection, _inwards(self.deflection, memory)
         near = 0.5 * float(np.median(np.abs(deflection[memory:] - deflection[:-memory])))
-        inwards, turned = _inwards(deflection, memory), _from_turn(deflection, memory)
-        # Added to a place, they keep surfaces apart, and loading and unloading.
-        apart = 2.0 * float(np.ptp(deflection))
-        ground, way = 2.0 * apart * self.surface, apart * inwards
-        for own in (deflection, deflection + way, np.abs(turned) + way):
-            place = own + ground
+        for place in self.places(memory):
             order = np.argsort(place, kind="stable")
             one, other = order[:-1], order[1:]
             pairs = (np.abs(one - other) > 4 * memory) & (place[other] - place[one] <= near)

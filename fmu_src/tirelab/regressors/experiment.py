@@ -23,16 +23,9 @@ from radialtire.model import READING_NOISE
 from ..preprocessing.data_checks import are_rare, compared, spikes
 from ..preprocessing.driven import Driven
 from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_step
+from ..preprocessing.levels import Scalar
 from ..preprocessing.motion import Motion, followed_turns, motion_of, runs, through_turns
-from ..preprocessing.noise import (
-    SHARE_OF_STEP,
-    Noise,
-    NoiseFloor,
-    Scalar,
-    noise_floor,
-    noise_of,
-    resting,
-)
+from ..preprocessing.noise import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, resting
 from ..preprocessing.samples import Recorded, is_timed, surface_numbers
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 

@@ -7,13 +7,14 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
 from tirelab.preprocessing.driven import Driven
+from tirelab.preprocessing.levels import white_level
 from tirelab.preprocessing.noise import (
     Noise,
     levels_by_state,
     noise_floor,
     noise_of,
     resting,
-    white_level,
+    white_noise_of,
 )
 
 FloatArray = NDArray[np.float64]
@@ -32,20 +33,6 @@ def test_floor_counts_the_steps_through_the_stiffness() -> None:
     assert floor.steps == pytest.approx(float(np.std(uniform)), rel=0.02)
     assert floor.amplifier == pytest.approx(0.5, rel=0.05)
     assert floor.level == pytest.approx(np.hypot(floor.amplifier, floor.steps))
-
-
-def test_white_level_does_not_see_a_slow_motion() -> None:
-    noise = np.random.default_rng(2).normal(0.0, 2.0, TIME.size)
-    assert white_level(noise + 500.0 * np.sin(TIME)) == pytest.approx(2.0, rel=0.06)
-
-
-@pytest.mark.parametrize("step", [0.0, 1.0, 3.0])
-def test_white_level_holds_for_forces_read_in_steps(step: float) -> None:
-    noise = np.random.default_rng(3).normal(0.0, 1.0, 4000)
-    ramp = 0.37 * np.arange(noise.size)
-    read = ramp + noise if step == 0.0 else step * np.round((ramp + noise) / step)
-    # The error of a rounded reading is uniform, beside the noise (B. Widrow); a twentieth is 2 standard errors.
-    assert white_level(read - ramp) == pytest.approx(np.hypot(1.0, step / np.sqrt(12.0)), rel=0.05)
 
 
 def test_a_reading_in_steps_has_their_error_however_slowly_it_moves() -> None:
@@ -87,10 +74,25 @@ def test_a_machine_may_be_louder_while_it_moves() -> None:
     assert at_rest < 1.1 < moving
     assert levels_by_state(WHITE + SLOW, rests, 1e-3) == (1.0, 1.0)
     assert levels_by_state(np.where(rests, 1.0, 7.0) * WHITE, np.arange(8000) > 50, 1e-3) == (1.0, 1.0)
-    swings = np.where(rests, 0.0, 9.0) * np.sin(
-        np.arange(8000) / 5.0
-    )  # a force that follows the motion is no noise
+
+
+@pytest.mark.parametrize("period", [3.0, 4.0, 6.25, 12.0, 31.0])
+def test_a_force_that_swings_while_the_tire_moves_is_no_louder_machine(period: float) -> None:
+    rests = np.arange(8000) % 1000 < 900
+    swings = np.where(rests, 0.0, 9.0) * np.sin(2.0 * np.pi * np.arange(8000) / period)
     assert levels_by_state(WHITE + swings, rests, 1e-3) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("period", [2.2, 3.0, 4.0, 6.25])
+def test_white_noise_is_at_most_what_differences_over_any_lag_show(period: float) -> None:
+    """Each of them has all of it. Over some lag, of the powers of two and those between, an oscillation has next to
+    nothing; the level is known to a twentieth at each of about ten lags.
+    """
+    swings = 9.0 * np.sin(2.0 * np.pi * np.arange(8000) / period)
+    rate = np.gradient(MOTION)
+    driven = Driven(1.0, MOTION, rate, np.gradient(rate), np.zeros(8000, dtype=np.intp))
+    assert white_noise_of(WHITE, driven).level == pytest.approx(1.0, rel=0.05)
+    assert white_noise_of(WHITE + swings, driven).level < 1.3
 
 
 def test_a_force_that_rests_on_a_step_has_the_least_noise_there() -> None:

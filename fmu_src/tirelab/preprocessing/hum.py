@@ -1,0 +1,55 @@
+"""Mains hum in a reading: one steady line at the frequency of the mains, folded by the sampling."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+MAINS, DEVIATION = (50.0, 60.0), 0.2
+"""Frequencies of the mains [Hz], and by how much they deviate at most in steady state: Commission Regulation (EU)
+2017/1485, Annex III, for Continental Europe; those of 60 Hz deviate less."""
+
+FEWEST_BINS, PADDED = 20, 8
+"""Fewest neighbouring independent frequencies among which a line is looked for, and how many times as fine they are
+computed: a line between two of them then loses less than a fiftieth of its power."""
+
+
+def mains_hum(values: FloatArray, interval: float, slowest: float, chance: float) -> FloatArray:
+    """Return the hum of the mains in values (n,) with an interval [s] between them; zeros where there is none.
+
+    slowest: period, in samples, of the slowest line that may be one: the motion has slower ones of its own
+    chance: with which white noise shows a line of the same part of the power of its neighbourhood (R. A. Fisher, Proc.
+    R. Soc. A 125 (1929) 54-59). None where the sampling is so slow that by this chance any line folds to the mains.
+    """
+    rate, hum = 1.0 / interval, np.zeros(values.size)
+    if 2.0 * DEVIATION * len(MAINS) > chance * 0.5 * rate:
+        return hum
+    centred = values - values.mean()
+    power = np.abs(np.fft.rfft(centred, PADDED * values.size)) ** 2
+    step = rate / (PADDED * values.size)
+    strongest = 0.0
+    for mains in MAINS:
+        folded = abs(mains - rate * round(mains / rate))
+        near = np.arange(power.size) * step - folded
+        beside = np.abs(near) <= max(DEVIATION, 0.5 * PADDED * FEWEST_BINS * step)
+        may = np.abs(near) <= DEVIATION + 0.5 * PADDED * step
+        may[: int(np.ceil(rate / (slowest * step)))] = False
+        if not may.any():
+            continue
+        peak = int(np.argmax(np.where(may, power, 0.0)))
+        independent, share = beside.sum() / PADDED, power[peak] * PADDED / power[beside].sum()
+        by_chance = len(MAINS) * beside.sum() * max(1.0 - share, 0.0) ** (independent - 1.0)
+        if by_chance < chance and power[peak] > strongest:
+            strongest, hum = float(power[peak]), _line(centred, 2.0 * np.pi * peak / (PADDED * values.size))
+    return hum
+
+
+def _line(values: FloatArray, phase: float) -> FloatArray:
+    """Return the sine in values (n,) by least squares; phase [rad]: from one sample to the next, nearly."""
+    at = np.arange(values.size) - 0.5 * (values.size - 1)
+    waves = np.column_stack([np.cos(phase * at), np.sin(phase * at)])
+    # Waves that grow along the recording are what another frequency differs by, to the first order.
+    waves = np.column_stack([waves, waves * (at / values.size)[:, None]])
+    return np.asarray(waves @ np.linalg.lstsq(waves, values, rcond=None)[0])

@@ -1,0 +1,133 @@
+"""Levels of a residual: how much of it varies within a lag, between visits of one place, and along a place.
+
+Third differences over a lag have all of a white noise, and of a smooth misfit next to nothing (variogram: G. Matheron,
+Economic Geology 58 (1963) 1246-1266; third differences in place of first ones). Between visits of one place all of a
+noise differs, and nothing of a misfit that depends on the place, however quickly it changes there (pure error of
+replicates: N. R. Draper, H. Smith, Applied Regression Analysis, 1998, 2.1; J. Rice, Annals of Statistics 12 (1984)
+1215-1230).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+
+from .spread import TRIMMED, trimmed_sigma
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.intp]
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+STAYS = float(np.sqrt(2.0) ** 0.5)
+"""Factor of growth for a doubled lag below which differences count as constant: half the exponent of a random walk, the
+roughest noise that has a memory."""
+
+FEWEST = 0.5 * (2.0 * TRIMMED) ** 2
+"""Number of independent values from which on a level is known to a half; fewer count as these."""
+
+OF_THIRD = float(np.sqrt(20.0))
+"""Standard deviation of third differences of white noise of standard deviation 1: the squared weights 1 + 9 + 9 + 1."""
+
+
+def white_level(residual: FloatArray) -> float:
+    """Return the standard deviation of the part of a residual (n,) that is white, from its third differences."""
+    return _level(_third_differences(residual, 1)) if residual.size >= 8 else float(np.std(residual))
+
+
+def local_rms(values: FloatArray, lag: int, seen: BoolArray) -> float:
+    """Return the root mean square of values about their mean over four lags, where they are `seen`."""
+    varied = values - uniform_filter1d(values, 4 * lag + 1, mode="nearest")
+    return float(np.sqrt(np.mean(varied[seen] ** 2)))
+
+
+def plateau_at(levels: Sequence[float]) -> int:
+    """Return the index of the last level from which on the levels over doubled lags stay constant; 0 where none is."""
+    # One doubling without a rise may be chance between two rises: the level has to hold over a factor of four.
+    pairs = enumerate(itertools.pairwise(rising(levels)))
+    return max((i + 1 for i, pair in pairs if not any(pair)), default=0)
+
+
+def rising(levels: Sequence[float]) -> list[bool]:
+    """Return whether each level but the first is a rise over those before it."""
+    # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
+    highest = itertools.accumulate(levels, max)
+    return [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
+
+
+def finer(lags: Sequence[int]) -> tuple[int, ...]:
+    """Return doubled lags and those between them: over powers of two, a period of three samples has one level."""
+    return tuple(sorted({*lags, *(3 * lag // 2 for lag in lags[1:-1])}))
+
+
+def known_part(independent: FloatArray | float) -> FloatArray:
+    """Return the least part of the level of a noise that so many independent values show by chance (TRIMMED)."""
+    return np.asarray(1.0 - TRIMMED / np.sqrt(2.0 * np.maximum(independent, FEWEST)))
+
+
+def known_levels(residual: FloatArray, lags: Sequence[int], seen: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Return the levels over lags, and their `known_part` each."""
+    levels = np.array([level_of(residual, lag, seen) for lag in lags])
+    return levels, known_part(seen.sum() / np.array(lags))
+
+
+def falls(levels: FloatArray, known: FloatArray) -> bool:
+    """Return whether levels fall with the lag by more than they are known to and than counts as constant, as those of a
+    noise do not. Third differences of a sine are up to 1.8 times its level at one lag, and next to none at others.
+    """
+    return bool(np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels)))
+
+
+def known_over(count: int, lag: int) -> BoolArray:
+    """Return in the middle of which of so many samples a third difference over a lag is taken."""
+    known = np.zeros(count, dtype=bool)
+    _inner(known, lag)[:] = True
+    return known
+
+
+def level_between(residual: FloatArray, lag: int, one: IntArray, other: IntArray, sign: FloatArray) -> float:
+    """Return the level over a lag of what differs between visits, and nothing of what is slow."""
+    differences = np.full(residual.size, np.nan)
+    _inner(differences, lag)[:] = _third_differences(residual, lag)
+    between = differences[one] - sign * differences[other]
+    return _level(between[np.isfinite(between)]) / float(np.sqrt(2.0))
+
+
+def most_apart(residual: FloatArray, memory: int, one: IntArray, other: IntArray) -> float:
+    """Return the largest standard deviation of a noise with a memory beside which so little differs between visits.
+
+    Of a force over the place that is nothing, at any speed, where differences over a lag see other lengths of it.
+    """
+    apart = trimmed_sigma(residual[one] - residual[other]) / float(np.sqrt(2.0))
+    return apart / float(known_part(one.size / memory))
+
+
+def most_along(residual: FloatArray, place: FloatArray) -> float:
+    """Return the largest white noise beside which so little differs between neighbours along a place (n,)."""
+    return white_level(residual[np.argsort(place, kind="stable")]) / float(known_part(residual.size))
+
+
+def level_of(values: FloatArray, lag: int, seen: BoolArray) -> float:
+    """Return the level as of `white_level`, over a lag, where the values are `seen`."""
+    return _level(_third_differences(values, lag)[_inner(seen, lag)])
+
+
+def _level(third_differences: FloatArray) -> float:
+    return trimmed_sigma(third_differences) / OF_THIRD
+
+
+def _inner(values: NDArray[Scalar], lag: int) -> NDArray[Scalar]:
+    """Return the view of those values in whose middle a third difference over a lag is taken."""
+    return values[(3 * lag) // 2 :][: values.size - 3 * lag]
+
+
+def _third_differences(values: FloatArray, lag: int) -> FloatArray:
+    """Return v(i + 3 lag) - 3 v(i + 2 lag) + 3 v(i + lag) - v(i)."""
+    ends = values[3 * lag :] - values[: -3 * lag]
+    return ends - 3.0 * (values[2 * lag : -lag] - values[lag : -2 * lag])

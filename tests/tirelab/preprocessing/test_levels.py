@@ -1,0 +1,106 @@
+"""Levels of a residual over lags, between visits and along a place."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tirelab.preprocessing.levels import (
+    falls,
+    finer,
+    known_levels,
+    known_over,
+    known_part,
+    level_between,
+    level_of,
+    local_rms,
+    most_along,
+    most_apart,
+    plateau_at,
+    rising,
+    white_level,
+)
+
+TIME = np.linspace(0.0, 10.0, 4001)
+WHITE = np.random.default_rng(5).normal(0.0, 1.0, 8000)
+ALL = np.ones(8000, dtype=bool)
+
+
+def test_white_level_does_not_see_a_slow_motion() -> None:
+    noise = np.random.default_rng(2).normal(0.0, 2.0, TIME.size)
+    assert white_level(noise + 500.0 * np.sin(TIME)) == pytest.approx(2.0, rel=0.06)
+
+
+@pytest.mark.parametrize("step", [0.0, 1.0, 3.0])
+def test_white_level_holds_for_forces_read_in_steps(step: float) -> None:
+    noise = np.random.default_rng(3).normal(0.0, 1.0, 4000)
+    ramp = 0.37 * np.arange(noise.size)
+    read = ramp + noise if step == 0.0 else step * np.round((ramp + noise) / step)
+    # The error of a rounded reading is uniform, beside the noise (B. Widrow); a twentieth is 2 standard errors.
+    assert white_level(read - ramp) == pytest.approx(np.hypot(1.0, step / np.sqrt(12.0)), rel=0.05)
+
+
+def test_a_level_over_any_lag_has_all_of_white_noise_and_none_of_a_slow_misfit() -> None:
+    slow = 40.0 * np.sin(2.0 * np.pi * np.arange(8000) / 4000.0)
+    for lag in (1, 3, 8):
+        assert level_of(WHITE + slow, lag, ALL) == pytest.approx(1.0, rel=0.06)
+
+
+@pytest.mark.parametrize("period", [2.0, 3.0, 7.3])
+@pytest.mark.parametrize("lag", [1, 2, 5])
+def test_third_differences_of_a_sine(period: float, lag: int) -> None:
+    """They are (2 sin(pi lag / period))^3 times it; those of white noise are the root of 20 times it."""
+    sine = np.cos(2.0 * np.pi * np.arange(8000) / period)
+    size = float(np.std(sine)) * abs(2.0 * np.sin(np.pi * lag / period)) ** 3 / np.sqrt(20.0)
+    assert level_of(sine, lag, ALL) == pytest.approx(size, rel=0.05, abs=1e-9)
+
+
+def test_levels_that_rise_stay_and_fall() -> None:
+    assert rising([1.0, 1.1, 1.5, 1.6]) == [False, True, False]
+    assert rising([1.0, 3.0, 1.0, 2.9]) == [True, False, False]
+    assert plateau_at([1.0, 2.0, 4.0, 4.1, 4.0]) == 3
+    assert plateau_at([1.0, 2.0, 4.0, 8.0]) == 0
+    well_known = np.full(3, 0.95)
+    assert falls(np.array([3.0, 3.0, 2.0]), well_known)
+    assert not falls(np.array([3.0, 3.0, 2.9]), well_known)
+    assert not falls(np.array([3.0, 3.0, 2.0]), np.full(3, 0.5))
+
+
+def test_lags_between_doubled_ones_show_a_period_of_three_samples() -> None:
+    assert finer((1, 2, 4, 8)) == (1, 2, 3, 4, 6, 8)
+    period = WHITE + 9.0 * np.sin(2.0 * np.pi * np.arange(8000) / 3.0)
+    assert not falls(*known_levels(period, (1, 2, 4, 8), ALL))
+    assert falls(*known_levels(period, finer((1, 2, 4, 8)), ALL))
+
+
+def test_few_values_are_known_badly() -> None:
+    """A standard deviation of m independent values is known to 1 / sqrt(2 m), here three times that."""
+    assert known_part(np.array([800.0, 50.0])) == pytest.approx([1.0 - 3.0 / 40.0, 0.7])
+    assert known_part(2.0) == pytest.approx(0.5)
+    _, known = known_levels(WHITE, (1, 16), ALL)
+    assert known == pytest.approx(known_part(np.array([8000.0, 500.0])))
+
+
+def test_differences_are_known_one_and_a_half_lags_from_the_ends() -> None:
+    assert known_over(10, 2).tolist() == [False] * 3 + [True] * 4 + [False] * 3
+
+
+def test_the_local_size_has_nothing_of_what_is_slow() -> None:
+    slow = 40.0 * np.sin(2.0 * np.pi * np.arange(8000) / 4000.0)
+    # An average over five samples takes a fifth of the variance of white noise.
+    assert local_rms(WHITE + slow, 1, ALL) == pytest.approx(np.sqrt(0.8), rel=0.03)
+
+
+def test_a_ripple_over_the_place_does_not_differ_between_visits_at_another_speed() -> None:
+    """Differences over a lag do, since they see another length of the ripple."""
+    place = np.concatenate([np.linspace(0.0, 1.0, 5000), np.linspace(0.0, 1.0, 3000)])
+    ripple = 9.0 * np.sin(2.0 * np.pi * place / 0.02)
+    order = np.argsort(place, kind="stable")
+    other = (order[:-1] < 5000) != (order[1:] < 5000)
+    visits = order[:-1][other], order[1:][other], np.ones(int(other.sum()))
+    known = float(known_part(float(other.sum())))
+    assert most_apart(WHITE + ripple, 1, *visits[:2]) * known == pytest.approx(1.0, rel=0.06)
+    assert most_along(WHITE + ripple, place) * float(known_part(8000.0)) == pytest.approx(1.0, rel=0.06)
+    assert level_between(WHITE + ripple, 16, *visits) > 2.0
+    slow = 9.0 * np.sin(2.0 * np.pi * np.arange(8000) / 1500.0)
+    assert level_between(WHITE + slow, 16, *visits) == pytest.approx(1.0, rel=0.06)
+    assert most_apart(WHITE + slow, 1, *visits[:2]) > 2.0
