@@ -1,1 +1,1 @@
-"""Before anything is fitted: motion from a noisy reading, noise model, spectral lines and segments."""
+"""Before anything is fitted: the motion from a noisy reading, the noise of the force, and the data's faults."""

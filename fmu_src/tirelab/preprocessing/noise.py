@@ -159,8 +159,7 @@ def _noise_beside_motion(residual: FloatArray, driven: Driven, left: Left | None
         visits = _seen_visits(driven, found.memory, found.memory, levels.slow)
         could = any(_may_follow(kink, found.memory, levels.slow, visits) for kink in kinks.T)
         follows = could and _follows(residual, left(driven.shapes(found.memory)), found.memory)
-        # Beside a level that stays over long lags, a line is a part of the misfit that they do not see.
-        if not follows and (plateau or not _rings(residual, found.memory)):
+        if not follows:
             return found
     return levels.white(driven)
 
@@ -301,15 +300,6 @@ def _follows(residual: FloatArray, signals: FloatArray, memory: int) -> bool:
         return True
     left = float(np.sum((centred - columns @ coefficients) ** 2) / np.sum(centred**2))
     return bool(1.0 - left * free / (free - rank) > NEGLIGIBLE)
-
-
-def _rings(residual: FloatArray, memory: int) -> bool:
-    """Return whether a residual (n,) has a spectral line that a noise with a memory has by a chance of NEGLIGIBLE at
-    most: R. A. Fisher, Proc. R. Soc. A 125 (1929) 54-59. A memory is known to a factor of two.
-    """
-    power = np.abs(np.fft.rfft(residual - residual.mean())) ** 2
-    independent = residual.size / (4.0 * memory)
-    return bool(independent * (1.0 - power.max() / power.sum()) ** (independent - 1.0) < NEGLIGIBLE)
 
 
 def _where_slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> BoolArray:
