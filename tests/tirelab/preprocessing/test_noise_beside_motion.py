@@ -113,13 +113,14 @@ def test_a_slow_line_that_a_model_leaves_does_not_hide_filtered_noise() -> None:
     assert found.memory == 4
 
 
-@pytest.mark.parametrize("count", [11000, 16000])
-def test_a_ripple_that_a_quick_motion_passes_in_a_few_samples_is_no_noise(count: int) -> None:
-    """Nine knobs of 30 N along the stroke of a sweep: at its end each passes in two samples, at its begin in thirty;
-    over all samples the third differences show 20 N.
+@pytest.mark.parametrize("highest", [0.01, 0.02, 0.03, 0.05])
+@pytest.mark.parametrize("count", [2000, 5000, 16000])
+def test_a_ripple_that_a_quick_motion_passes_in_a_few_samples_is_no_noise(count: int, highest: float) -> None:
+    """Nine knobs of 30 N along the stroke of a sweep: at its end each passes in a few samples, at its begin in fifteen
+    times as many; over all samples the third differences show 20 N. All visits of a place see the same ripple; of the
+    shortest of these sweeps they know the noise to a third.
     """
-    driven = swept(count, 0.03)
+    driven = swept(count, highest)
     ripple = 30.0 * np.sin(2.0 * np.pi * driven.deflection / (DEPTH / 9.0))
     found = noise_of(ripple + np.random.default_rng(5).normal(size=count), driven)
-    assert 0.9 < found.level < 4.0
-    assert found.memory == 1
+    assert 0.9 < found.level < 1.6
