@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len, rfft
 
 FloatArray = NDArray[np.float64]
 
@@ -26,9 +27,8 @@ def mains_hum(values: FloatArray, interval: float, slowest: float, chance: float
     rate, hum = 1.0 / interval, np.zeros(values.size)
     if 2.0 * DEVIATION * len(MAINS) > chance * 0.5 * rate:
         return hum
-    centred = values - values.mean()
-    power = np.abs(np.fft.rfft(centred, PADDED * values.size)) ** 2
-    step = rate / (PADDED * values.size)
+    centred, length = values - values.mean(), next_fast_len(PADDED * values.size, real=True)
+    power, step = np.abs(rfft(centred, length)) ** 2, rate / length
     strongest = 0.0
     for mains in MAINS:
         folded = abs(mains - rate * round(mains / rate))
@@ -42,7 +42,7 @@ def mains_hum(values: FloatArray, interval: float, slowest: float, chance: float
         independent, share = beside.sum() / PADDED, power[peak] * PADDED / power[beside].sum()
         by_chance = len(MAINS) * beside.sum() * max(1.0 - share, 0.0) ** (independent - 1.0)
         if by_chance < chance and power[peak] > strongest:
-            strongest, hum = float(power[peak]), _line(centred, 2.0 * np.pi * peak / (PADDED * values.size))
+            strongest, hum = float(power[peak]), _line(centred, 2.0 * np.pi * peak / length)
     return hum
 
 
