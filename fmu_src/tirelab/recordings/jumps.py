@@ -92,7 +92,9 @@ def _off_the_motion(values: NDArray[np.float64]) -> NDArray[np.intp]:
     before, after = (sum(line[i] * beside[side * (i + 1)] for i in range(AROUND)) for side in (-1, 1))
     middle = 0.5 * (beside[-1] + beside[1])
     own = beside[0] - middle
-    noise = float(np.median(np.abs(own))) / float(ndtri(0.75)) / np.sqrt(1.5)
+    # A gauge that stands still repeats its reading: how well it reads shows where it moves.
+    moved = np.abs(own[beside[-1] != beside[1]])
+    noise = float(np.median(moved if moved.size else np.abs(own))) / float(ndtri(0.75)) / np.sqrt(1.5)
     most, usual = (-float(ndtri(BY_CHANCE / (2.0 * count))) * noise for count in (n, 2 * AROUND))
     off = [own / np.sqrt(1.5), *((beside[0] - p) / np.sqrt(1.0 + line @ line) for p in (before, after))]
     seen = np.abs(own)[np.abs(own) > usual]

@@ -116,6 +116,16 @@ def test_noise_makes_hardly_any_reading_look_false() -> None:
     assert seen <= 5
 
 
+def test_a_gauge_is_as_noisy_as_where_it_moves() -> None:
+    """Two fifths of the time are held, and the reading repeats there, as that of a machine which counts its steps."""
+    moves = np.arange(TIME.size) % 100 < 60
+    way = np.cumsum(moves) * (TIME[1] - TIME[0])
+    strokes = 20e-3 * np.abs(2.0 * ((way / 4.0) % 1.0) - 1.0)
+    last = np.maximum.accumulate(np.where(moves, np.arange(TIME.size), 0))
+    noise = [15e-6 * np.random.default_rng(seed).normal(size=TIME.size) for seed in range(100)]
+    assert sum(false_readings((strokes + own)[last], strokes).size > 0 for own in noise) <= 5
+
+
 @pytest.mark.parametrize(
     "deflection",
     [
