@@ -189,7 +189,8 @@ def _not_named(candidates: Explanation, validate: Validate) -> NotNamed | None:
     if not names:
         return None
     chosen = candidates.of(names)
-    return NotNamed(names, chosen.error, is_worse(validate(chosen)))
+    validation = validate(chosen)
+    return NotNamed(names, chosen.error, validation.after, is_worse(validation))
 
 
 def _contradicted_by(

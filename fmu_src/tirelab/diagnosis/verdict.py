@@ -41,12 +41,15 @@ SCHEMA = 2
 
 @dataclass(frozen=True)
 class NotNamed:
-    """A set that reduces the error of the fitted recordings and is not named; left [N]: by its tire; refused: whether
-    it is worse than nothing on held-out data.
+    """A set that reduces the error of the fitted recordings and is not named.
+
+    left, held_out [N]: what its tire leaves of them, and of the held-out data; refused: whether it is worse than
+    nothing there
     """
 
     names: tuple[str, ...]
     left: float
+    held_out: float
     refused: bool
 
 

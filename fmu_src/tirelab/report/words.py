@@ -207,7 +207,8 @@ def beside_alternatives(confidence: float, others: Iterable[float]) -> str:
     most = whole_percent(max(others, default=0.0))
     if most >= DECIDED:
         return OTHER_LIKELIER
-    return LIKELIEST if most <= whole_percent(confidence) else NONE_LIKELY
+    shown = whole_percent(confidence)
+    return LIKELIEST if shown > 0.0 and shown >= most else NONE_LIKELY
 
 
 SURE = "sure"

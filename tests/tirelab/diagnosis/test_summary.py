@@ -65,11 +65,14 @@ def test_where_no_effect_helps_the_error_stays_and_the_regression_is_stated():
 )
 def test_what_would_reduce_the_error_is_told_where_nothing_is_named(refused: bool, why: str):
     """A connection that wears: friction follows what is fitted, and not the loops after it."""
-    fit = replace(STAYED, not_named=NotNamed(("bottoming", "mullins_softening"), 10.5, refused))
+    fit = replace(STAYED, not_named=NotNamed(("bottoming", "mullins_softening"), 10.5, 44.0, refused))
+    held_out = (
+        f", and of the held-out data 44.0 N in place of {STAYED.held_out_before:.1f} N" if refused else ""
+    )
     told = summarise((), (), (regressed("deflection", 0.95),), 0.9, fit)
     assert (
-        f"The RMS error is 32.5 N, and {why}; bottoming and Mullins softening would leave 10.5 N; the noise is 6.00 N."
-        in told
+        f"The RMS error is 32.5 N, and {why}; bottoming and Mullins softening would leave 10.5 N{held_out}; "
+        "the noise is 6.00 N." in told
     )
     assert "was found to reduce it" not in told
     assert "no known effect was found to reduce it" in summarise(
@@ -82,6 +85,10 @@ def test_an_undecided_verdict_is_not_called_the_likeliest_beside_a_likelier_one(
     unsure = replace(FRICTION, probability=0.6)
     assert summarise((unsure,), others, (), 0.06, STAYED).startswith("Undecided; no explanation is likely. ")
     assert summarise((unsure,), others, (), 0.3, STAYED).startswith("Undecided; this is the likeliest ")
+    nothing = [replace(others[0], probability=0.0)]
+    assert summarise((unsure,), nothing, (), 0.004, STAYED).startswith(
+        "Undecided; no explanation is likely. "
+    )
     likely = [replace(others[0], probability=0.53)]
     assert summarise((unsure,), likely, (), 0.06, STAYED).startswith(
         "Undecided; an alternative is likelier. "
