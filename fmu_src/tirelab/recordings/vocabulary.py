@@ -19,7 +19,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "zeitstempel",
         ),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
-        *("czas", "cas", "время"),
+        *("czas", "godzina", "cas", "время"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
         *(

@@ -175,6 +175,7 @@ class TestRowsAndTime:
             (HOUSE_FORM + "\n0,0,inf,0\n", "a single row"),
             (HOUSE_FORM + "\n0,1,inf,0\n1,1,inf,5\n", "deflection [cm]': is 0.01 m in every row"),
             ("just some words\nand more\n", "no comma, semicolon, tab, | or spaces"),
+            ('time\n"0.1,""0.2"",""3"""\n"0.2,""0.3"",""4"""\n', "each row is quoted as one cell ('0.2,"),
             (HOUSE_FORM + '\n0,"1,inf,0\n1,2,inf,5\n', "row 2"),
         ],
     )

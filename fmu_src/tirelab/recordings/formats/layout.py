@@ -17,6 +17,7 @@ from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
 from .number_style import NumberStyle, style_of, with_plain_marks
+from .separator import find_separator
 from .spaced import TAB, spaced_columns, with_tabs
 from .table import (
     BLANK_WORDS,
@@ -27,7 +28,7 @@ from .table import (
     with_cell_units,
     with_dates,
 )
-from .table_search import SEPARATORS, bare_unit, find_table, is_units, is_value, states_units
+from .table_search import bare_unit, find_table, is_units, is_value, states_units
 
 HEAD = 65_536
 """How much of the file [B] is looked at to find its layout."""
@@ -101,7 +102,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         raise RecordingError(_no_table(path, skip_rows))
     place = find_table(lines, first, declared) if skip_rows is None else None
     start = first if place is None else place.line
-    separator = declared or (place.separator if place else _separator(path, lines[start:]))
+    separator = declared or (place.separator if place else find_separator(path, lines[start:]))
     header, header_lines, body = _first_rows(path, lines, start, separator)
     names, in_table, said = _names(lines, start, header, separator)
     widest = max((len(row) for row in body[:SAMPLE]), default=0)
@@ -346,26 +347,6 @@ def _preamble(lines: Sequence[str]) -> tuple[int, str | None]:
         elif line.strip() and not is_comment(line):
             return number, separator
     return len(lines), separator
-
-
-def _separator(path: Path, lines: Sequence[str]) -> str:
-    sample = [line for line in lines[:50] if line.strip()]
-    likely: list[tuple[bool, int, str]] = []
-    for candidate in SEPARATORS:
-        try:
-            fields = [len(row) for row in csv.reader(sample, delimiter=candidate)]
-        except csv.Error:
-            continue
-        if fields[0] > 1:
-            agreeing = sum(count == fields[0] for count in fields[1:])
-            likely.append((2 * agreeing >= len(fields) - 1, fields[0], candidate))
-    if not likely:
-        raise RecordingError(
-            f"{path.name}: no comma, semicolon, tab, | or spaces separate columns of numbers (its first line is "
-            f"{quoted(sample[0].strip())}); export it as CSV"
-        )
-    # A separator that the rows confirm comes first; then tab before semicolon before comma.
-    return next((mark for agreed, _, mark in likely if agreed), max(likely, key=lambda found: found[1])[2])
 
 
 def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
