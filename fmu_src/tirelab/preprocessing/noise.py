@@ -142,7 +142,8 @@ def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> 
 
 def _beside_hum(residual: FloatArray, driven: Driven, noise: Callable[[FloatArray], Noise]) -> Noise:
     """Return the noise of a residual whose hum, a noise of the reading, is apart from what `noise` sees."""
-    hum = mains_hum(residual, driven.interval, 2 * _levels_of(residual, driven).lags[-1], NEGLIGIBLE)
+    lags, _ = _slow_lags(driven)
+    hum = mains_hum(residual, driven.interval, 2.0 * lags[-1], NEGLIGIBLE)
     found = noise(residual - hum)
     return Noise(float(np.hypot(found.level, np.sqrt(np.mean(hum**2)))), found.memory)
 
@@ -202,18 +203,24 @@ class _Levels:
         return Noise(least, noise.memory) if least > STAYS * white else Noise(white, 1)
 
 
-def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
-    """Return the levels of a residual."""
+def _slow_lags(driven: Driven) -> tuple[tuple[int, ...], BoolArray]:
+    """Return the doubled lags for which the motion is slow enough in a part of the recording, and that part (n,)."""
     change, bend = driven.rate * driven.interval, driven.acceleration * driven.interval**2
-    span = float(np.ptp(driven.deflection))
-    lags, slow = [1], np.ones(residual.size, dtype=bool)
-    while residual.size >= FEWEST_LAGS * 2 * lags[-1]:
+    span, count = float(np.ptp(driven.deflection)), driven.deflection.size
+    lags, slow = [1], np.ones(count, dtype=bool)
+    while count >= FEWEST_LAGS * 2 * lags[-1]:
         slower = _where_slow(change, bend, span, 2 * lags[-1])
         if slower.sum() < FEWEST_LAGS * 2 * lags[-1]:
             break
         lags.append(2 * lags[-1])
         slow = slower
-    return _Levels(residual, tuple(lags), slow, tuple(level_of(residual, lag, slow) for lag in lags))
+    return tuple(lags), slow
+
+
+def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
+    """Return the levels of a residual."""
+    lags, slow = _slow_lags(driven)
+    return _Levels(residual, lags, slow, tuple(level_of(residual, lag, slow) for lag in lags))
 
 
 def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
