@@ -38,6 +38,7 @@ from .levels import (
     finer,
     known_levels,
     known_over,
+    known_part,
     level_between,
     level_of,
     local_rms,
@@ -203,6 +204,27 @@ class _Levels:
         return Noise(least, noise.memory) if least > STAYS * white else Noise(white, 1)
 
 
+def _quickens(levels: _Levels, noise: Noise, driven: Driven) -> bool:
+    """Return whether a noise is rougher where the motion is quicker: what follows the motion is, and noise is not.
+
+    Its roughness over a lag is the level there over that at its memory, which a machine that is louder while it moves
+    leaves as it is. The two halves of the slow samples are compared, those of less and of more speed.
+    """
+    speed = uniform_filter1d(np.abs(driven.rate), 3 * noise.memory + 1, mode="nearest")
+    quick = levels.slow & (speed > np.median(speed[levels.slow]))
+    halves = (levels.slow & ~quick, quick)
+    long = [level_of(levels.residual, noise.memory, half) for half in halves]
+    for lag in (lag for lag in finer(levels.lags) if lag < noise.memory):
+        slow, fast = (
+            level_of(levels.residual, lag, half) / max(own, 1e-300)
+            for half, own in zip(halves, long, strict=True)
+        )
+        independent = [half.sum() / one for half in halves for one in (lag, noise.memory)]
+        if fast * float(known_part(1.0 / np.sum(1.0 / np.array(independent)))) > STAYS * slow:
+            return True
+    return False
+
+
 def _slow_lags(driven: Driven) -> tuple[tuple[int, ...], BoolArray]:
     """Return the doubled lags for which the motion is slow enough in a part of the recording, and that part (n,)."""
     change, bend = driven.rate * driven.interval, driven.acceleration * driven.interval**2
@@ -234,6 +256,8 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     found = levels.beneath(found)
     if found.memory == 1:
         return found
+    if _quickens(levels, found, driven):
+        return levels.white(driven)
     visits = _seen_visits(driven, found.memory, levels.lags[-1], levels.slow)
     between = [[level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits]
     if not all(map(plateau_at, between)):
@@ -257,7 +281,7 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
         most, visits = local_rms(residual, lag, slow), _seen_visits(driven, found.memory, lag, slow)
         if found.memory == 1 or any(rises[last:]) or levels.values[last] * STAYS < most:
             continue
-        if levels.beneath(found) is not found:
+        if levels.beneath(found) is not found or _quickens(levels, found, driven):
             continue
         between = [level_between(residual, lag, *v) for v in visits]
         apart = [most_apart(residual, found.memory, *v[:2]) for v in visits]

@@ -124,3 +124,36 @@ def test_a_ripple_that_a_quick_motion_passes_in_a_few_samples_is_no_noise(count:
     ripple = 30.0 * np.sin(2.0 * np.pi * driven.deflection / (DEPTH / 9.0))
     found = noise_of(ripple + np.random.default_rng(5).normal(size=count), driven)
     assert 0.9 < found.level < 1.6
+
+
+def many_rates(count: int) -> Driven:
+    """Return triangles of 20 mm, each quicker than the one before: from 300 samples a stroke to 30."""
+    strokes, at = np.geomspace(300.0, 30.0, 60), np.arange(float(count))
+    turns = np.concatenate([[0.0], np.cumsum(np.tile(strokes, 1 + count // int(strokes.sum())))])
+    deflection = 20e-3 * np.interp(at, turns, np.arange(turns.size) % 2)
+    rate = np.gradient(deflection)
+    return Driven(1.0, deflection, rate, np.gradient(rate), np.zeros(count, dtype=np.intp))
+
+
+def test_a_stick_and_slip_that_no_visit_repeats_is_no_noise() -> None:
+    """It slips after about 1.5 mm of path each: within 23 samples where the motion is slow, within 2 where it is quick.
+    Its saw teeth are 40 N high, eight times the noise; where most of them lie does not come again.
+    """
+    driven, drawn = many_rates(12000), np.random.default_rng(6)
+    path = np.cumsum(np.abs(driven.rate))
+    slips = np.cumsum(drawn.uniform(0.5e-3, 2.5e-3, int(path[-1] / 0.5e-3)))
+    since = path - np.concatenate([[0.0], slips])[np.searchsorted(slips, path)]
+    force = 40.0 * np.sign(driven.rate) * (since / 1.5e-3 - 0.5)
+    assert noise_of(force + drawn.normal(size=path.size), driven).level < 4.0
+
+
+@pytest.mark.parametrize("louder", [0.0, 1.0])
+def test_filtered_noise_beside_many_rates_is_seen(louder: float) -> None:
+    """Also of a machine that is louder the quicker it moves: its noise is larger there, but no rougher."""
+    driven = many_rates(12000)
+    speed = np.abs(driven.rate) / np.abs(driven.rate).max()
+    white = np.random.default_rng(0).normal(size=12007)
+    noise = np.sqrt(8.0) * np.convolve(white, np.ones(8) / 8.0, mode="valid") * (1.0 + louder * speed)
+    found = noise_of(noise, driven)
+    assert found.level == pytest.approx(float(np.std(noise)), rel=0.25)
+    assert found.memory in (4, 8)
