@@ -16,7 +16,8 @@ shows.
 What repeats at the same deflection is not noise, however quickly it changes: a ripple of the tread, for instance. Nor
 is what repeats at the same distance from a reversal: the knee of a loop, which a linear model follows only in part. So
 levels are also taken between visits of the same place; the smallest of all these levels is that of the noise. White
-noise is at most the smallest of all: whatever is compared, all of it differs.
+noise is at most the smallest of all: whatever is compared, all of it differs. Nor is what is rougher where the motion
+is quicker noise: a stick and slip is, though no visit repeats it.
 
 The hum of the mains is noise that oscillates: it is set apart before all this.
 """
