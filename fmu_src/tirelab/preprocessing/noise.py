@@ -214,14 +214,15 @@ def _quickens(levels: _Levels, noise: Noise, driven: Driven) -> bool:
     speed = uniform_filter1d(np.abs(driven.rate), 3 * noise.memory + 1, mode="nearest")
     quick = levels.slow & (speed > np.median(speed[levels.slow]))
     halves = (levels.slow & ~quick, quick)
-    long = [level_of(levels.residual, noise.memory, half) for half in halves]
+    if min(half.sum() for half in halves) < FEWEST_LAGS * noise.memory:
+        return False
     for lag in (lag for lag in finer(levels.lags) if lag < noise.memory):
-        slow, fast = (
-            level_of(levels.residual, lag, half) / max(own, 1e-300)
-            for half, own in zip(halves, long, strict=True)
+        short, long = (
+            [level_of(levels.residual, one, half) for half in halves] for one in (lag, noise.memory)
         )
-        independent = [half.sum() / one for half in halves for one in (lag, noise.memory)]
-        if fast * float(known_part(1.0 / np.sum(1.0 / np.array(independent)))) > STAYS * slow:
+        independent = np.array([half.sum() / one for half in halves for one in (lag, noise.memory)])
+        known = float(known_part(1.0 / float(np.sum(1.0 / independent))))
+        if short[1] * long[0] * known > STAYS * short[0] * long[1]:
             return True
     return False
 

@@ -157,3 +157,13 @@ def test_filtered_noise_beside_many_rates_is_seen(louder: float) -> None:
     found = noise_of(noise, driven)
     assert found.level == pytest.approx(float(np.std(noise)), rel=0.25)
     assert found.memory in (4, 8)
+
+
+def test_filtered_noise_beside_one_rate_is_seen() -> None:
+    """No half of the samples is quicker than the other."""
+    deflection = 1e-5 * np.arange(4000.0)
+    driven = Driven(1.0, deflection, np.full(4000, 1e-5), np.zeros(4000), np.zeros(4000, dtype=np.intp))
+    white = np.random.default_rng(0).normal(size=4003)
+    found = noise_of(2.0 * np.convolve(white, np.ones(4) / 4.0, mode="valid"), driven)
+    assert found.level == pytest.approx(1.0, rel=0.25)
+    assert found.memory == 4
