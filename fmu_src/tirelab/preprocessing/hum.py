@@ -29,20 +29,21 @@ def mains_hum(values: FloatArray, interval: float, slowest: float, chance: float
         return hum
     centred, length = values - values.mean(), next_fast_len(PADDED * values.size, real=True)
     power, step = np.abs(rfft(centred, length)) ** 2, rate / length
-    strongest = 0.0
+    slowest_bin, strongest = int(np.ceil(rate / (slowest * step))), 0.0
     for mains in MAINS:
-        folded = abs(mains - rate * round(mains / rate))
-        near = np.arange(power.size) * step - folded
-        beside = np.abs(near) <= max(DEVIATION, 0.5 * PADDED * FEWEST_BINS * step)
-        may = np.abs(near) <= DEVIATION + 0.5 * PADDED * step
-        may[: int(np.ceil(rate / (slowest * step)))] = False
+        folded = abs(mains - rate * round(mains / rate)) / step
+        half = max(DEVIATION / step, 0.5 * PADDED * FEWEST_BINS)
+        at = np.arange(max(int(np.ceil(folded - half)), 0), min(int(folded + half) + 1, power.size))
+        beside = power[at]
+        may = (np.abs(at - folded) <= DEVIATION / step + 0.5 * PADDED) & (at >= slowest_bin)
         if not may.any():
             continue
-        peak = int(np.argmax(np.where(may, power, 0.0)))
-        independent, share = beside.sum() / PADDED, power[peak] * PADDED / power[beside].sum()
-        by_chance = len(MAINS) * beside.sum() * max(1.0 - share, 0.0) ** (independent - 1.0)
-        if by_chance < chance and power[peak] > strongest:
-            strongest, hum = float(power[peak]), _line(centred, 2.0 * np.pi * peak / length)
+        peak = int(np.argmax(np.where(may, beside, 0.0)))
+        independent, share = at.size / PADDED, beside[peak] * PADDED / beside.sum()
+        by_chance = len(MAINS) * at.size * max(1.0 - share, 0.0) ** (independent - 1.0)
+        if by_chance < chance and beside[peak] > strongest:
+            strongest = float(beside[peak])
+            hum = _line(centred, 2.0 * np.pi * float(at[peak]) / length)
     return hum
 
 
