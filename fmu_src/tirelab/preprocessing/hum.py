@@ -36,7 +36,7 @@ def mains_hum(values: FloatArray, interval: float, slowest: float, chance: float
         at = np.arange(max(int(np.ceil(folded - half)), 0), min(int(folded + half) + 1, power.size))
         beside = power[at]
         may = (np.abs(at - folded) <= DEVIATION / step + 0.5 * PADDED) & (at >= slowest_bin)
-        if not may.any():
+        if not np.any(beside[may]):
             continue
         peak = int(np.argmax(np.where(may, beside, 0.0)))
         independent, share = at.size / PADDED, beside[peak] * PADDED / beside.sum()

@@ -146,17 +146,16 @@ def _beside_hum(residual: FloatArray, driven: Driven, noise: Callable[[FloatArra
     """Return the noise of a residual whose hum, a noise of the reading, is apart from what `noise` sees."""
     lags, _ = _slow_lags(driven)
     hum = mains_hum(residual, driven.interval, 2.0 * lags[-1], NEGLIGIBLE)
-    size = float(np.sqrt(np.mean(hum**2)))
-    # A harmonic of a motion of 5 or 10 Hz is as quick as the mains, and comes again with each cycle.
-    pairs = (
-        [(one, other) for one, other, _ in driven.visits(1) if one.size >= FEWEST_EVENTS]
-        if size > 0.0
-        else []
-    )
-    if any(most_apart(hum, 1, *pair) * STAYS < size for pair in pairs):
+    if not np.any(hum) or _comes_again(hum, driven):
         return noise(residual)
     found = noise(residual - hum)
-    return Noise(float(np.hypot(found.level, size)), found.memory)
+    return Noise(float(np.hypot(found.level, np.sqrt(np.mean(hum**2)))), found.memory)
+
+
+def _comes_again(line: FloatArray, driven: Driven) -> bool:
+    """Return whether a line (n,) is alike in all visits of a place, as a harmonic of a motion of 5 or 10 Hz is."""
+    pairs = [(one, other) for one, other, _ in driven.visits(1) if one.size >= FEWEST_EVENTS]
+    return any(most_apart(line, 1, *pair) * STAYS < float(np.sqrt(np.mean(line**2))) for pair in pairs)
 
 
 def _noise_beside_motion(residual: FloatArray, driven: Driven, left: Left | None) -> Noise:

@@ -44,3 +44,8 @@ def test_slow_sampling_folds_any_line_to_the_mains() -> None:
     """At 10 samples a second a band of 0.4 Hz about each of the two is more than a twentieth of 5 Hz."""
     line = 5.0 * np.sin(2.0 * np.pi * 60.1 * np.arange(3000) / 10.0)
     assert not np.any(mains_hum(WHITE[:3000] + line, 0.1, 128.0, CHANCE))
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_misfit_of_nothing_does_not_hum() -> None:
+    assert not np.any(mains_hum(np.zeros(3000), 0.01, 16.0, CHANCE))
