@@ -34,8 +34,8 @@ SPEED = 0.1
 DEPTH = 0.01
 """x0 [m]: deflection at which the exponent of the deflection has no influence."""
 
-NEAR = 1e-9
-"""Relative length of a step of Newton's method after which the next one, its square, is below rounding."""
+NEAR = 1e-5
+"""Relative length of a step of Halley's method after which the next one, its cube, is below rounding."""
 
 HALVINGS_MOST = 60
 """Iterations at most: halving alone would shrink a bracket to rounding in so many."""
@@ -55,38 +55,44 @@ def force_at(rate: float, size: float, exponent: float, thinning: float) -> floa
     return force
 
 
-def rate_at(force: float, size: float, exponent: float, thinning: float) -> tuple[float, float]:
-    """Return the dashpot's rate [m/s] at a force [N] above 0, and its derivative [m/s/N]."""
+def rate_at(force: float, size: float, exponent: float, thinning: float) -> tuple[float, float, float]:
+    """Return the dashpot's rate [m/s] at a force [N] above 0, and its derivatives [m/s/N], [m/s/N^2]."""
     rate = SPEED * (force / size) ** (1.0 / exponent)
     slope = rate / (exponent * force)
+    bend = slope * (1.0 / exponent - 1.0) / force
     if thinning > 0.0:
-        turned = min(thinning * rate, STEEPEST)
-        return math.sinh(turned) / thinning, slope * math.cosh(turned)
-    return rate, slope
+        turned = math.sinh(min(thinning * rate, STEEPEST))
+        steeper = math.sqrt(1.0 + turned * turned)
+        return turned / thinning, slope * steeper, bend * steeper + thinning * slope * slope * turned
+    return rate, slope, bend
 
 
 def carried(
     reach: float, interval: float, start: float, compliance: float, dashpot: tuple[float, float, float]
 ) -> float:
-    """Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by Newton's method in a bracket.
+    """Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by Halley's method in a bracket.
 
     start [N]: from where it begins, if it is in the bracket; dashpot: size, exponent and thinning
     """
     size, exponent, thinning = dashpot
-    high = force_at(reach / interval, size, exponent, thinning)
-    if compliance > 0.0:
-        high = min(high, reach / compliance)
+    if compliance <= 0.0:
+        return force_at(reach / interval, size, exponent, thinning)
+    if exponent == 1.0 and thinning == 0.0:
+        return reach / (compliance + interval * SPEED / size)
+    high = min(force_at(reach / interval, size, exponent, thinning), reach / compliance)
     low, force = 0.0, start if start > 0.0 and start < high else high
     for _ in range(HALVINGS_MOST):
         if force <= 0.0:  # less than the smallest number
             break
-        rate, slope = rate_at(force, size, exponent, thinning)
+        rate, slope, bend = rate_at(force, size, exponent, thinning)
         miss = compliance * force + interval * rate - reach
         if miss > 0.0:
             high = force
         else:
             low = force
-        following = force - miss / (compliance + interval * slope)
+        steep = compliance + interval * slope
+        turn = steep * steep - 0.5 * miss * interval * bend
+        following = force - miss * steep / turn if turn > 0.0 else force - miss / steep
         near = abs(following - force) <= NEAR * force
         if following < low or following > high:
             following = 0.5 * (low + high)
@@ -182,7 +188,7 @@ def flow(signal: float, instant: Instant, state: State, values: State) -> tuple[
     size = size_of(side, x, values)
     if size <= 0.0:
         return signal, (v - side * beyond / RELEASED,)
-    rate, _ = rate_at(beyond / compliance, size, values[1], values[3])
+    rate, _, _ = rate_at(beyond / compliance, size, values[1], values[3])
     return signal + side * beyond / compliance, (v - side * rate,)
 
 

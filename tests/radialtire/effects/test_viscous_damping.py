@@ -178,3 +178,31 @@ def test_the_search_of_its_force_ends_whatever_it_is_given() -> None:
     assert math.isnan(carried(math.nan, 1e-3, 0.0, E, (C, 1.0, 0.0)))
     # The force is less than the smallest number.
     assert carried(1e-300, 1.0, 0.0, E, (1e-30, 1.0, 0.0)) == 0.0
+    for exponent in (0.5, 1.0):
+        assert math.isnan(carried(math.nan, 1e-3, 0.0, E, (C, exponent, 0.0)))
+    assert carried(1e-300, 1.0, 0.0, E, (1e-30, 2.0, 0.0)) == 0.0
+    # The compliance would hold 1e40 times the force at the rate v0, at which a rate is no number.
+    assert carried(1.0, 1e-3, 0.9e40, 1e-40, (1.0, 0.05, 0.0)) == pytest.approx(10000.0**0.05, rel=1e-12)
+
+
+@pytest.mark.parametrize("thinning", [0.0, 3.0, 200.0])
+@pytest.mark.parametrize("exponent", [0.05, 0.3, 1.0, 1.7, 3.0])
+@pytest.mark.parametrize("begun", [0.0, 0.3, 0.97, 1.0, 2.0])
+def test_the_force_behind_a_compliance_solves_its_equation(
+    exponent: float, thinning: float, begun: float
+) -> None:
+    """e D + h v_d(D) = reach, by bisection of the rate: D = reach / e - h v / e, and the dashpot's own force at v."""
+    size, interval, reach = 40.0, 2e-3, 1.3e-3
+
+    def off(rate: float) -> float:
+        felt = math.asinh(thinning * rate) / thinning if thinning else rate
+        return size * (felt / 0.1) ** exponent - (reach - interval * rate) / E
+
+    low, high = 0.0, reach / interval
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if off(middle) > 0.0 else (middle, high)
+    expected = (reach - interval * low) / E
+    found = carried(reach, interval, begun * expected, E, (size, exponent, thinning))
+    # What is left of the reach is rounded, and its part of the whole is small where the dashpot takes most of it.
+    assert found == pytest.approx(expected, rel=1e-9)

@@ -41,6 +41,7 @@ static const double TAIL = 4.0;
 static const double TANGENT_STEP = 1e-07;
 static const double UNIT = 0.001;
 static const double UNKNOWN = 10000.0;
+static const double VISCOUS_DAMPING_NEAR = 1e-05;
 static const double WARMING = 10.0;
 static const double WHEEL_RADIUS = 0.33;
 
@@ -881,18 +882,21 @@ static inline Vector2 viscous_damping_steady(double rate, double deflection, Vec
     return (Vector2){{side * force, side * (0.5 * values.v[6] + values.v[5] * force)}};
 }
 
-/* effects.viscous_damping.py: Return the dashpot's rate [m/s] at a force [N] above 0, and its derivative [m/s/N].
-   */
-static inline Vector2 viscous_damping_rate_at(double force, double size, double exponent, double thinning)
+/* effects.viscous_damping.py: Return the dashpot's rate [m/s] at a force [N] above 0, and its derivatives [m/s/N],
+   [m/s/N^2]. */
+static inline Vector3 viscous_damping_rate_at(double force, double size, double exponent, double thinning)
 {
     double turned;
+    double steeper;
     double rate = SPEED * pow(force / size, 1.0 / exponent);
     double slope = rate / (exponent * force);
+    double bend = slope * (1.0 / exponent - 1.0) / force;
     if (thinning > 0.0) {
-        turned = lesser(thinning * rate, STEEPEST);
-        return (Vector2){{sinh(turned) / thinning, slope * cosh(turned)}};
+        turned = sinh(lesser(thinning * rate, STEEPEST));
+        steeper = sqrt(1.0 + turned * turned);
+        return (Vector3){{turned / thinning, slope * steeper, bend * steeper + thinning * slope * slope * turned}};
     }
-    return (Vector2){{rate, slope}};
+    return (Vector3){{rate, slope, bend}};
 }
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] for a solver: the state is by how much compliance and
@@ -930,43 +934,52 @@ static inline Tuple16 viscous_damping_flow(double signal, Instant instant, Vecto
     if (size <= 0.0) {
         return (Tuple16){signal, (Vector1){{v - side * beyond / RELEASED}}};
     }
-    const Vector2 t2 = viscous_damping_rate_at(beyond / compliance, size, values.v[1], values.v[3]);
+    const Vector3 t2 = viscous_damping_rate_at(beyond / compliance, size, values.v[1], values.v[3]);
     double rate = t2.v[0];
     return (Tuple16){signal + side * beyond / compliance, (Vector1){{v - side * rate}}};
 }
 
 /* effects.viscous_damping.py: Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by
-   Newton's method in a bracket. */
+   Halley's method in a bracket. */
 static inline double viscous_damping_carried(double reach, double interval, double start, double compliance, Vector3
     dashpot)
 {
     double rate;
     double slope;
+    double bend;
     double miss;
+    double steep;
+    double turn;
     double following;
     bool near;
     double size = dashpot.v[0], exponent = dashpot.v[1], thinning = dashpot.v[2];
-    double high = viscous_damping_force_at(reach / interval, size, exponent, thinning);
-    if (compliance > 0.0) {
-        high = lesser(high, reach / compliance);
+    if (compliance <= 0.0) {
+        return viscous_damping_force_at(reach / interval, size, exponent, thinning);
     }
+    if (exponent == 1.0 && thinning == 0.0) {
+        return reach / (compliance + interval * SPEED / size);
+    }
+    double high = lesser(viscous_damping_force_at(reach / interval, size, exponent, thinning), reach / compliance);
     double low = 0.0;
     double force = start > 0.0 && start < high ? start : high;
     for (int t1 = 0; t1 < 60; t1++) {
         if (force <= 0.0) {
             break;
         }
-        const Vector2 t2 = viscous_damping_rate_at(force, size, exponent, thinning);
+        const Vector3 t2 = viscous_damping_rate_at(force, size, exponent, thinning);
         rate = t2.v[0];
         slope = t2.v[1];
+        bend = t2.v[2];
         miss = compliance * force + interval * rate - reach;
         if (miss > 0.0) {
             high = force;
         } else {
             low = force;
         }
-        following = force - miss / (compliance + interval * slope);
-        near = fabs(following - force) <= NEAR * force;
+        steep = compliance + interval * slope;
+        turn = steep * steep - 0.5 * miss * interval * bend;
+        following = turn > 0.0 ? force - miss * steep / turn : force - miss / steep;
+        near = fabs(following - force) <= VISCOUS_DAMPING_NEAR * force;
         if (following < low || following > high) {
             following = 0.5 * (low + high);
             near = high - low <= 1e-15 * high;
