@@ -151,18 +151,20 @@ class _Stepper:
                 _check("fmi2GetReal", status)
 
 
-def replay(fmu: Path, motion: Sampled) -> NDArray[np.float64]:
+def replay(fmu: Path, motion: Sampled, *, most: int | None = None) -> NDArray[np.float64]:
     """Return the FMU's radial force [N] at every sample of `motion`, without a sample of delay.
 
     A channel that the motion holds and the FMU has an input for, such as the pressure, is set at every sample. A part
-    of a file starts with what was recorded before it.
+    of a file starts with what was recorded before it. most: number of samples after which the replay ends
     Raises TirelabError where the FMU lacks a variable or refuses a sample.
     """
     motion, before = begun(motion)
     measured = measured_of(motion)
     inputs = dict(zip(INPUTS, (motion.deflection, motion.surface_radius), strict=True))
     inputs |= {c.variable: measured[c.name] for c in CHANNELS if c.name in measured}
-    force = driven(fmu, motion.time, inputs, OUTPUT, optional=[c.variable for c in CHANNELS])
+    until = None if most is None else before + most
+    inputs = {name: values[:until] for name, values in inputs.items()}
+    force = driven(fmu, motion.time[:until], inputs, OUTPUT, optional=[c.variable for c in CHANNELS])
     if not np.isfinite(force[0]):
         raise TirelabError(f"{fmu} gives no force for the first sample; check its deflection and radius")
     return force[before:]

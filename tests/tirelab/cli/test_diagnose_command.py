@@ -213,7 +213,7 @@ def test_native_writes_a_second_fmu_with_the_same_forces(known: None, rides: Pat
 def test_an_fmu_that_does_something_else_is_reported(
     known: None, rides: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(diagnosis_run, "replay", lambda fmu, r: replay(fmu, r) + 3.0)
+    monkeypatch.setattr(diagnosis_run, "replay", lambda fmu, r, **most: replay(fmu, r, **most) + 3.0)
     result = run(rides / "ride.csv", "--out", tmp_path)
     assert result.exit_code == 0
     assert "on ride the corrected FMU differs by up to 3 N from the fitted simulation" in " ".join(

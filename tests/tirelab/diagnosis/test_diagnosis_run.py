@@ -154,6 +154,22 @@ def test_diagnose_files_writes_the_same(
     assert not (tmp_path / "out" / "plots.csv").exists()
 
 
+def test_a_long_recording_is_replayed_in_part_and_said_so(
+    damped_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagnosis_run, "diagnose", lambda *_, **__: damped_run.verdict)
+    monkeypatch.setattr(diagnosis_run, "MOST_REPLAYED", 1000)
+    run = run_diagnosis(
+        [damped_run.rides / "ride.csv"], tmp_path / "out", held_out=[damped_run.rides / "kept.csv"]
+    )
+    assert [w.split("; ")[0] for w in run.warnings] == [
+        f"the corrected FMU was replayed on the first 1000 of 4000 samples of {name}, and its tire simulated on the "
+        "others"
+        for name in ("ride", "kept")
+    ]
+    assert run.content["fit"] == pytest.approx(damped_run.run.content["fit"], rel=1e-9)
+
+
 def test_the_data_behind_the_plots_is_every_sample_with_its_forces(damped_run: Any) -> None:
     table = pl.read_csv(damped_run.out / "plots.csv")
     assert table["recording"].unique(maintain_order=True).to_list() == ["ride", "kept"]

@@ -76,6 +76,7 @@ def test_a_part_of_a_file_is_replayed_after_what_was_recorded_before_it(tmp_path
 
     part = replace(cut(slice(100, None)), history=cut(slice(0, 100)))
     np.testing.assert_array_equal(replay(fmu, part), replay(fmu, whole)[100:])
+    np.testing.assert_array_equal(replay(fmu, part, most=30), replay(fmu, part)[:30])
     assert abs(replay(fmu, replace(part, history=None))[0] - replay(fmu, part)[0]) > 1.0
 
 
