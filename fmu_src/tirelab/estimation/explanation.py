@@ -174,8 +174,7 @@ class Explanation:
         return self if ranking is self._ranking else self._by(self.model.fit, ranking)
 
     def _by(self, fit: Fit, ranking: Ranking) -> Explanation:
-        own = self._samples, ranking, fit, self.excitation, self.hidden, self._like_law
-        return _explanation(*own)
+        return _explanation(self._samples, ranking, fit, self.excitation, self.hidden, self._like_law)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
         """Return the likeliest sets; before them the one that stands best for all, if it is nearly as likely."""
@@ -246,18 +245,19 @@ def explain_misfit(
     sets = blocks.less_distorted(sets, sets.best_fit.tire)
     ranking = ranked(sets, alike)
     again = blocks.less_distorted(sets, ranking.best.tire)
-    left = most_work - sets.work if again is not sets else most_work
     if again is not sets or sets.work >= sets.most_work:
-        sets = replace(again, most_work=left)
+        sets = replace(again, most_work=most_work - sets.work if again is not sets else most_work)
         ranking = ranked(sets, alike)
     if beyond := _beyond_range(ranking):
         # What would have to be more than it can be is another effect's, which a search beside it does not find.
         others_of = [name for name in catalogue if name not in beyond]
         left = max(most_work - sets.work, FIRST_PART * most_work)
         return explain_misfit(recordings, baseline, others_of, progress, held_out=held_out, most_work=left)
-    ranking = _read_best(corrected(ranking, blocks.samples), blocks.samples.recordings)
-    like_law = _like_law(tuple(sets.signatures.values()), sets.dataset.misfit, ranking.best.variance)
-    return _explanation(blocks.samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+    signatures, misfit = tuple(sets.signatures.values()), sets.dataset.misfit
+    del raw, quiet, blocks, again, sets  # they are large, and needed no more
+    ranking = _read_best(corrected(ranking, samples), samples.recordings)
+    like_law = _like_law(signatures, misfit, ranking.best.variance)
+    return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 
 
 def _beyond_range(ranking: Ranking) -> tuple[str, ...]:

@@ -354,7 +354,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
     held = _held(problem, found)
     near = Linearised(
         found.residual,
-        found.jacobian[:, ~held],
+        found.jacobian[:, ~held] if held.any() else found.jacobian,
         found.positions[~held],
         # Most of a fit's memory: seven digits are enough for what is known to one.
         tuple(f.astype(np.float32) for f in forms.values()),

@@ -75,8 +75,9 @@ class Motion:
     resolved: BoolArray
 
 
-KEPT, KEPT_SAMPLES = 32, 50_000
-"""Budget: most recordings whose motion is kept, and most samples of one; a diagnosis asks for each up to ten times."""
+LONG, KEPT, KEPT_LONG = 50_000, 32, 2
+"""Budget: number of samples from which a recording is long, and most recordings whose motion is kept, of the others and
+of long ones; a diagnosis asks for each up to ten times."""
 
 
 def motion_of(time: FloatArray, deflection: FloatArray, *, timed: bool = True) -> Motion:
@@ -84,14 +85,15 @@ def motion_of(time: FloatArray, deflection: FloatArray, *, timed: bool = True) -
 
     timed: whether the times were measured
     """
-    if deflection.size > KEPT_SAMPLES:
-        return _motion(time, deflection, timed)
-    return _kept(*(np.asarray(values, dtype=np.float64).tobytes() for values in (time, deflection)), timed)
+    kept = _kept if deflection.size <= LONG else _kept_long
+    return kept(*(np.asarray(values, dtype=np.float64).tobytes() for values in (time, deflection)), timed)
 
 
-@lru_cache(maxsize=KEPT)
-def _kept(time: bytes, deflection: bytes, timed: bool) -> Motion:
+def _motion_of_bytes(time: bytes, deflection: bytes, timed: bool) -> Motion:
     return _motion(np.frombuffer(time), np.frombuffer(deflection), timed)
+
+
+_kept, _kept_long = (lru_cache(most)(_motion_of_bytes) for most in (KEPT, KEPT_LONG))
 
 
 def _motion(time: FloatArray, deflection: FloatArray, timed: bool) -> Motion:
@@ -349,9 +351,10 @@ def _third_differences_squared(count: int) -> FloatArray:
 def _weights(scores: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the weight of each spline at every sample, (splines, n); its mean weight is its prior."""
     scores -= scores.max(axis=0)
+    likelihoods, weights = np.exp(scores, out=scores), np.empty_like(scores)
     prior = np.full((scores.shape[0], 1), 1.0 / scores.shape[0], dtype=np.float32)
     for _ in range(WEIGHT_ROUNDS):
-        weights = prior * np.exp(scores)
+        np.multiply(prior, likelihoods, out=weights)
         weights /= weights.sum(axis=0)
         prior = weights.mean(axis=1, keepdims=True)
     return weights

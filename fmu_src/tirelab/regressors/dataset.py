@@ -73,11 +73,12 @@ because it is smooth over a step."""
 
 @dataclass(frozen=True)
 class Dataset:
-    """All recordings of a diagnosis and the baseline tire."""
+    """All recordings of a diagnosis and the baseline tire; stages: of simulations of the same motions, if there are."""
 
     experiments: tuple[Experiment, ...]
     tire: TireModel
     scales: Scales
+    stages: tuple[KeptStages, ...] | None = None
 
     @cached_property
     def misfit(self) -> FloatArray:
@@ -132,7 +133,7 @@ class Dataset:
 
     @cached_property
     def _stages(self) -> tuple[KeptStages, ...]:
-        return tuple(KeptStages(e) for e in self.experiments)
+        return self.stages or tuple(KeptStages(e) for e in self.experiments)
 
     def response(self, tire: TireModel) -> FloatArray:
         """Return the force (m,) of `tire` minus that of the baseline tire, in units of the noise."""
@@ -145,17 +146,19 @@ class Dataset:
         """
         pairs = zip(self.experiments, left_out, strict=True)
         changed = (replace(e, misfit=e.misfit + e.left_out - own, left_out=own) for e, own in pairs)
-        return replace(self, experiments=tuple(changed))
+        return replace(self, experiments=tuple(changed), stages=self._stages)
 
     def with_noise(self, noises: Sequence[Noise]) -> Dataset:
         """Return the dataset with another noise [N] of each averaged misfit, that of its blocks in proportion."""
         pairs = zip(self.experiments, noises, strict=True)
-        return replace(self, experiments=tuple(e.with_noise(noise) for e, noise in pairs))
+        return replace(
+            self, experiments=tuple(e.with_noise(noise) for e, noise in pairs), stages=self._stages
+        )
 
     def read_anew(self, recordings: Sequence[Recorded]) -> Dataset:
         """Return the dataset as other readings of the same motions would show it; recordings: those of the dataset."""
         pairs = zip(recordings, self.experiments, strict=True)
-        return replace(self, experiments=tuple(read_anew(r, e, self.tire) for r, e in pairs))
+        return replace(self, experiments=tuple(read_anew(r, e, self.tire) for r, e in pairs), stages=None)
 
     def only(self, kept: Sequence[BoolArray]) -> Dataset:
         """Return the dataset in which only blocks count whose samples are all in `kept` (n,), one array per recording;
@@ -164,7 +167,7 @@ class Dataset:
         found = []
         for e, k in zip(self.experiments, kept, strict=True):
             found.append(replace(e, counts=e.counts & e.blocks.of(k).all(axis=1)))
-        return replace(self, experiments=tuple(e for e in found if e.counts.any()))
+        return replace(self, experiments=tuple(e for e in found if e.counts.any()), stages=None)
 
 
 def dataset_of(

@@ -190,14 +190,15 @@ class Signature:
     """The signature of one candidate, in units of the noise.
 
     mean (m,) and basis (m, r): of the drawn responses, divided by their size; signed: whether the size may be negative
-    curves (k, m): drawn responses of size 1; values: of their parameters; sizes (k,); no draws for the law
+    curves (k, m): drawn responses of size 1, to seven digits; values: of their parameters; sizes (k,); no draws for the
+    law
     """
 
     name: str
     mean: FloatArray
     basis: FloatArray
     signed: bool
-    curves: FloatArray
+    curves: NDArray[np.floating]
     values: tuple[tuple[float, ...], ...]
     sizes: FloatArray
 
@@ -317,7 +318,8 @@ def signature_of(name: str, dataset: Dataset, beside: Beside | None = None) -> S
         return Signature(name, np.zeros(count), nothing, effect.signed, nothing.T, (), np.zeros(0))
     whole = np.array(curves)
     mean = whole.mean(axis=0)
-    return Signature(name, mean, _basis(whole - mean), effect.signed, whole, tuple(values), np.array(sizes))
+    kept = whole.astype(np.float32)
+    return Signature(name, mean, _basis(whole - mean), effect.signed, kept, tuple(values), np.array(sizes))
 
 
 def signatures_of(names: Sequence[str], dataset: Dataset) -> tuple[Signature, ...]:
@@ -393,7 +395,7 @@ def in_other_noise(signature: Signature, before: Dataset, after: Dataset) -> Sig
         signature.mean * factor / unit,
         signature.basis * factor[:, None] / unit,
         signature.signed,
-        curves / sizes[:, None] if sizes.size else curves,
+        (curves / sizes[:, None]).astype(np.float32) if sizes.size else curves,
         signature.values,
         signature.sizes * sizes,
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.preprocessing.motion import KEPT_SAMPLES, followed_turns, motion_of, smoothed, through_turns
+from tirelab.preprocessing.motion import LONG, followed_turns, motion_of, smoothed, through_turns
 
 INTERVAL = 0.01
 RATE = 2e-3
@@ -276,11 +276,13 @@ def test_through_a_turn_the_rate_changes_evenly() -> None:
     assert rate[4] == 2.0
 
 
-def test_a_motion_is_kept_by_what_was_read_and_long_ones_are_not() -> None:
+def test_a_motion_is_kept_by_what_was_read_and_of_long_ones_the_last_two() -> None:
     time = np.linspace(0.0, 3.0, 400)
     first, again, other = (motion_of(time, depth * np.sin(time)) for depth in (0.02, 0.02, 0.03))
     assert again is first
     assert float(other.deflection.max()) == pytest.approx(0.03, rel=1e-3)
     assert float(first.deflection.max()) == pytest.approx(0.02, rel=1e-3)
-    long = np.linspace(0.0, 3.0, KEPT_SAMPLES + 1)
-    assert motion_of(long, 0.02 * long) is not motion_of(long, 0.02 * long)
+    long = np.linspace(0.0, 3.0, LONG + 1)
+    first, again, *_ = (motion_of(long, slope * long) for slope in (0.02, 0.02, 0.03, 0.04))
+    assert again is first
+    assert motion_of(long, 0.02 * long) is not first
