@@ -190,7 +190,7 @@ def _piecewise(s: _Samples) -> LawFit:
 
 
 def _lines(s: _Samples, count: int) -> LawFit:
-    knots = _knots(s.x, count)
+    knots = _knots(s, count)
     hats = [np.interp(s.x, knots, np.eye(knots.size)[i]) for i in range(knots.size)]
     values, fitted = _lstsq(hats, s)
     digits = 3 if count == LINES[0] else 9  # so that near ones have different symbols
@@ -199,17 +199,23 @@ def _lines(s: _Samples, count: int) -> LawFit:
     return replace(_fit("piecewise", units, values, fitted), at=at)
 
 
-def _knots(x: Array, count: int) -> Array:
-    """Return at most count + 1 deflections, between each two of which as many places were visited.
+def _knots(s: _Samples, count: int) -> Array:
+    """Return at most count + 1 deflections, between each two of which the curve of the mean force is as long, with both
+    axes scaled to one: where the force rises in a small part of the way, as metal does, lines are needed there.
 
     However long a part is held, a place is one: between two knots within a hold the force would be that of two times.
     """
+    x = s.x
     lowest, highest = float(x.min()), float(x.max())
     step = max((highest - lowest) / (SAMPLES_OF_LINE * count), 1e-300)
-    visited = lowest + step * (np.unique(np.floor((x - lowest) / step)) + 0.5)
-    knots = np.quantile(np.clip(visited, lowest, highest), np.linspace(0.0, 1.0, count + 1))
+    places, own = np.unique(np.floor((x - lowest) / step), return_inverse=True)
+    visited = np.clip(lowest + step * (places + 0.5), lowest, highest)
+    force = np.bincount(own, s.force) / np.bincount(own)
+    ways = (np.diff(v) / max(float(np.ptp(v)), 1e-300) for v in (visited, force))
+    length = np.append(0.0, np.cumsum(np.hypot(*ways)))
+    knots = np.interp(np.linspace(0.0, length[-1], count + 1), length, visited)
     knots[[0, -1]] = lowest, highest
-    return np.asarray(knots[np.append(True, np.diff(knots) > step)])
+    return np.asarray(knots[np.append(True, np.diff(knots) > 0.5 * step)])
 
 
 def _mf_tyre(s: _Samples) -> LawFit:

@@ -34,6 +34,18 @@ def test_the_corners_of_a_curve_do_not_lie_in_holds() -> None:
     assert between.max() < 3.0 * between.min()
 
 
+def test_a_curve_has_its_corners_where_the_force_changes() -> None:
+    """A rod that yields after a hundredth of its way: 15 kN there, 19 kN at the end, and 1 N of noise."""
+    x = np.linspace(0.0, 0.01, 5000)
+    force = np.minimum(1.5e8 * x, 1.5e4 + 4e5 * (x - 1e-4)) + np.random.default_rng(3).normal(
+        0.0, 1.0, x.size
+    )
+    found = {fit.name: fit for fit in fit_laws([recording(x, force)])}["piecewise"]
+    # Corners every tenth of the way miss the yield by 2.4 kN over a part of it: more than 300 N of all.
+    assert found.rmse < 60.0
+    assert found.at[1] == pytest.approx(1e-4, rel=0.05)
+
+
 def test_few_deflections_far_apart_have_laws() -> None:
     """Two steps of a gauge, none near half of the largest deflection."""
     x = np.repeat([0.0, 0.02], 300)
