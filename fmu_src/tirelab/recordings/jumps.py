@@ -1,5 +1,5 @@
-"""Jumps of the deflection between two samples: where two runs stand one below the other in a table, and where a gauge
-lost a reading or read falsely.
+"""What happens between two samples: where two runs stand one below the other in a table, where a part breaks, and where
+a gauge lost a reading or read falsely.
 """
 
 from __future__ import annotations
@@ -34,6 +34,49 @@ def jump_doubt(deflection: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
         "between any two others: if these are two runs in one table, give the rows of one of them, as in FILE@1:2000"
     )
     return ((at + 1, said),)
+
+
+HELD, GONE = 0.5, 0.1
+"""A part that breaks carried more than the first part of the largest force before, and carries less than the second one
+after it; the deflection goes back by less than the second part of its span meanwhile."""
+
+FALL = 5
+"""Samples within which a part breaks; a release takes longer."""
+
+
+def sudden_doubts(
+    deflection: NDArray[np.float64], force: NDArray[np.float64]
+) -> tuple[tuple[str, int, str], ...]:
+    """Return for each sudden event the channel, the sample and a sentence; arrays (n,) [m], [N]."""
+    jumps = (("deflection", at, said) for at, said in jump_doubt(deflection))
+    breaks = (("force", at, said) for at, said in break_doubt(deflection, force))
+    return (*jumps, *breaks)
+
+
+def break_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
+    """Return the sample from which on a broken part carries nothing and a sentence, none where it did not break; arrays
+    (n,) [m], [N].
+
+    The force falls within FALL samples and does not come back, where the part carried it at every such deflection.
+    """
+    most = float(np.max(np.abs(force)))
+    carries = np.flatnonzero(np.abs(force) > HELD * most)
+    if not carries.size:
+        return ()
+    last = int(carries[-1])
+    nothing = last + np.flatnonzero(np.abs(force[last:]) < GONE * most)
+    if nothing.size < 2 or nothing[0] - last > FALL:
+        return ()
+    at, way = int(nothing[0]), np.sign(deflection[last]) * deflection
+    least = way[last] - GONE * np.ptp(way)
+    there = np.abs(force[: last + 1][way[: last + 1] >= least])
+    if way[at] < least or there.size < FEWEST or np.min(there) < GONE * most:
+        return ()
+    said = (
+        f"the force falls from {abs(force[last]):.4g} N to less than {GONE * most:.2g} N here and does not come back: "
+        f"if the part broke or slipped off, give the range before it, as in FILE@1:{last + 1}"
+    )
+    return ((at, said),)
 
 
 LOST = 2.0
@@ -100,6 +143,10 @@ def _off_the_motion(values: NDArray[np.float64]) -> NDArray[np.intp]:
     seen = np.abs(own)[np.abs(own) > usual]
     apart = (np.min(off, axis=0) > most) | (np.max(off, axis=0) < -most)
     likely = np.flatnonzero(apart & (np.abs(own) > _of_steps(values, seen)))
+    # Nor is every gauge as quiet everywhere: the probe that touches nothing yet is not.
+    near = np.clip(likely[:, None] + np.arange(-FEWEST, FEWEST + 1), 0, n - 1)
+    louder = np.median(np.abs(own[near]), axis=1) / float(ndtri(0.75)) / np.sqrt(1.5) / noise
+    likely = likely[np.min(np.abs(off), axis=0)[likely] > most * louder]
     places = np.concatenate([-at[::-1], at])
     around = values[AROUND + likely[:, None] + places.astype(int)]
     curve = np.vander(places, 3, increasing=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .jumps import jump_doubt
+from .jumps import sudden_doubts
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
 from .sign_convention import CLEAR, work_share
@@ -57,7 +57,7 @@ PRESSURES = (2e4, 1.5e6)
 """Gauge pressures [Pa] of bicycle tires: 0.3 bar of a fat one, 14 bar of a track racer's."""
 
 TEMPERATURES = (233.15, 423.15)
-"""Temperatures [K] at which rubber is used and tested: -40 to 150 degrees Celsius."""
+"""Temperatures [K] at which rubber is used: -40 to 150 degrees Celsius."""
 
 FLAT_BINS = 60
 
@@ -103,10 +103,9 @@ def doubts_of(
     origin = gauges.origin
     backwards = _loop_doubt(gauges, values["deflection"], values["force"])
     loops: tuple[str, ...] = (_placed(where("force", None), backwards),) if backwards else ()
-    loops += tuple(
-        _placed(where(name, None), sentence) for name, sentence in _state_doubts(values, units, part)
-    )
-    loops += tuple(_placed(where("deflection", at), said) for at, said in jump_doubt(values["deflection"]))
+    loops += tuple(_placed(where(name, None), said) for name, said in _state_doubts(values, units, part))
+    for name, at, said in sudden_doubts(values["deflection"], values["force"]):
+        loops += (_placed(where(name, at), said),)
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from house_form import write_rows
 from tirelab.recordings.choices import Choices
-from tirelab.recordings.jumps import false_readings, jump_doubt, lost_readings
+from tirelab.recordings.jumps import break_doubt, false_readings, jump_doubt, lost_readings
 from tirelab.recordings.recording import understand
 
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -55,6 +55,63 @@ def test_the_doubt_names_the_row(tmp_path: Path) -> None:
 )
 def test_one_run_is_not_doubted(deflection: np.ndarray) -> None:
     assert jump_doubt(deflection) == ()
+
+
+PULL = np.linspace(0.0, 8e-3, 500)
+TAKEN = np.append(9000.0 * np.minimum(PULL / 1e-3, 1.0)[:480] + 1e5 * PULL[:480], np.full(20, 12.0))
+
+
+RELEASED = TAKEN[479] * np.linspace(1.0, 0.0, 20)
+
+
+def test_a_part_that_breaks_is_doubted_at_the_first_sample_without_force() -> None:
+    ((at, said),) = break_doubt(PULL, TAKEN)
+    assert at == 480
+    assert said.startswith("the force falls from 9768 N to less than 9.8e+02 N here and does not come back")
+    assert said.endswith("give the range before it, as in FILE@1:480")
+    # The rig springs back, and a sample is read as it falls; the signs are the other way.
+    falls = np.append(TAKEN[:480], [4000.0, 900.0, *TAKEN[482:]])
+    ((at, _),) = break_doubt(-np.append(PULL[:480], PULL[480:] - 0.4e-3), -falls)
+    assert at == 481
+
+
+@pytest.mark.parametrize(
+    ("deflection", "force"),
+    [
+        (PULL, TAKEN[:480].repeat(2)[:500]),
+        (PULL[:481], TAKEN[:481]),
+        (np.append(PULL[:480], np.linspace(7.6e-3, 7e-3, 20)), np.append(TAKEN[:480], RELEASED)),
+        (CYCLES, 1e5 * CYCLES),
+        (CYCLES[::9], 1e5 * CYCLES[::9]),
+        (CYCLES, 500.0 * np.cos(2.0 * np.pi * TIME)),
+        (CYCLES, 500.0 * np.sign(np.cos(2.0 * np.pi * TIME))),
+        (PULL, np.append(TAKEN[:200], TAKEN[200] * np.exp(-np.arange(300.0) / 60.0))),
+        (PULL, np.append(TAKEN[:200], [*np.zeros(100), *TAKEN[300:480], *TAKEN[460:480]])),
+        (PULL, np.zeros(500)),
+    ],
+    ids=[
+        "none",
+        "one sample",
+        "released",
+        "elastic",
+        "few",
+        "damper",
+        "friction",
+        "slow",
+        "comes back",
+        "nothing",
+    ],
+)
+def test_what_comes_back_or_is_released_did_not_break(deflection: np.ndarray, force: np.ndarray) -> None:
+    assert break_doubt(deflection, force) == ()
+
+
+def test_the_break_is_told_with_its_row(tmp_path: Path) -> None:
+    header = "time [s],deflection [mm],force [N]"
+    path = write_rows(tmp_path / "a.csv", header, 0.1 * np.arange(500.0), 1e3 * PULL, TAKEN)
+    doubts = understand(path, Choices(part=True)).recording.doubts
+    (told,) = [doubt for doubt in doubts if "does not come back" in doubt]
+    assert "row 482, column 'force" in told
 
 
 def lost_at(*samples: int, value: float = 0.0) -> np.ndarray:
@@ -124,6 +181,17 @@ def test_a_gauge_is_as_noisy_as_where_it_moves() -> None:
     last = np.maximum.accumulate(np.where(moves, np.arange(TIME.size), 0))
     noise = [15e-6 * np.random.default_rng(seed).normal(size=TIME.size) for seed in range(100)]
     assert sum(false_readings((strokes + own)[last], strokes).size > 0 for own in noise) <= 5
+
+
+def test_a_gauge_may_be_louder_in_a_part_of_the_recording() -> None:
+    """The first quarter has three times the noise of the rest, in which a false reading is still seen."""
+    seen = 0
+    for seed in range(100):
+        read = STROKES + (with_noise(seed) - STROKES) * np.where(TIME < 5.0, 3.0, 1.0)
+        seen += false_readings(read, STROKES).size > 0
+    assert seen <= 5
+    read[[1333, 1777]] += 0.4e-3
+    assert false_readings(read, STROKES).tolist() == [1333, 1777]
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 _CLOCK = re.compile(
-    r"\s*(?:\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]\s*)?\d{1,4}:\d{2}(?::\d{2})?(?:[.,]\d+)?\s*(?:[AaPp][Mm])?\s*"
+    r"\s*(?:\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]\s*)?\d{1,4}:\d{2}(?::\d{2})?(?:[.,]\d+|:\d{3})?\s*(?:[AaPp][Mm])?\s*"
     r"(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)?\s*"
 )
 _ZONE = r"\s*(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)$"
+_MILLISECONDS = r"(:\d{2}:\d{2}):(\d{3})$"
+"""11:10:00:771, as controllers of testing machines write milliseconds."""
+
 _DATES = ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y")
 _TIMES = ("%H:%M:%S%.f", "%H:%M", "%I:%M:%S%.f %p", "%I:%M %p")
 _STAMPS = tuple(f"{date} {time}" for date in _DATES for time in _TIMES)
@@ -65,6 +68,7 @@ class Clock:
         present = plain.is_not_null()
         plain = plain.str.replace(_ZONE, "").str.replace("T", " ", literal=True)
         plain = plain.str.replace(",", ".", literal=True).str.replace(r"\s+", " ")
+        plain = plain.str.replace(_MILLISECONDS, "$1.$2")
         if not self.form:
             self.form = self._form_of(plain.drop_nulls())
             if "T" in str(texts.drop_nulls().head(1).to_list()) and self.form != "duration":
