@@ -190,7 +190,7 @@ def _not_named(candidates: Explanation, validate: Validate) -> NotNamed | None:
         return None
     chosen = candidates.of(names)
     validation = validate(chosen)
-    return NotNamed(names, chosen.error, validation.after, is_worse(validation))
+    return NotNamed(names, chosen.error, validation.after, validation.before, is_worse(validation))
 
 
 def _contradicted_by(

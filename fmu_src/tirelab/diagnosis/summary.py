@@ -106,7 +106,7 @@ def _errors(corrected: bool, unexplained: bool, fit: FitErrors) -> list[str]:
         if unexplained and (other := fit.not_named) is not None:
             refused, unlikely = "held-out data refuse", "no known effect is likely enough to be named"
             why = f"{refused} what reduces it" if other.refused else unlikely
-            there = f", and of the held-out data {newtons(other.held_out)} in place of {newtons(fit.held_out_before)}"
+            there = f", and of the held-out data {newtons(other.held_out)} in place of {newtons(other.held_out_before)}"
             stays = f", and {why}; {set_title(other.names)} would leave {newtons(other.left)}"
             stays += there if other.refused else ""
         return [f"The RMS error is {newtons(fit.before)}{stays}; {noise}."]

@@ -43,13 +43,14 @@ SCHEMA = 2
 class NotNamed:
     """A set that reduces the error of the fitted recordings and is not named.
 
-    left, held_out [N]: what its tire leaves of them, and of the held-out data; refused: whether it is worse than
-    nothing there
+    left, held_out [N]: what its tire leaves of them, and of the data that were held out of this set
+    held_out_before [N]: what nothing leaves there; refused: whether the set is worse than that
     """
 
     names: tuple[str, ...]
     left: float
     held_out: float
+    held_out_before: float
     refused: bool
 
 
