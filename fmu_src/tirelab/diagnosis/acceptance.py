@@ -43,6 +43,10 @@ from ..preprocessing.samples import (
 from ..simulation.channels import begun
 from ..simulation.simulate import simulate, smoothed_motion
 
+Forces = Sequence[FloatArray]
+Chosen = Sequence[BoolArray]
+"""Forces [N] of all samples of each recording; which samples of each are chosen."""
+
 FITTED = 0.7
 """Part of the baseline's squared misfit that stays fitted where the end of a recording is held out (split by time, one
 side could lack the misfit to be explained). It is also the part of the explained misfit in the held-out data that has
@@ -95,7 +99,7 @@ class HeldOut:
         return rmse([p.noise_free[p.chosen] for p in self.held_out])
 
 
-def rmse(parts: Sequence[FloatArray]) -> float:
+def rmse(parts: Forces) -> float:
     """Return the root mean square of all `parts` together."""
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
@@ -110,10 +114,7 @@ def noise_free_residual(tire: TireModel, recording: Recorded, motion: Motion) ->
 
 
 def given(
-    held_out: Sequence[Recorded],
-    dataset: RawDataset,
-    before: Sequence[FloatArray],
-    explanation: Explanation,
+    held_out: Sequence[Recorded], dataset: RawDataset, before: Forces, explanation: Explanation
 ) -> HeldOut:
     """Return the errors on the held-out recordings; before [N]: residuals of the fitted ones.
 
@@ -140,10 +141,7 @@ def given(
 
 
 def split(
-    recordings: Sequence[Recorded],
-    dataset: RawDataset,
-    before: Sequence[FloatArray],
-    explanation: Explanation,
+    recordings: Sequence[Recorded], dataset: RawDataset, before: Forces, explanation: Explanation
 ) -> HeldOut:
     """Return the errors on a part of the recordings after a fit to the rest; before [N]: residuals of the baseline."""
     motions = [e.motion for e in dataset.experiments]
@@ -180,9 +178,7 @@ def _ways(
     return found
 
 
-def _within(
-    kept: Sequence[BoolArray], motions: Sequence[Motion], surfaces: Sequence[IndexArray]
-) -> list[BoolArray]:
+def _within(kept: Chosen, motions: Sequence[Motion], surfaces: Sequence[IndexArray]) -> list[BoolArray]:
     """Return which samples lie within the deflections of those that are kept on the same surface."""
     fits, surface = np.concatenate(kept), np.concatenate(surfaces)
     deflection = np.concatenate([m.deflection for m in motions])
@@ -209,10 +205,7 @@ def _halvings(values: FloatArray, largest: float) -> IndexArray:
 
 
 def _parts(
-    recordings: Sequence[Recorded],
-    motions: Sequence[Motion],
-    before: Sequence[FloatArray],
-    explanation: Explanation,
+    recordings: Sequence[Recorded], motions: Sequence[Motion], before: Forces, explanation: Explanation
 ) -> tuple[list[BoolArray], str]:
     """Return which samples stay fitted, and the name of the held-out part, in which enough samples are compared.
 
@@ -227,7 +220,7 @@ def _parts(
         for residuals in (before, explanation.residuals)
     )
 
-    def within(kept: Sequence[BoolArray]) -> list[BoolArray]:
+    def within(kept: Chosen) -> list[BoolArray]:
         return [w & s for w, s in zip(_within(kept, motions, surfaces), seen, strict=True)]
 
     for number in reversed(range(len(recordings))) if len(recordings) > 1 else ():
@@ -245,7 +238,7 @@ def _parts(
     return ends if few else kept, "the end of each motion"
 
 
-def _name_of(kept: Sequence[BoolArray], recordings: Sequence[Recorded]) -> str:
+def _name_of(kept: Chosen, recordings: Sequence[Recorded]) -> str:
     """Return the name of what is held out of the first recording that is not all kept, and of the others."""
     r, own = next((r, k) for r, k in zip(recordings, kept, strict=True) if not k.all())
     first, last = np.flatnonzero(~own)[[0, -1]]
@@ -256,11 +249,7 @@ def _name_of(kept: Sequence[BoolArray], recordings: Sequence[Recorded]) -> str:
 
 
 def _shows_as_much(
-    kept: Sequence[BoolArray],
-    before: Sequence[FloatArray],
-    after: Sequence[FloatArray],
-    ways: Sequence[IndexArray],
-    within: Sequence[BoolArray],
+    kept: Chosen, before: Forces, after: Forces, ways: Sequence[IndexArray], within: Chosen
 ) -> bool:
     """Return whether the held-out part can refute a set.
 
@@ -312,7 +301,7 @@ NO_WORSE = 0.9
 """A set is replaced by one with no more effects whose error is less than this part of its own."""
 
 LIKELY = 0.5
-"""Least probability of an effect that is kept in any case."""
+"""Least probability of an effect that is kept unless it is idle."""
 
 Validate = Callable[[Explanation], HeldOut]
 
@@ -351,12 +340,14 @@ def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explan
 def without_unlikely(
     accepted: Explanation, validation: HeldOut, probabilities: Mapping[str, float], validate: Validate
 ) -> tuple[Explanation, HeldOut]:
-    """Return the smallest fitted part of a set that keeps its likely effects (LIKELY), leaves as little as the set, and
-    is no worse than the baseline on held-out data.
+    """Return the smallest fitted part of a set that keeps its likely effects (LIKELY) but for idle ones, leaves as
+    little as the set, and is no worse than the baseline on held-out data.
 
     probabilities: of each effect of the set, by its name
     """
-    likely = [n for n, p in probabilities.items() if p >= LIKELY]
+    likely = [
+        n for n, p in probabilities.items() if p >= LIKELY and not _idle(n, accepted, validation, validate)
+    ]
     unlikely = sorted((n for n in probabilities if n not in likely), key=lambda n: -probabilities[n])
     most = accepted.error / NO_WORSE
     for count in range(len(unlikely)):
@@ -368,6 +359,14 @@ def without_unlikely(
             if not is_worse(found):
                 return accepted.of(names), found
     return accepted, validation
+
+
+def _idle(name: str, accepted: Explanation, validation: HeldOut, validate: Validate) -> bool:
+    """Return whether a set leaves no more without an effect, fitted and held out: then it does not explain anything."""
+    less = tuple(n for n in accepted.model.names if n != name)
+    if not less or not accepted.was_fitted(less) or (plainer := accepted.of(less)).error > accepted.error:
+        return False
+    return validate(plainer).after <= validation.after
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
@@ -385,10 +384,7 @@ def is_worse(validation: HeldOut) -> bool:
 
 
 def validation_on(
-    recordings: Sequence[Recorded],
-    held_out: Sequence[Recorded],
-    dataset: RawDataset,
-    before: Sequence[FloatArray],
+    recordings: Sequence[Recorded], held_out: Sequence[Recorded], dataset: RawDataset, before: Forces
 ) -> Validate:
     """Return the function that validates a set: on recordings kept from the fit, else on a part of `recordings`.
 

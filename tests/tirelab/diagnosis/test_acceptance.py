@@ -233,6 +233,14 @@ def test_an_effect_that_is_less_likely_than_not_is_not_named() -> None:
     assert likely_part(KEPT, PAIR, ALONE, viscous_damping=0.99, bottoming=0.6) == set(PAIR.names)
 
 
+def test_an_effect_without_which_no_more_is_left_is_not_named_however_likely_it_is() -> None:
+    """A ceiling of the force, say, that a better optimum of the others does without."""
+    better, elsewhere = made("viscous_damping", 4.9, 500.0), made("viscous_damping", 4.9, 430.0)
+    assert likely_part(KEPT, PAIR, better, viscous_damping=0.99, bottoming=0.9) == {"viscous_damping"}
+    # Held-out data tell that it is needed.
+    assert likely_part(KEPT, PAIR, elsewhere, viscous_damping=0.99, bottoming=0.9) == set(PAIR.names)
+
+
 def test_an_unlikely_effect_is_named_where_the_others_leave_clearly_more() -> None:
     poor = made("viscous_damping", 9.0, 500.0)
     assert likely_part(KEPT, PAIR, poor, viscous_damping=0.99, bottoming=0.4) == set(PAIR.names)
