@@ -315,7 +315,7 @@ def fitted(
         tried.append(_optimise(whole, best.values, discrepancy, best.variance))
         if LAW in best.values and dataset.tire.two_sided:
             anew = {**best.values, LAW: law_start(dataset)}
-            tried.append(_optimise(whole, anew, discrepancy, discrepancy.usual))
+            tried.append(_optimise(whole, anew, discrepancy, discrepancy.of_forms))
         best = max((best, *tried[len(starts) :]), key=lambda f: f.log_likelihood)
     return replace(best, evaluations=sum(f.evaluations for f in tried))
 

@@ -61,7 +61,8 @@ class Discrepancy:
     """The law of the discrepancy, see the docstring of the module.
 
     samples: n; effective: e; usual: V of the usual discrepancy f; highest: V of the whole misfit; exact: V of a
-    discrepancy as large as the noise, the lowest V where it is less than the usual one
+    discrepancy as large as the noise, the lowest V where it is less than the usual one; forms: the usual V without slow
+    noise
     """
 
     samples: int
@@ -69,6 +70,12 @@ class Discrepancy:
     usual: float
     highest: float
     exact: float = math.inf
+    forms: float = math.inf
+
+    @property
+    def of_forms(self) -> float:
+        """The usual V of the form errors alone, whatever slow noise lies beside them."""
+        return min(self.forms, self.usual)
 
     @property
     def lowest(self) -> float:
@@ -105,7 +112,11 @@ class Discrepancy:
         """Return the discrepancy beside a slow noise of this V (see `slow_variance`), below which nothing is told."""
         usual = max(self.usual, variance)
         return replace(
-            self, usual=usual, exact=max(self.exact, variance), highest=max(self.highest, 2.0 * usual)
+            self,
+            usual=usual,
+            exact=max(self.exact, variance),
+            highest=max(self.highest, 2.0 * usual),
+            forms=self.of_forms if usual > self.usual else self.forms,
         )
 
     @cached_property

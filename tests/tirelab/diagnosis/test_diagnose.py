@@ -274,3 +274,17 @@ def test_the_next_test_of_a_part_stays_where_it_was_recorded() -> None:
     assert _limits_of(data, Limits(deepest=0.03), part=True).start == limits.start
     assert _limits_of(data, None, part=False).start == 0.0
     assert _limits_of(data, None, part=False).deepest == pytest.approx(0.012, rel=1e-3)
+
+
+def test_a_key_that_snaps_is_corrected_beside_a_law_that_is_far_from_it():
+    """Before any set is fitted all of the misfit passes for slow noise; a law begun beside that stayed where it was."""
+    way = np.arange(0.0, 3.5e-3, 0.02e-3)
+    x, side = np.concatenate([way, way[::-1]]), np.repeat([1.0, -1.0], way.size)
+    heights = [0.10, 0.20, 0.62, 0.60, 0.30, 0.45, 1.60]
+    force = np.interp(1e3 * x, [0.0, 0.1, 0.9, 1.2, 2.2, 2.6, 3.5], heights) + 0.03 * side
+    believed = TireModel(
+        PowerLaw(3660.7, 7.527), two_sided=True, inflated=False, preload=0.433, tested_range=None
+    )
+    verdict = diagnose([read("key", 0.01 * np.arange(x.size), x, force, 3, noise=1.5e-3)], believed)
+    assert "recalibration" in verdict.names
+    assert verdict.fit.after < 0.4 * verdict.fit.before

@@ -114,6 +114,7 @@ def test_beside_slow_noise_no_smaller_variance_is_tried() -> None:
     slow = quiet.beside_slow(9.0)
     assert slow.grid[0] == pytest.approx(9.0)
     assert slow.profile(600.0)[1] == pytest.approx(9.0)
+    assert slow.of_forms == slow.beside_slow(20.0).of_forms == quiet.of_forms == quiet.usual
     loud = discrepancy_of(np.full(600, 100.0), 0.3)
     assert loud.beside_slow(9.0) == loud
 
