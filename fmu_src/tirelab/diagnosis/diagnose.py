@@ -36,7 +36,7 @@ from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_ou
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
-from .summary import not_seen, summarise
+from .summary import not_seen, other_law, summarise
 from .verdict import FitErrors, NotNamed, Verdict
 
 MOST_TESTED = 3
@@ -116,6 +116,7 @@ def diagnose(
     sentences = [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(effects, alternatives, models, confidence, fit, test))
     sentences += not_seen(remainder.uncompared, models) if unexplained else []
+    sentences += other_law(fit.after, models) if baseline.is_part and baseline.curve is None else []
     return Verdict(
         effects=effects,
         doubted=accepted.doubted,

@@ -94,6 +94,20 @@ def not_seen(uncompared: float, regressions: Sequence[ResidualModel]) -> list[st
     return [QUICK] if uncompared > MAJORITY and not repeats else []
 
 
+def other_law(left: float, regressions: Sequence[ResidualModel]) -> list[str]:
+    """Return the advice to believe another law of a part, where a curve of the deflection explains most of a remainder.
+
+    left [N]: what the corrected part leaves. A law of few constants may be too far from the part's for a refitted one.
+    """
+    curve = next((c for c in regressions if c.by == "deflection"), None)
+    if curve is None or curve.after**2 > (1.0 - MAJORITY) * left**2:
+        return []
+    return [
+        f"A curve of the force over the deflection leaves {newtons(curve.after)} of it: beside the law of "
+        "`tirelab identify --part piecewise` more may be told."
+    ]
+
+
 AMPLIFIED = 1.1
 """The noise of the deflection is mentioned where it raises the held-out error by more than this factor."""
 

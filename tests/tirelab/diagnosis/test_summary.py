@@ -7,7 +7,7 @@ import pytest
 from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
-from tirelab.diagnosis.summary import QUICK, not_seen, summarise
+from tirelab.diagnosis.summary import QUICK, not_seen, other_law, summarise
 from tirelab.diagnosis.verdict import FitErrors, NotNamed
 from tirelab.estimation.findings import NamedEffect
 
@@ -110,6 +110,16 @@ def test_a_remainder_that_repeats_over_a_coordinate_is_not_called_too_quick():
     assert not_seen(0.8, ()) == [QUICK]
     assert not_seen(0.8, (regressed("time", 0.1), regressed("deflection", 0.82))) == []
     assert not_seen(0.4, ()) == []
+
+
+def test_another_law_is_proposed_where_a_curve_of_the_deflection_explains_most():
+    (said,) = other_law(20.1, (regressed("time", NAN, 1.2), regressed("deflection", NAN, 1.43)))
+    assert said == (
+        "A curve of the force over the deflection leaves 1.43 N of it: beside the law of "
+        "`tirelab identify --part piecewise` more may be told."
+    )
+    assert other_law(20.1, (regressed("time", 0.9, 1.2), regressed("deflection", 0.3, 15.0))) == []
+    assert other_law(20.1, (regressed("time", 0.9, 1.2),)) == []
 
 
 def test_beside_a_likelier_alternative_a_refitted_law_does_not_say_that_nothing_is_missing():
