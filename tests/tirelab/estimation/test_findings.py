@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drives import damped
-from radialtire import PowerLaw, TireModel
+from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.findings import Remainder, _covariance, of_the_written_tire, remainder_of
 from tirelab.recordings.recording import Recording
@@ -34,6 +34,14 @@ def test_no_variance_is_negative_where_the_data_know_a_sum_far_better_than_its_p
     found = _covariance(np.column_stack([alike, np.linspace(0.0, 1e-3, 50)]))
     assert np.all(np.diag(found) > 0.0)
     np.testing.assert_allclose(np.diag(found)[:2], 0.5, rtol=1e-6)
+
+
+def test_a_parameter_is_known_no_better_than_the_equation_that_it_is_of() -> None:
+    """A dashpot of 5000 N s/m beside 5 N of noise, which alone would give it to a thousandth."""
+    verdict = diagnose([damped(6, damping=5000.0)], catalogue=["viscous_damping"])
+    found = verdict.effects[0].parameters["damping"]
+    declared = CATALOGUE["viscous_damping"].form_error
+    assert declared < found.std / found.value < 2.0 * declared
 
 
 DATASET = dataset_of([damped(6, samples=4000)], TireModel())
