@@ -73,7 +73,7 @@ def break_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> 
     if way[at] < least or there.size < FEWEST or np.min(there) < GONE * most:
         return ()
     said = (
-        f"the force falls from {abs(force[last]):.4g} N to less than {GONE * most:.2g} N here and does not come back: "
+        f"the force falls within {FALL} samples to less than a tenth of the largest one, and does not come back: "
         f"if the part broke or slipped off, give the range before it, as in FILE@1:{last + 1}"
     )
     return ((at, said),)
