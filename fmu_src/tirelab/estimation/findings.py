@@ -72,6 +72,8 @@ def _with_form_errors(fit: Fit) -> NDArray[np.float64]:
     A part of an error looks like another value of a parameter, and the residual does not show it, however well the rest
     fits: an effect's response may be off by its form error as a whole, too. A refitted law has any strength anyway.
     """
+    if not fit.near.forms:
+        return fit.jacobian
     curves, found = fit.problem.curves(fit.positions), fit.scales.tolist()
     scales = [own if name == LAW else max(own, 1.0) for name, own in zip(curves, found, strict=True)]
     forms = [f * scale for f, scale in zip(fit.near.forms, scales, strict=True)]
