@@ -137,16 +137,18 @@ def _off_the_motion(values: NDArray[np.float64]) -> NDArray[np.intp]:
     own = beside[0] - middle
     # A gauge that stands still repeats its reading: how well it reads shows where it moves.
     moved = np.abs(own[beside[-1] != beside[1]])
-    noise = float(np.median(moved if moved.size else np.abs(own))) / float(ndtri(0.75)) / np.sqrt(1.5)
-    most, usual = (-float(ndtri(BY_CHANCE / (2.0 * count))) * noise for count in (n, 2 * AROUND))
+    unit = 1.0 / (float(ndtri(0.75)) * np.sqrt(1.5))  # from a median of `own` to the deviation of a reading
+    noise = unit * float(np.median(moved if moved.size else np.abs(own)))
+    far, near = (-float(ndtri(BY_CHANCE / (2.0 * count))) for count in (n, 2 * AROUND))
+    most, usual = far * noise, near * noise
     off = [own / np.sqrt(1.5), *((beside[0] - p) / np.sqrt(1.0 + line @ line) for p in (before, after))]
     seen = np.abs(own)[np.abs(own) > usual]
     apart = (np.min(off, axis=0) > most) | (np.max(off, axis=0) < -most)
     likely = np.flatnonzero(apart & (np.abs(own) > _of_steps(values, seen)))
     # Nor is every gauge as quiet everywhere: the probe that touches nothing yet is not.
-    near = np.clip(likely[:, None] + np.arange(-FEWEST, FEWEST + 1), 0, n - 1)
-    louder = np.median(np.abs(own[near]), axis=1) / float(ndtri(0.75)) / np.sqrt(1.5) / noise
-    likely = likely[np.min(np.abs(off), axis=0)[likely] > most * louder]
+    there = np.clip(likely[:, None] + np.arange(-FEWEST, FEWEST + 1), 0, n - 1)
+    own_noise = unit * np.median(np.abs(own[there]), axis=1)
+    likely = likely[np.min(np.abs(off), axis=0)[likely] > far * own_noise]
     places = np.concatenate([-at[::-1], at])
     around = values[AROUND + likely[:, None] + places.astype(int)]
     curve = np.vander(places, 3, increasing=True)
