@@ -9,13 +9,13 @@ Printed are seconds, their ratio, model evaluations, and samples per second and 
 from __future__ import annotations
 
 import os
-import resource
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 
 import lmfit
@@ -114,27 +114,47 @@ def drives_of(samples: int) -> list[Drive]:
 MOST_SECONDS, MOST_SECONDS_LONG, LONG, MOST_BYTES = 5.0, 60.0, 100_000, 1e9
 
 
-def whole_command(drives: list[Drive]) -> tuple[float, float]:
-    """Return the CPU time [s], user and system, of `tirelab diagnose` on these recordings, and the memory [bytes]."""
+def save(folder: str, samples: int) -> None:
+    """Write two rides, or a long one alone."""
+    for drive in drives_of(samples)[: 1 if samples >= LONG else 2]:
+        table = np.column_stack([drive.time, drive.deflection, drive.force])
+        name = str(Path(folder) / f"{drive.name}.csv")
+        np.savetxt(name, table, "%.9g", ",", header="time [s],deflection [m],force [N]", comments="")
+
+
+def whole_command(samples: int) -> tuple[float, float]:
+    """Return the CPU time [s], user and system, of `tirelab diagnose` on saved rides, and its memory [bytes].
+
+    The rides are saved by a process of its own: a command starts with the memory of the one that started it.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        names = [str(Path(folder) / f"{drive.name}.csv") for drive in drives]
-        for name, drive in zip(names, drives, strict=True):
-            table = np.column_stack([drive.time, drive.deflection, drive.force])
-            np.savetxt(name, table, "%.9g", ",", header="time [s],deflection [m],force [N]", comments="")
-        before = os.times()
-        command = [sys.executable, "-m", "tirelab", "diagnose", *names, "--radius", "flat", "--out"]
-        subprocess.run([*command, str(Path(folder) / "out")], check=True, capture_output=True)
-        after = os.times()
-    seconds = after.children_user - before.children_user + after.children_system - before.children_system
-    return seconds, 1024.0 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+        writer = get_context("spawn").Process(target=save, args=(folder, samples))
+        writer.start()
+        writer.join()
+        names = sorted(map(str, Path(folder).glob("*.csv")))
+        command = [
+            sys.executable,
+            "-m",
+            "tirelab",
+            "diagnose",
+            *names,
+            "--radius",
+            "flat",
+            "--quiet",
+            "--out",
+        ]
+        running = subprocess.Popen([*command, str(Path(folder) / "out")], stdout=subprocess.DEVNULL)
+        _, status, used = os.wait4(running.pid, 0)
+        running.returncode = os.waitstatus_to_exitcode(status)
+    assert running.returncode == 0
+    return used.ru_utime + used.ru_stime, 1024.0 * used.ru_maxrss
 
 
 def main(samples: int) -> None:
     """Print the comparison."""
-    drives = drives_of(samples)
-    # First, since the system counts the memory of the process that starts a command as the command's.
-    whole, size = whole_command(drives if samples < LONG else drives[:1])
+    whole, size = whole_command(samples)
     diagnose(drives_of(2000))  # compile once
+    drives = drives_of(samples)
     total = sum(d.time.size for d in drives)
     started = time.perf_counter()
     verdict = diagnose(drives)
