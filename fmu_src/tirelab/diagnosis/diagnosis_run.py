@@ -52,8 +52,7 @@ AGREEMENT = 1e-9
 """The FMU and the simulation may differ by this part of the largest force: they add in another order."""
 
 MOST_REPLAYED = 200_000
-"""Budget: most samples, of the fitted and of the held-out recordings each, on which the corrected FMU is replayed: some
-6 s of a core of an x86-64 server."""
+"""Budget: most samples, of fitted and of held-out recordings each, on which the corrected FMU is replayed: some 6 s."""
 
 FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -316,8 +315,7 @@ def _read(file: Path, reading: Reading, progress: Progress) -> Recording:
 
 def _without_time(recordings: Sequence[Recording]) -> list[str]:
     """Return a warning where times were made up."""
-    names = [recording.name for recording in recordings if not recording.timed]
-    if not names:
+    if not (names := [recording.name for recording in recordings if not recording.timed]):
         return []
     return [
         f"the time of {', '.join(names)} was not measured: seconds count samples here, and nothing of rate, time or "
@@ -328,21 +326,23 @@ def _without_time(recordings: Sequence[Recording]) -> list[str]:
 def _replayed(
     fmu: Path, recordings: Sequence[Recording], verdict: Verdict, progress: Progress
 ) -> tuple[Replayed, list[str]]:
-    """Return the forces of the baseline and of the corrected FMU, and warnings where FMU and simulation disagree or the
-    FMU was not replayed to the end; there the forces are those of the simulation.
-    """
-    forces, warnings = [], []
+    """Return the forces of the baseline and of the corrected FMU, beyond MOST_REPLAYED of its tire, and warnings."""
+    forces, warnings, left = [], [], MOST_REPLAYED
     for recording in recordings:
-        progress(f"replaying the corrected FMU on {recording.name}")
-        simulated = simulate(verdict.tire, recording)
-        force = replay(fmu, recording, most=max(MOST_REPLAYED // len(recordings), 1))
-        warnings += _disagreement(recording, force, simulated[: force.size])
-        if force.size < simulated.size:
-            warnings.append(
-                f"the corrected FMU was replayed on the first {force.size} of {simulated.size} samples of "
-                f"{recording.name}, and its tire simulated on the others; tirelab compare replays it on all of them"
-            )
-        forces.append(np.concatenate([force, simulated[force.size :]]))
+        force = simulate(verdict.tire, recording)
+        if left > 0:
+            progress(f"replaying the corrected FMU on {recording.name}")
+            replayed = replay(fmu, recording, most=left)
+            warnings += _disagreement(recording, replayed, force[: replayed.size])
+            force = np.concatenate([replayed, force[replayed.size :]])
+            left -= replayed.size
+        forces.append(force)
+    if (count := sum(force.size for force in forces)) > MOST_REPLAYED:
+        names = ", ".join(r.name for r in recordings)
+        warnings.append(
+            f"the corrected FMU was replayed on the first {MOST_REPLAYED} of {count} samples of {names}, and its tire "
+            "simulated on the others; tirelab compare replays it on all of them"
+        )
     before = tuple(simulate(verdict.baseline, r) for r in recordings)
     return Replayed(tuple(recordings), before, tuple(forces)), warnings
 

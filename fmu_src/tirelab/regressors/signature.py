@@ -190,8 +190,7 @@ class Signature:
     """The signature of one candidate, in units of the noise.
 
     mean (m,) and basis (m, r): of the drawn responses, divided by their size; signed: whether the size may be negative
-    curves (k, m): drawn responses of size 1, to seven digits; values: of their parameters; sizes (k,); no draws for the
-    law
+    curves (k, m): drawn responses of size 1, to seven digits; values: of their parameters; sizes (k,); none of the law
     """
 
     name: str
