@@ -158,7 +158,7 @@ def experiment_in_blocks(
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
     of_blocks = _noise_along(averaged, averaged_misfit, interval * blocks.size)
     noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
-    force_step = staircase_step(recording.force)
+    force_step = staircase_step(recording.force) or gauge_step(recording.force)
     least_noise, resting = _rounding(recording.force, force_step, blocks.size)
     return Experiment(
         name=recording.name,

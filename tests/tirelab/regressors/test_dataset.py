@@ -172,6 +172,18 @@ def test_a_force_that_rests_on_a_step_errs_alike_in_neighbouring_blocks() -> Non
     assert shared[1] < 0.1
 
 
+def test_a_force_that_hardly_rests_on_its_steps_errs_by_their_rounding() -> None:
+    """A force that changes by a step and a half with each sample, and a line along which few readings repeat."""
+    silent = replace(triangle(1000, 6), force=np.zeros(1000))
+    force = simulate(TireModel(), silent)
+    step = float(np.mean(np.abs(np.diff(force)))) / 1.5
+    read = replace(silent, force=step * np.round(force / step))
+    assert np.mean(np.diff(read.force) == 0.0) < 0.3
+    (e,) = dataset_of([read], TireModel()).experiments
+    assert e.noise >= step / np.sqrt(12.0) * (1.0 - 1e-6)
+    assert e.floor.level == pytest.approx(step / np.sqrt(12.0), rel=0.1)
+
+
 def test_a_delay_shorter_than_a_block_errs_in_blocks_and_hardly_in_samples() -> None:
     """A sine through a chord over one interval misses p^2 / 8 of its amplitude in its middle: half of that is rms."""
     time = 0.002 * np.arange(16_000)
