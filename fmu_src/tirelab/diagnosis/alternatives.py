@@ -121,13 +121,18 @@ def reason_of(
     limits: Limits | None = None,
 ) -> str:
     """Return what the recordings lack to decide between two sets, and what to record: "no hold: hold 10 s at 15 mm"."""
-    differing = [set(_traits(n)) for n in set(names) ^ set(other)]
+    between = sorted(set(names) ^ set(other))
+    differing = [set(_traits(n)) for n in between]
     common = set.intersection(*differing) if differing else set()
     lacks = insufficient_excitation(explanation, dataset, limits)
     if "static" in common:
         if not explanation.model.baseline.inflated:
             return "they depend on the deflection only: no motion of this part tells them apart"
         return f"they depend on deflection and surface only: {second_pressure(limits)}"
+    if between and all("static" in _traits(n) or explanation.excitation.of_deflection(n) for n in between):
+        return (
+            "they depend on the deflection only in this motion: load and unload to two depths, at two speeds"
+        )
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):

@@ -25,7 +25,7 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
-from ..regressors.excitation import acts_on_reading, of_deflection
+from ..regressors.excitation import acts_on_reading
 from .acceptance import HeldOut
 
 Grounds = Mapping[str, float]
@@ -132,8 +132,9 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     share: ln of its share of the misfit; alike: ln(1 + number of effects that this motion cannot distinguish from it)
     imitated: for an effect that, on one surface, a law of another shape can imitate. Beside a refitted law: the number
     of its parameters of form, by which it can follow such a law (an effect with a strength only does not fit by
-    chance). Else: the tempered odds, at most 1, of that law in place of all such effects beside_law: 1 where it depends
-    on the deflection only and stands beside a refitted law, which may have another shape than the catalogue's
+    chance). Else: the tempered odds, at most 1, of that law in place of all such effects
+    beside_law: 1 where it depends on the deflection only, always or in this motion, and stands beside a refitted law,
+    which may have another shape than the catalogue's
     significance: two-sided normal probability of the difference from neutral, of the parameter for which it is largest;
     the standard deviation includes the form errors
     """
@@ -144,6 +145,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
         odds = float(np.logaddexp.reduce(with_it) - np.logaddexp.reduce(without))
     names = [e.name for e in explanation.effects]
     law = effect.name == REFITTED_LAW
+    like_law = not law and explanation.excitation.of_deflection(effect.name)
     alike = 0 if law else len(explanation.excitation.alike(effect.name))
     return {
         "odds": _limited(odds),
@@ -152,7 +154,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
         **_of_fit(explanation, validation, explanation.remainder),
         "alike": math.log1p(alike),
         "imitated": _imitated(effect.name, names, explanation),
-        "beside_law": float(not law and REFITTED_LAW in names and of_deflection(effect.name)),
+        "beside_law": float(like_law and REFITTED_LAW in names),
         "significance": _significance(effect),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),

@@ -18,7 +18,7 @@ from ..preprocessing.data_checks import compared
 from ..preprocessing.noise import NoiseFloor
 from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
-from ..regressors.excitation import Excitation, excitation_of, misread, of_deflection
+from ..regressors.excitation import Excitation, excitation_of, misread
 from ..regressors.signature import (
     AS_GOOD,
     LAW,
@@ -55,9 +55,6 @@ FIRST_PART = 0.5
 
 LIKE_READING = "the noise of the deflection makes as large a response: move faster, or use a finer gauge"
 """Why an effect cannot be shown of which other readings of the motion give another response."""
-
-LIKE_LAW = "it depends on the deflection only in this motion: load and unload to two depths, at two speeds"
-"""Why an effect cannot be shown that no law depends on elsewhere."""
 
 LIKE_PRELOAD = "it is one force in this motion: the preload of a refitted law is the same"
 """The same of a part, whose law has a preload."""
@@ -231,7 +228,7 @@ def explain_misfit(
     progress("comparing the effects' signatures")
     dataset, raw, quiet = with_signatures(dataset, recordings, shown, catalogue)
     hidden |= dict.fromkeys(misread(raw, dataset.read_anew(recordings)), LIKE_READING)
-    hidden |= {name: LIKE_LAW for name in single_valued(raw, dataset) if not of_deflection(name)}
+    excitation = replace(excitation, single_valued=single_valued(raw, dataset))
     if baseline.two_sided and LAW in catalogue:
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
     if (gap := gap_of(baseline)) and LAW in catalogue:

@@ -167,7 +167,7 @@ class Excitation:
 
     returns: part of the variance of time between visits of the same deflection and direction; speeds: standard
     deviation over mean of the speed there; timed: whether the times of the samples are known; surfaces: their number;
-    channels: what the recorded channels show
+    channels: what the recorded channels show; single_valued: effects that are functions of the deflection here
     """
 
     returns: float
@@ -175,6 +175,7 @@ class Excitation:
     timed: bool = True
     surfaces: int = 1
     channels: ChannelEvidence = NO_EVIDENCE
+    single_valued: frozenset[str] = frozenset()
 
     @property
     def one_speed(self) -> bool:
@@ -205,15 +206,21 @@ class Excitation:
         loops = (n for n, effect in CATALOGUE.items() if "loop" in effect.traits and n != name)
         return tuple(n for n in loops if not self.hidden(n))
 
+    def of_deflection(self, name: str) -> bool:
+        """Whether an effect depends on deflection and surface only, as a law does: in every motion, or in this one, as
+        a mass does at one frequency.
+        """
+        return always_of_deflection(name) or name in self.single_valued
+
     def within_law(self, name: str) -> bool:
         """Whether a law of another shape can imitate an effect: on one surface, one of the deflection alone can be
         imitated, unless it also depends on a channel.
         """
-        return self.surfaces == 1 and of_deflection(name)
+        return self.surfaces == 1 and self.of_deflection(name)
 
 
-def of_deflection(name: str) -> bool:
-    """Whether an effect depends on deflection and surface only, as a law does, and on no channel."""
+def always_of_deflection(name: str) -> bool:
+    """Whether an effect depends on deflection and surface only, whatever the motion, and on no channel."""
     return "static" in CATALOGUE[name].traits and CATALOGUE[name].reads is None
 
 

@@ -36,7 +36,11 @@ def explained_by_sets(*sets: tuple[str, float, float], **more: Any) -> Any:
         confounded=more.get("confounded", ()),
         hidden=more.get("hidden", ()),
         within_law=more.get("within_law", ()),
-        excitation=SimpleNamespace(timed=True, one_speed=more.get("one_speed", False)),
+        excitation=SimpleNamespace(
+            timed=True,
+            one_speed=more.get("one_speed", False),
+            of_deflection=lambda name: name in more.get("single_valued", ()),
+        ),
     )
 
 
@@ -201,3 +205,14 @@ def test_what_leaves_no_trace_beside_the_refitted_law_is_told_once_with_the_reas
     assert not math.isnan(found[0].probability)
     assert math.isnan(found[1].probability)
     assert found[1].reason == "they depend on deflection and surface only: repeat at a second pressure"
+
+
+def test_what_is_of_the_deflection_in_this_motion_alone_is_told_by_another_motion() -> None:
+    """A mass at one frequency is like a softer law; where it is no function of the deflection, it lacks no motion."""
+    sets = (("recalibration", 0.0, 0.9), ("inertia", -1.0, 0.1))
+    alike = explained_by_sets(*sets, single_valued=("inertia",))
+    reason = reason_of(("recalibration",), ("inertia",), alike, RIDE)
+    assert reason.startswith(
+        "they depend on the deflection only in this motion: load and unload to two depths"
+    )
+    assert "in this motion" not in reason_of(("recalibration",), ("inertia",), explained_by_sets(*sets), RIDE)

@@ -32,6 +32,8 @@ from tirelab.estimation.findings import Estimate, Evidence, NamedEffect
 CONTENT = json.loads((files("tirelab.diagnosis") / "calibration.json").read_text(encoding="utf-8"))
 ZERO = {"verdict": dict.fromkeys(OF_VERDICT, 0.0), "effect": dict.fromkeys(OF_EFFECT, 0.0)}
 
+OF_DEFLECTION = ("gas_compression", "bottoming", "deflection_offset")
+
 
 def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
     """An explanation by hand: the chosen set, other sets with their log evidence against it, one surface."""
@@ -48,9 +50,8 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
         error=2.0,
         excitation=SimpleNamespace(
             alike=lambda name: ("inertia",) if name == "viscous_damping" else (),
-            within_law=lambda name: (
-                one_surface and name in ("gas_compression", "bottoming", "deflection_offset")
-            ),
+            of_deflection=lambda name: name in OF_DEFLECTION,
+            within_law=lambda name: one_surface and name in OF_DEFLECTION,
         ),
         model=SimpleNamespace(radii=(np.inf,), fit=SimpleNamespace(problem=problem)),
     )

@@ -288,3 +288,17 @@ def test_a_key_that_snaps_is_corrected_beside_a_law_that_is_far_from_it():
     verdict = diagnose([read("key", 0.01 * np.arange(x.size), x, force, 3, noise=1.5e-3)], believed)
     assert "recalibration" in verdict.names
     assert verdict.fit.after < 0.4 * verdict.fit.before
+
+
+def test_a_mass_at_one_frequency_is_not_told_from_a_softer_law():
+    """12 Hz: the acceleration is -(24 pi)^2 times the deflection about its middle, a straight line of it."""
+    time = np.arange(0.0, 2.5, 0.002)
+    wave = 0.005 * np.sin(2.0 * np.pi * 12.0 * time)
+    x = 0.012 + wave
+    force = flat_force(x) - 1.2 * (2.0 * np.pi * 12.0) ** 2 * wave
+    verdict = diagnose([read("shaker", time, x, force, 5, noise=1.0)])
+    either = {"inertia"}, {"recalibration"}
+    assert set(verdict.names) in either
+    assert verdict.confidence < 0.5
+    others = [set(a.names) for a in verdict.alternatives if a.probability > 0.1]
+    assert any(other in either for other in others)

@@ -5,6 +5,8 @@ What a motion can show: from drives whose answer is plain.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -152,6 +154,14 @@ def test_on_one_surface_a_law_could_be_all_that_is_static() -> None:
     r = triangle(1)
     two = excitation(r, recorded(r.time, r.deflection, 0.3))
     assert not any(two.within_law(n) for n in CATALOGUE)
+
+
+def test_what_is_a_function_of_the_deflection_in_this_motion_is_within_the_law_too() -> None:
+    motion = replace(excitation(triangle(1)), single_valued=frozenset({"inertia"}))
+    assert motion.within_law("inertia")
+    assert not motion.within_law("viscous_damping")
+    assert not replace(motion, surfaces=2).within_law("inertia")
+    assert motion.of_deflection("bottoming")
 
 
 def misread_in(recording: Recording) -> frozenset[str]:
