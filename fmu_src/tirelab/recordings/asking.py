@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import EXAMPLE_UNITS, UNIT_OF, ends_in_word, unit_of_column
+from .channels import EXAMPLE_UNITS, UNIT_OF, begins_in_word, ends_in_word, unit_of_column
 from .choices import Choices
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
@@ -310,7 +311,7 @@ def _guessed_columns(
     headers: Sequence[Header],
 ) -> dict[str, int]:
     """Return a likely column for each channel that has none: time rises, others go by their unit, else by the beginning
-    of their name ("forc") or its end (`Machine_Load`), else by their size.
+    of their name ("forc"), its end (`Machine_Load`) or its first word (`Force_data`), else by their size.
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
@@ -355,8 +356,8 @@ def _guessed_columns(
         if name in missing and name not in guessed and other in places and len(stating[name]) > 1:
             beside = places[other]
             guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
-    for name in ("deflection", "force"):
-        said = [i for i in free if ends_in_word(headers[i].name, name)]
+    for names, name in product((ends_in_word, begins_in_word), ("deflection", "force")):
+        said = [i for i in free if names(headers[i].name, name)]
         if name in missing and name not in guessed and len(said) == 1:
             guessed[name] = said[0]
             free.remove(said[0])

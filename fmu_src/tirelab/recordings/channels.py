@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from .assignments import assignments
@@ -277,8 +277,17 @@ def may_be_qualified(header: Header, channel: Channel) -> bool:
 def ends_in_word(name: str, channel: str) -> bool:
     """Whether a name of what is measured ends in a word of the channel: `Lead actuator force`, `Machine_Load`."""
     words = _words(name.partition("(")[0]).split()
-    ends = (" ".join(words[i:]) for i in range(1, len(words)))
-    return is_measured(name) and any(channel in (_NAMED.get(end), foreign_channel(end)) for end in ends)
+    return _one_is_of(name, (" ".join(words[i:]) for i in range(1, len(words))), channel)
+
+
+def begins_in_word(name: str, channel: str) -> bool:
+    """Whether a name of what is measured begins with a word of the channel: `Force_data`, `Load sensor 2`."""
+    words = _words(name.partition("(")[0]).split()
+    return _one_is_of(name, (" ".join(words[:i]) for i in range(1, len(words))), channel)
+
+
+def _one_is_of(name: str, parts: Iterable[str], channel: str) -> bool:
+    return is_measured(name) and any(channel in (_NAMED.get(part), foreign_channel(part)) for part in parts)
 
 
 def _words(name: str) -> str:

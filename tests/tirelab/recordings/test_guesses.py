@@ -141,7 +141,7 @@ def test_of_several_columns_in_millimetres_the_one_beside_the_force_is_the_defle
 def test_what_was_sampled_another_number_of_times_is_not_guessed(tmp_path: Path) -> None:
     """A dynamometer: beside its readings a file holds what they should be, at other angles."""
     time, deflection, force = loading()
-    run = {"time": time, "angle": deflection, "torque": force}
+    run = {"clock": time, "angle": deflection, "torque": force}
     scipy.io.savemat(tmp_path / "a.mat", {"asked": force[::2], "run": run})
     assert proposed(tmp_path / "a.mat")[1] == "time=#2,deflection=#3,force=#4"
 
@@ -184,6 +184,13 @@ def test_a_name_that_ends_in_a_word_is_guessed_before_sizes(tmp_path: Path, sign
     cycles = np.floor(1e4 * time)
     path = write_rows(tmp_path / "a.csv", names, time, 1e-3 * force, 1e3 * deflection, cycles)
     assert proposed(path)[:2] == ["--columns", "deflection=#3,force=#2"]
+
+
+def test_a_name_that_begins_with_a_word_is_guessed_before_sizes(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    rows = (time, np.sin(time), 1e-3 * force, 1e3 * deflection)
+    path = write_rows(tmp_path / "a.csv", "time [s],P_inlet,Force_data,z_meas", *rows)
+    assert proposed(path)[1].endswith("force=#3")
 
 
 def test_a_column_that_holds_anything_is_guessed_at_without_a_warning(

@@ -32,7 +32,6 @@ ASKED = {
     "arduino_ms.txt": "has no header row",
     "epoch_ms.csv": "column 'timestamp': has no unit",
     "epoch_us.csv": "column 'ts': has no unit",
-    "structs.mat": "no column for time, deflection, force",
     "version_7_3.mat": "no unit",
 }
 """What these leave open: the command that is printed, copied, reads them."""

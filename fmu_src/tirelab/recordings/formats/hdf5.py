@@ -57,13 +57,13 @@ class Hdf5Table:
                 fields = [n for n in dataset.dtype.names if dataset.dtype[n].kind in "fiu"]
                 self._keep(dataset.shape[0], [(_Place(name, n), f"{text}.{n}", n) for n in fields], None)
             return
-        shape = tuple(int(n) for n in dataset.shape)
-        if dataset.dtype.kind not in "fiu" or not 1 <= len(shape) <= 2 or max(shape) < 2 or min(shape) < 1:
+        shape = tuple(int(n) for n in dataset.shape if n != 1)
+        if dataset.dtype.kind not in "fiu" or not 1 <= len(shape) <= 2 or min(shape) < 1:
             return
         stated = {str(key).lower(): _as_text(value) for key, value in dataset.attrs.items()}
         unit = next((stated[key] for key in UNIT_KEYS if stated.get(key)), None)
         bare = text.rsplit("/", 1)[-1]
-        if len(shape) == 1 or min(shape) == 1:
+        if len(shape) == 1:
             self._keep(max(shape), [(_Place(name), text, bare)], unit)
         elif min(shape) <= MOST_COLUMNS:
             parts = [(_Place(name, k), f"{text}:{k}", f"{bare}:{k}") for k in range(min(shape))]
@@ -88,7 +88,7 @@ class Hdf5Table:
             for want, header in zip(wanted, headers, strict=True):
                 place = self.places[want.index]
                 dataset = file[place.dataset]
-                array = np.asarray(dataset[place.part] if isinstance(place.part, str) else dataset[()])
+                array = np.squeeze(dataset[place.part] if isinstance(place.part, str) else dataset[()])
                 if array.ndim == 2:
                     along = array if array.shape[0] == max(array.shape) else array.T
                     array = along[:, int(place.part or 0)]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..origin import Origin
+from ..units import split_header
 from .hdf5 import Hdf5Table
 from .libraries import reading_with
 from .table import Columns, FloatArray, Header, Wanted, numbers, of_one_length, sample_place
 
 MOST_COLUMNS = 64
 """A matrix with more columns than this is a picture or a map, not a set of channels."""
+
+
+_COUNTED = re.compile(r"[({]\d+[)}]$")
+
+LOGGED = ("time", "signals")
+"""Fields of a struct in which Simulink logs signals: each of them has its numbers in `values`."""
 
 
 def matlab_table(path: Path) -> MatlabTable | Hdf5Table:
@@ -26,7 +34,9 @@ def matlab_table(path: Path) -> MatlabTable | Hdf5Table:
 
 
 class MatlabTable:
-    """The vectors of a .mat file: by name, in structs as data.force, a matrix column as x_F:2 (from 0)."""
+    """The vectors of a .mat file: by name, in structs as data.force, a matrix column as x_F:2 (from 0); of several
+    structs or cells as data(2).force and force{2}, as MATLAB counts them.
+    """
 
     time_axis: int | None = None
 
@@ -35,26 +45,31 @@ class MatlabTable:
         # Variables are opened one by one: the shapes say which may be channels before anything is loaded.
         with reading_with(path, "a .mat file"):
             self.shapes = [(name, shape, kind) for name, shape, kind in _scipy_io().whosmat(str(path))]
-            structs = [name for name, _, kind in self.shapes if kind == "struct"]
-            self.structs = dict(_fields(_load(path, structs))) if structs else {}
+            opened = [name for name, _, kind in self.shapes if kind in ("struct", "cell")]
+            self.opened = _one_clock(_fields(_load(path, opened))) if opened else {}
         self.columns: list[tuple[str, int | None]] = []
         self.samples: list[int] = []
-        plain = [(name, shape) for name, shape, kind in self.shapes if kind != "struct"]
-        for name, shape in [*plain, *((name, array.shape) for name, array in self.structs.items())]:
+        plain = [(name, shape) for name, shape, kind in self.shapes if kind not in ("struct", "cell")]
+        for name, shape in [*plain, *((name, array.shape) for name, array in self.opened.items())]:
             self._add(name, shape)
 
     def _add(self, name: str, shape: tuple[int, ...]) -> None:
-        if len(shape) != 2 or max(shape) < 2 or min(shape) < 1 or min(shape) > MOST_COLUMNS:
+        sizes = [n for n in shape if n != 1]  # Simulink logs a scalar signal as 1 x 1 x samples
+        if not 1 <= len(sizes) <= 2 or min(sizes) < 1 or (len(sizes) == 2 and min(sizes) > MOST_COLUMNS):
             return
-        parts: list[int | None] = [None] if min(shape) == 1 else list(range(min(shape)))
+        parts: list[int | None] = [None] if len(sizes) == 1 else list(range(min(sizes)))
         self.columns += [(name, part) for part in parts]
-        self.samples += [max(shape)] * len(parts)
+        self.samples += [max(sizes)] * len(parts)
 
     @property
     def headers(self) -> Sequence[Header]:
         """The vectors and matrix columns that hold more than one number; a .mat file gives no units."""
-        names = [name if part is None else f"{name}:{part}" for name, part in self.columns]
-        return [Header(name, None, name) for name in names]
+        headers = []
+        for name, part in self.columns:
+            after = "" if part is None else f":{part}"
+            bare, unit = split_header(_COUNTED.sub("", name.rpartition(".")[2]) + after)
+            headers.append(Header(bare, unit, name + after))
+        return headers
 
     def bytes_needed(self, columns: int) -> int:
         """The longest vectors, as stored and as float64."""
@@ -65,11 +80,11 @@ class MatlabTable:
         headers = self.headers
         names = {self.columns[want.index][0] for want in wanted}
         with reading_with(self.path, "a .mat file"):
-            loaded = _load(self.path, sorted(names - self.structs.keys()))
+            loaded = _load(self.path, sorted(names - self.opened.keys()))
         values: list[FloatArray] = []
         for want in wanted:
             name, part = self.columns[want.index]
-            array = np.asarray(self.structs[name] if name in self.structs else loaded[name])
+            array = np.atleast_2d(np.squeeze(self.opened[name] if name in self.opened else loaded[name]))
             along = array if array.shape[0] == max(array.shape) else array.T
             column = along[:, part or 0]
             values.append(numbers(Origin(self.path.name), headers[want.index], column, want.channel))
@@ -91,12 +106,39 @@ def _load(path: Path, names: Sequence[str]) -> dict[str, Any]:
     return {name: value for name, value in loaded.items() if not name.startswith("__")}
 
 
-def _fields(structs: dict[str, Any]) -> Iterator[tuple[str, NDArray[Any]]]:
-    for name, value in structs.items():
-        if not isinstance(value, np.ndarray):
+def _one_clock(arrays: Iterable[tuple[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+    """Return the arrays by their names, the same time of several structs once."""
+    found: dict[str, NDArray[Any]] = {}
+    clocks: list[NDArray[Any]] = []
+    for name, array in arrays:
+        if name.endswith(".time"):
+            if any(np.array_equal(array, clock) for clock in clocks):
+                continue
+            clocks.append(array)
+        found[name] = array
+    return found
+
+
+def _fields(opened: Mapping[str, Any]) -> Iterator[tuple[str, NDArray[Any]]]:
+    """Yield the arrays of numbers in structs and cells, by their names in MATLAB; a signal that Simulink logged with
+    its time by its own name.
+    """
+    for name, value in opened.items():
+        if not isinstance(value, np.ndarray) or (value.dtype.hasobject and value.size > MOST_COLUMNS):
             continue
-        if value.dtype.names and value.size == 1:
-            inner = value.reshape(-1)[0]
-            yield from _fields({f"{name}.{field}": inner[field] for field in value.dtype.names})
-        elif value.dtype.names is None and value.ndim == 2:
+        one, inner = value.size == 1, value.ravel(order="F")
+        if value.dtype.names:
+            for i, struct in enumerate(inner, 1):
+                own = name if one else f"{name}({i})"
+                fields = {f"{own}.{field}": struct[field] for field in value.dtype.names}
+                if set(LOGGED) <= set(value.dtype.names):
+                    logged = struct["signals"].ravel(order="F")
+                    fields = {f"{own}.time": struct["time"]}
+                    numbered = {f"{own}({j})": signal for j, signal in enumerate(logged, 1)}
+                    signals = {own: logged[0]} if len(logged) == 1 else numbered
+                    fields |= {n: signal["values"] for n, signal in signals.items()}
+                yield from _fields(fields)
+        elif value.dtype.hasobject:
+            yield from _fields({name if one else f"{name}{{{i}}}": cell for i, cell in enumerate(inner, 1)})
+        elif value.dtype.kind in "fiub":
             yield name, value

@@ -27,6 +27,36 @@ class TestMatlab:
         named = {"time": "m:0", "deflection": "m:1", "force": "m:2"}
         assert_the_recording(read_recording(tmp_path / "a.mat", columns=named, units=UNITS, radius="flat"))
 
+    def test_fields_of_a_struct_are_known_by_their_own_names(self, tmp_path: Path) -> None:
+        run = {"time": TIME, "deflection_mm": DEFLECTION, "force_kN": FORCE, "operator": "N. N."}
+        scipy.io.savemat(tmp_path / "a.mat", {"run": run})
+        assert_the_recording(read_recording(tmp_path / "a.mat", units={"time": "s"}, radius="flat"))
+
+    def test_structs_in_an_array_are_trials(self, tmp_path: Path) -> None:
+        kind = [("time", "O"), ("deflection", "O"), ("force", "O")]
+        runs = np.array([(TIME, DEFLECTION, k * FORCE) for k in (3.0, 1.0)], dtype=kind)
+        scipy.io.savemat(tmp_path / "a.mat", {"run": runs})
+        assert "2 trials" in refusal(tmp_path / "a.mat", units=UNITS)
+        second = read_recording(f"{tmp_path / 'a.mat'}@trial2", units=UNITS, radius="flat")
+        np.testing.assert_allclose(second.force, 1e3 * FORCE, rtol=3e-16)
+
+    def test_vectors_in_cells(self, tmp_path: Path) -> None:
+        forces = np.empty((1, 3), dtype=object)
+        forces[0, :] = ["kN", 2.0 * FORCE, FORCE]
+        scipy.io.savemat(tmp_path / "a.mat", {"time": TIME, "deflection": DEFLECTION, "f": forces})
+        named = {"force": "f{3}"}
+        assert_the_recording(read_recording(tmp_path / "a.mat", columns=named, units=UNITS, radius="flat"))
+
+    def test_signals_that_simulink_logged_each_with_the_same_time(self, tmp_path: Path) -> None:
+        """Its "structure with time": a scalar signal is 1 x 1 x samples, the clock stands beside every signal."""
+
+        def logged(values: np.ndarray) -> dict[str, object]:
+            signal = {"values": values.reshape(1, 1, -1), "dimensions": np.array([1.0, 1.0]), "label": ""}
+            return {"time": TIME, "signals": signal, "blockName": "model/To Workspace"}
+
+        scipy.io.savemat(tmp_path / "a.mat", {"deflection": logged(DEFLECTION), "force": logged(FORCE)})
+        assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
+
     def test_vectors_of_unequal_length_are_refused(self, tmp_path: Path) -> None:
         scipy.io.savemat(tmp_path / "a.mat", {"time": TIME, "deflection": DEFLECTION, "force": FORCE[::2]})
         assert "unequal numbers of samples ('time' 200, 'deflection' 200, 'force' 100)" in refusal(
