@@ -3,6 +3,9 @@
 Detents, magnets and a snap-through rise and fall with the deflection. Friction, damping and relaxation differ in and
 out, so the error of the law is averaged over the deflection for either way, and what both averages have in common is
 looked at. A straight line over the deflection is left out: a spring or a moved mass has it.
+
+A loop has two forces at one deflection but for its turns, where the two ways meet: `loop_state` goes from one to the
+other as dry friction does.
 """
 
 from __future__ import annotations
@@ -50,6 +53,28 @@ def common_curve(recordings: Sequence[Recording], tire: TireModel) -> tuple[floa
     common = float(np.sum(weight * into * out))
     own = float(np.sqrt(np.sum(weight * into**2) * np.sum(weight * out**2)))
     return (float(np.sqrt(common)) if common > COMMON * own else 0.0), float(np.std(spring))
+
+
+def passed_both_ways(recordings: Sequence[Recording]) -> bool:
+    """Return whether most places of the deflection are passed in and out."""
+    x = np.concatenate([r.deflection for r in recordings])
+    way = np.concatenate([branches(r.time, r.deflection) for r in recordings])
+    place = np.minimum((PLACES * (x - x.min()) / max(float(np.ptp(x)), 1e-300)).astype(int), PLACES - 1)
+    seen = [np.bincount(place[way == side], minlength=PLACES) > 0 for side in (LOADING, UNLOADING)]
+    return bool(2 * np.count_nonzero(seen[0] & seen[1]) > np.count_nonzero(seen[0] | seen[1]))
+
+
+def loop_state(deflection: Array, reach: float) -> Array:
+    """Return the state u of a loop along a deflection (n,), from -1 on the way out to 1 on the way in.
+
+    du = dx / reach within these limits: dry friction behind a spring (J. Jenkin's element; W. D. Iwan, J. Appl. Mech.
+    33 (1966) 893-900). It begins at 0; reach: in the unit of the deflection
+    """
+    found, state = [], 0.0
+    for step in np.diff(deflection, prepend=deflection[0]).tolist():
+        state = min(1.0, max(-1.0, state + step / reach))
+        found.append(state)
+    return np.array(found)
 
 
 def _means(values: Array, place: NDArray[np.intp]) -> Array:

@@ -9,7 +9,8 @@ Deflection x and force F may have both signs. All samples count alike.
     power_preload F = F0 + A sign(x) |x|^B
     power_gap     F = A max(x - x0, 0)^B
     polynomial    F = F0 + k1 x + k2 x^2 + k3 x^3
-    piecewise     straight lines between the forces at x1 ... xn, which divide the samples alike; n by the criterion
+    piecewise     straight lines between the forces at x1 ... xn, along the curve; n by the criterion. Where most places
+                  are passed in and out, within the loop F + u (a + b F) of dry friction, u from -1 (out) to 1 (in)
     mf_tyre       F = (q1 x + q2 x^2) (1 + p dp)         dp = pressure over the mean one, less 1, where it was recorded
 
 mf_tyre is the vertical force of MF-Tyre without speed and camber: H. Pacejka, "Tire and Vehicle Dynamics", 3rd ed.
@@ -30,6 +31,7 @@ from ..errors import TirelabError
 from ..preprocessing.spread import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
+from .both_ways import loop_state, passed_both_ways
 from .misfit import SAMPLES_LEAST, THIRD
 from .surfaces import CM_PER_M
 
@@ -45,6 +47,11 @@ a part has some."""
 SAMPLES_OF_LINE = 8
 """Fewest samples of one of many lines: four for each of its two numbers. A place is one of as many parts of a line."""
 
+PASSES = 5
+"""Number of fits of lines beside a loop that is in proportion to them."""
+
+REACHES = (0.001, 0.002, 0.003, 0.004, 0.006, 0.01, 0.015, 0.02, 0.03, 0.05, 0.1, 0.2)
+"""Parts of the range of the deflection over which a loop may go from one way to the other after a turn."""
 
 UNSEEN = 1e-9
 """Part of what a law leaves by which a constant moves its force at most where the recordings do not determine it."""
@@ -80,12 +87,17 @@ class LawFit:
 
 @dataclass(frozen=True)
 class _Samples:
-    """Deflection [cm] and force [N] of all recordings together, pressure [Pa] or None."""
+    """Deflection [cm] and force [N] of all recordings together, pressure [Pa] or None.
+
+    each [cm]: deflection of each recording; both_ways: whether most places are passed in and out
+    """
 
     x: Array
     force: Array
     pressure: Array | None
     begins: float
+    each: tuple[Array, ...]
+    both_ways: bool
 
 
 def fit_laws(recordings: Sequence[Recording]) -> tuple[LawFit, ...]:
@@ -130,12 +142,14 @@ def _samples(recordings: Sequence[Recording]) -> _Samples:
             f"the recordings were made on {radii.size} surfaces; the laws are compared on one surface at a time"
         )
     step = max(1, sum(len(r) for r in recordings) // SAMPLES_MOST)
-    x = np.concatenate([r.deflection[::step] for r in recordings])
+    each = tuple(CM_PER_M * r.deflection[::step] for r in recordings)
+    x = np.concatenate(each)
     force = np.concatenate([r.force[::step] for r in recordings])
     pressures = [r.pressure[::step] for r in recordings if r.pressure is not None]
     pressure = np.concatenate(pressures) if len(pressures) == len(recordings) else None
-    zero = force_begins(x, force, np.zeros_like(x))
-    return _Samples(CM_PER_M * x, force, pressure, 0.0 if zero is None else CM_PER_M * zero.begins)
+    zero = force_begins(x / CM_PER_M, force, np.zeros_like(x))
+    begins = 0.0 if zero is None else CM_PER_M * zero.begins
+    return _Samples(x, force, pressure, begins, each, passed_both_ways(recordings))
 
 
 def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fitted: _Fitted) -> LawFit:
@@ -154,8 +168,13 @@ def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fi
         (symbol, float(value * factor), float(abs(factor) * deviation), unit)
         for (symbol, factor, unit), value, deviation in zip(symbols, values, spread, strict=True)
     )
-    rmse = (squares / n) ** 0.5
-    return LawFit(name, constants, rmse, n * float(np.log(max(squares / n, 1e-300))) + k * float(np.log(n)))
+    return LawFit(name, constants, *_left(residual, k))
+
+
+def _left(residual: Array, count: int) -> tuple[float, float]:
+    """Return the root mean square of a residual [N], and the criterion of a law of so many constants."""
+    mean, n = float(np.mean(residual**2)), residual.size
+    return mean**0.5, n * float(np.log(max(mean, 1e-300))) + count * float(np.log(n))
 
 
 _Fitted = tuple[Array, Array]
@@ -186,17 +205,38 @@ def _polynomial(s: _Samples) -> LawFit:
 
 def _piecewise(s: _Samples) -> LawFit:
     few = [n for n in LINES if n == LINES[0] or SAMPLES_OF_LINE * n <= s.x.size]
-    return min((_lines(s, n) for n in few), key=lambda fit: fit.bic)
+    best = min((_lines(s, n, None) for n in few), key=lambda pair: pair[0])
+    if s.both_ways:
+        # At a turn the two ways meet: lines through all samples follow the way in there, and the middle elsewhere.
+        count, span = len(best[1].at) - 1, float(np.ptp(s.x))
+        states = (np.concatenate([loop_state(x, reach * span) for x in s.each]) for reach in REACHES)
+        _, state = min(((_lines(s, count, u)[0], u) for u in states), key=lambda pair: pair[0])
+        best = min((best, *(_lines(s, n, state) for n in few)), key=lambda pair: pair[0])
+    return best[1]
 
 
-def _lines(s: _Samples, count: int) -> LawFit:
+def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]:
+    """Return straight lines, and the criterion of them together with the loop whose state (n,) is given, if one is."""
     knots = _knots(s, count)
-    hats = [np.interp(s.x, knots, np.eye(knots.size)[i]) for i in range(knots.size)]
-    values, fitted = _lstsq(hats, s)
+    hats, n = _hats(s.x, knots), knots.size
+    values, (residual, matrix) = _lstsq(hats, s)
+    if state is not None:
+        for _ in range(PASSES):
+            # The loop is in proportion to the lines themselves: to those of the pass before.
+            in_proportion = state * (matrix[:, :n] @ values[:n])
+            values, (residual, matrix) = _lstsq([*hats, state, in_proportion], s)
     digits = 3 if count == LINES[0] else 9  # so that near ones have different symbols
     units = [(f"F({10.0 * knot:.{digits}g} mm)", 1.0, "N") for knot in knots]
     at = tuple(float(knot) / CM_PER_M for knot in knots)
-    return replace(_fit("piecewise", units, values, fitted), at=at)
+    loop = (("a", 1.0, "N"), ("b", 1.0, "1"))[: values.size - n]
+    fit = _fit("piecewise", [*units, *loop], values, (residual, matrix))
+    left, criterion = _left(s.force - matrix[:, :n] @ values[:n], n)
+    return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at)
+
+
+def _hats(x: Array, knots: Array) -> list[Array]:
+    """Return for each knot the function (n,) that is 1 there, 0 at the others, and straight between."""
+    return [np.interp(x, knots, hat) for hat in np.eye(knots.size)]
 
 
 def _knots(s: _Samples, count: int) -> Array:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from part_readings import BOTH, MADE, X, recording
 from tirelab.errors import TirelabError
+from tirelab.identification.both_ways import loop_state
 from tirelab.identification.part_laws import fit_laws
 from tirelab.identification.table import law_table, with_uncertainty
 from tirelab.recordings.recording import Recording
@@ -44,6 +45,24 @@ def test_a_curve_has_its_corners_where_the_force_changes() -> None:
     # Corners every tenth of the way miss the yield by 2.4 kN over a part of it: more than 300 N of all.
     assert found.rmse < 60.0
     assert found.at[1] == pytest.approx(1e-4, rel=0.05)
+
+
+def test_a_curve_is_the_middle_of_a_loop_at_its_turns_too() -> None:
+    """Dry friction of 20 N and a fifth of the force, which turns within 0.2 mm: 120 N to either side at the top.
+
+    Lines through all samples are off by half of that there; the reach is one of a few, so a tenth may remain.
+    """
+    way = np.linspace(0.0, 0.02, 1500)
+    x = np.concatenate([way, way[::-1], way, way[::-1]])
+    elastic = 1.5e4 * x + 5e5 * x**2
+    force = elastic + loop_state(x, 1e-4) * (20.0 + 0.2 * elastic)
+    found = {fit.name: fit for fit in fit_laws([recording(x, force)])}["piecewise"]
+    middle = np.interp(way, found.at, [value for _, value, _, _ in found.constants])
+    assert middle == pytest.approx(1.5e4 * way + 5e5 * way**2, abs=12.0)
+    # What is stated to be left is what the curve alone leaves: the loop.
+    assert found.rmse == pytest.approx(
+        float(np.sqrt(np.mean((force - np.interp(x, way, middle)) ** 2))), rel=0.01
+    )
 
 
 def test_few_deflections_far_apart_have_laws() -> None:
