@@ -239,30 +239,53 @@ def _apart(misfits: Sequence[FloatArray], states: Sequence[IndexArray]) -> Float
 
 
 def _as_if(recording: Recorded, moved: SmoothedMotion, tire: TireModel, alike: BoolArray, own: float) -> str:
-    """Return the one change of a recording that makes it agree with the tire of the others; empty where none does.
+    """Return the one change of a recording that makes it agree with the tire of the others, or where none does another
+    zero and another stiffness together, as another part has them; empty where these do not either.
 
     It agrees if less than EXPLAINED is left of the error `own` [N].
     """
-    force = simulate(tire, moved, moved)
-    missed = recording.force - force
-
-    def left_at(shift: float) -> float:
-        nearer = replace(moved, deflection=moved.deflection - shift)
-        return rmse([(recording.force - simulate(tire, nearer, nearer))[alike]])
-
+    read = recording.force[alike]
     reach = 0.5 * float(np.ptp(moved.deflection))
-    shift = minimize_scalar(left_at, bounds=(-reach, reach), method="bounded")
-    offset = float(missed[alike].mean())
-    factor = float(force[alike] @ missed[alike]) / max(float(force[alike] @ force[alike]), 1e-300)
-    whose, more = f"of {recording.name}", "more" if factor > 0.0 else "less"
+
+    def shifted(by: float) -> FloatArray:
+        nearer = replace(moved, deflection=moved.deflection - by)
+        return np.asarray(simulate(tire, nearer, nearer)[alike])
+
+    def times(force: FloatArray) -> float:
+        return float(force @ read) / max(float(force @ force), 1e-300)
+
+    def at_best(left: Callable[[FloatArray], float]) -> tuple[float, float]:
+        found = minimize_scalar(lambda by: left(shifted(by)), bounds=(-reach, reach), method="bounded")
+        return float(found.fun), float(found.x)
+
+    def zero(by: float) -> str:
+        return f"the zero of the deflection of {recording.name} were {1e3 * abs(by):#.3g} mm off"
+
+    force = shifted(0.0)
+    offset, factor = float(np.mean(read - force)), times(force)
+    left, shift = at_best(lambda there: rmse([read - there]))
     changes = [
-        (float(shift.fun), f"the zero of the deflection {whose} were {1e3 * abs(shift.x):#.3g} mm off"),
-        (rmse([missed[alike] - offset]), f"the zero of the force {whose} were {newtons(abs(offset))} off"),
+        (left, zero(shift)),
+        (
+            rmse([read - force - offset]),
+            f"the zero of the force of {recording.name} were {newtons(abs(offset))} off",
+        ),
     ]
-    if factor > -1.0:  # no part's force is that of another one turned round
-        percent = f"{100.0 * factor:.0f}" if factor > 1.0 else f"{100.0 * abs(factor):.2g}"
+    if factor > 0.0:  # no part's force is that of another one turned round
         by = "pressure or tire" if tire.inflated else "part"
-        told = f"the force {whose} were {percent} % {more}, by another {by}"
-        changes.append((rmse([(missed - factor * force)[alike]]), told))
+        told = f"the force of {recording.name} were {_more(factor)}, by another {by}"
+        changes.append((rmse([read - factor * force]), told))
     left, change = min(changes)
+    if left >= EXPLAINED * own:  # another part has another zero, too
+        left, shift = at_best(lambda there: rmse([read - times(there) * there]))
+        factor = times(shifted(shift))
+        if factor <= 0.0:
+            return ""
+        change = f"{zero(shift)} and its force {_more(factor)}"
     return f"It is as if {change}." if left < EXPLAINED * own else ""
+
+
+def _more(factor: float) -> str:
+    """Return in words by how much a force is larger: "12 % more"."""
+    percent = 100.0 * abs(factor - 1.0)
+    return f"{percent:{'.0f' if percent > 100.0 else '.2g'}} % {'more' if factor > 1.0 else 'less'}"

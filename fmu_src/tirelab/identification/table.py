@@ -93,6 +93,8 @@ def with_uncertainty(value: float, uncertainty: float) -> str:
     if uncertainty < 1e-6 * abs(value):
         return f"{digits(value, 6)} ± {uncertainty:.0e}"
     places = 1 - math.floor(math.log10(uncertainty))
+    if places < -6:  # beyond what anybody counts the noughts of
+        return f"{digits(value, 2)} ± {digits(uncertainty, 2)}"
     if places <= 0:
         return f"{round(value, places):.0f} ± {round(uncertainty, places):.0f}"
     return f"{value:.{places}f} ± {uncertainty:.{places}f}"

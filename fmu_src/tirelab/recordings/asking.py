@@ -332,8 +332,8 @@ def _guessed_columns(
             guessed["time"] = clocks[0]
             free = [i for i in free if i != clocks[0]]
     known = [*guessed.values(), *(index for index in taken if index in values)]
-    if known:
-        free = [i for i in free if len(values[i]) == len(values[known[0]])]
+    samples = len(values[known[0]]) if known else max((len(values[i]) for i in free), default=0)
+    free = [i for i in free if len(values[i]) == samples]
     for name in ("deflection", "force"):
         fits = [i for i in free if _states(headers[i], name)]
         axes = {_axis(headers[matches[other].index]) for other in ("deflection", "force") if other in matches}

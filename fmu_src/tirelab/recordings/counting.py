@@ -87,7 +87,9 @@ def count_from_zero(
         return Counted(gauges, tuple(notes), _asked(values, gauges, likely, why, settings))
     if (signs.doubt and not of_part) or turned & given:
         why = signs.doubt or f"{' and '.join(sorted(turned))} would have to be turned"
-        return Counted(gauges, tuple(notes), _asked(values, gauges, signs, why, settings))
+        # A sign that is given stays: then the other channel is the one to turn.
+        likely = Signs(-signs.deflection, -signs.force) if turned & given else signs
+        return Counted(gauges, tuple(notes), _asked(values, gauges, likely, why, settings))
     for name in sorted(turned):
         values[name] = 0.0 - values[name]
     if turned:

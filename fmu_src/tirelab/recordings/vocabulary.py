@@ -201,7 +201,10 @@ SHORTEST = 4
 
 _SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
-_COUNTED = re.compile(r"(?P<name>.*?[^\W\d_])(?:[ ._#-]*\d+|_duplicated_\d+)")
+_COUNTED = re.compile(
+    r"(?P<name>.*?[^\W\d_])(?:(?:[ ._#-]+(?:run|trial|test|versuch|essai|ensayo|prova))?[ ._#-]*\d+|_duplicated_\d+)",
+    re.IGNORECASE,
+)
 
 
 def plain(name: str) -> str:
@@ -257,7 +260,7 @@ def is_strained(name: str) -> bool:
 
 
 def without_count(name: str) -> str | None:
-    """Return a name without the number that counts a trial: `Kraft 2`, `Kraft.1`; None where it has none."""
+    """Return a name without the number of its trial: `Kraft 2`, `Kraft.1`, `Force Run 3`; None where it has none."""
     found = _COUNTED.fullmatch(name.strip())
     return found["name"].strip() if found else None
 

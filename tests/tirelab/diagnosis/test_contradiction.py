@@ -181,6 +181,20 @@ def test_a_held_out_recording_that_no_zero_and_no_factor_reconciles_is_not_named
     assert verdict.contradiction is None
 
 
+def test_a_held_out_recording_of_another_part_has_another_zero_and_another_stiffness() -> None:
+    """4 mm nearer and 30 % softer: neither alone explains half of it, both together all but the noise."""
+    verdict = diagnose(
+        [pressed("a", 1), pressed("b", 2)],
+        TIRE,
+        held_out=[pressed("other", 3, 385.0, zero=-4e-3)],
+        catalogue=FEW,
+    )
+    assert verdict.contradiction is not None
+    assert verdict.contradiction.names == ("other",)
+    assert verdict.contradiction.as_if.startswith("It is as if the zero of the deflection of other were 4.0")
+    assert verdict.contradiction.as_if.endswith(" mm off and its force 30 % less.")
+
+
 def test_no_factor_turns_a_force_round() -> None:
     """A part that is driven beyond the resonance of its mass: its force has the other sign, which no other part has."""
     part = TireModel(PowerLaw(550.0, 1.42), tested_range=None, two_sided=True, inflated=False)

@@ -22,6 +22,8 @@ def test_a_part_that_is_only_pulled_has_its_line_too(start: float) -> None:
     # the laws with a gap have no force here, so nothing determines their constants
     assert law_table(tuple(fits.values())).row_count == len(fits)
     assert with_uncertainty(0.0, 0.0) == "0 ± 0"
+    assert "00000" not in with_uncertainty(1.3e27, 1.6e28)
+    assert with_uncertainty(1234567.0, 25000.0) == "1235000 ± 25000"
 
 
 def test_the_corners_of_a_curve_do_not_lie_in_holds() -> None:

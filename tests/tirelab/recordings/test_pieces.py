@@ -139,6 +139,15 @@ class TestTrials:
         first = read_recording(f"{side_by_side}@trial1", radius="flat")
         np.testing.assert_allclose(first.deflection, np.round(10 * deflection, 3) / 1000.0)
 
+    def test_a_number_behind_the_unit_counts_a_trial_too(self, tmp_path: Path) -> None:
+        """As a school's data logger writes them: `Force (N) Run 2`."""
+        time, deflection, force = loading()
+        names = ",".join(f"Time (s) Run {n},Force (N) Run {n},Position (mm) Run {n}" for n in (1, 2))
+        rows = (time, force, 10.0 * deflection, time, 2.0 * force, 10.0 * deflection)
+        path = write_rows(tmp_path / "a.csv", names, *rows)
+        first, second = (read_recording(f"{path}@trial{n}", radius="flat") for n in (1, 2))
+        np.testing.assert_allclose(second.force, 2.0 * first.force, atol=0.011)  # six digits
+
     def test_none_is_chosen_for_the_user(self, side_by_side: Path) -> None:
         with pytest.raises(
             RecordingError, match=r"holds 2 trials side by side; name one: both\.csv@trial1 to"

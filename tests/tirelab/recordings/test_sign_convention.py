@@ -75,6 +75,14 @@ class TestSigns:
         np.testing.assert_allclose(recording.force, force, rtol=1e-5)
         assert recording.doubts == ()
 
+    def test_a_sign_that_is_given_stays_in_the_command_that_is_proposed(self, tmp_path: Path) -> None:
+        """A muscle that pulls while its gauge counts down: turned as asked, the force has to be turned, too."""
+        time, deflection, force = loading(201)
+        path = write_rows(tmp_path / "a.csv", "Time (s),z (mm),Load (N)", time, 10.0 * deflection, force)
+        columns = {"deflection": "-z", "force": "Load"}
+        with pytest.raises(RecordingError, match=r"--columns 'deflection=-z.*,force=-Load.*'"):
+            Reading(part=True, columns=columns)(path)
+
     def test_a_part_that_is_loaded_the_other_way_and_breaks_is_turned(self, tmp_path: Path) -> None:
         """After the break the force says nothing of the deflection, which goes on; under load both are negative."""
         time = np.arange(400) / 10.0

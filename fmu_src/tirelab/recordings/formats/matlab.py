@@ -44,7 +44,7 @@ class MatlabTable:
         self.path = path
         # Variables are opened one by one: the shapes say which may be channels before anything is loaded.
         with reading_with(path, "a .mat file"):
-            self.shapes = [(name, shape, kind) for name, shape, kind in _scipy_io().whosmat(str(path))]
+            self.shapes = _shapes(path)
             opened = [name for name, _, kind in self.shapes if kind in ("struct", "cell")]
             self.opened = _one_clock(_fields(_load(path, opened))) if opened else {}
         self.columns: list[tuple[str, int | None]] = []
@@ -99,11 +99,24 @@ def _scipy_io() -> Any:
     return scipy.io
 
 
+def _shapes(path: Path) -> list[tuple[str, tuple[int, ...], str]]:
+    """Return name, shape and kind of the variables, of a file with an object of a class those of its arrays."""
+    try:
+        return [*_scipy_io().whosmat(str(path))]
+    except TypeError:  # SciPy does not list such a file, but loads the rest of it
+        loaded: dict[str, Any] = _scipy_io().loadmat(str(path))
+    opaque = _scipy_io().matlab.MatlabOpaque
+    arrays = [(n, v) for n, v in loaded.items() if isinstance(v, np.ndarray) and not isinstance(v, opaque)]
+    return [
+        (n, v.shape, "struct" if v.dtype.names else "cell" if v.dtype.hasobject else "") for n, v in arrays
+    ]
+
+
 def _load(path: Path, names: Sequence[str]) -> dict[str, Any]:
     if not names:
         return {}
     loaded: dict[str, Any] = _scipy_io().loadmat(str(path), variable_names=list(names))
-    return {name: value for name, value in loaded.items() if not name.startswith("__")}
+    return {name: value for name, value in loaded.items() if name in names}
 
 
 def _one_clock(arrays: Iterable[tuple[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:

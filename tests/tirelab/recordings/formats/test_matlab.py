@@ -57,6 +57,23 @@ class TestMatlab:
         scipy.io.savemat(tmp_path / "a.mat", {"deflection": logged(DEFLECTION), "force": logged(FORCE)})
         assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
 
+    def test_a_file_with_an_object_of_a_class_is_read_without_it(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """SciPy cannot list a file that holds a `tcpip` or a `table`, and loads the object as something opaque."""
+        run = {"time": TIME, "deflection": DEFLECTION, "force": FORCE}
+        scipy.io.savemat(tmp_path / "a.mat", {"run": run, "rig": 5.0})
+        kind = [(name, "O") for name in ("s0", "s1", "s2", "arr")]
+        opaque = scipy.io.matlab.MatlabOpaque(np.array([(b"t", b"MCOS", b"tcpip", FORCE)], dtype=kind))
+        loadmat = scipy.io.loadmat
+
+        def unlisted(path: str) -> None:
+            raise TypeError("'NoneType' object is not iterable")
+
+        monkeypatch.setattr(scipy.io, "whosmat", unlisted)
+        monkeypatch.setattr(scipy.io, "loadmat", lambda *a, **more: {**loadmat(*a, **more), "None": opaque})
+        assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
+
     def test_vectors_of_unequal_length_are_refused(self, tmp_path: Path) -> None:
         scipy.io.savemat(tmp_path / "a.mat", {"time": TIME, "deflection": DEFLECTION, "force": FORCE[::2]})
         assert "unequal numbers of samples ('time' 200, 'deflection' 200, 'force' 100)" in refusal(
