@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
+from ..preprocessing.motion import branches as cycles
 from ..recordings.recording import Recording
 from .branches import LOADING, UNLOADING, branches
 from .surfaces import CM_PER_M
@@ -44,7 +45,7 @@ def common_curve(recordings: Sequence[Recording], tire: TireModel) -> tuple[floa
     ways = [way == side for side in (LOADING, UNLOADING)]
     both = np.minimum(*(np.bincount(place[w], minlength=PLACES) for w in ways))
     passed = np.flatnonzero(both)
-    if passed.size < PLACES_LEAST:
+    if passed.size < PLACES_LEAST or not _in_every_cycle(recordings, error, place):
         return 0.0, float(np.std(spring))
     weight = both[passed] / both.sum()
     into, out = (
@@ -62,6 +63,24 @@ def passed_both_ways(recordings: Sequence[Recording]) -> bool:
     place = np.minimum((PLACES * (x - x.min()) / max(float(np.ptp(x)), 1e-300)).astype(int), PLACES - 1)
     seen = [np.bincount(place[way == side], minlength=PLACES) > 0 for side in (LOADING, UNLOADING)]
     return bool(2 * np.count_nonzero(seen[0] & seen[1]) > np.count_nonzero(seen[0] | seen[1]))
+
+
+def _in_every_cycle(recordings: Sequence[Recording], error: Array, place: NDArray[np.intp]) -> bool:
+    """Return whether every other cycle has the errors (n,) at the places (n,) that the others have; True where these
+    are not passed again.
+
+    A part that creeps passes other places in each cycle: what its cycles have apart would pass for a curve of them.
+    """
+    odd = np.concatenate([cycles(r.deflection, 0.0)[1] % 2 == 1 for r in recordings])
+    count = np.minimum(*(np.bincount(place[own], minlength=PLACES) for own in (odd, ~odd)))
+    passed = np.flatnonzero(count)
+    if passed.size < PLACES_LEAST:
+        return True
+    weight = count[passed] / count.sum()
+    means = (_means(error[own], place[own])[passed] for own in (odd, ~odd))
+    one, other = (mean - weight @ mean for mean in means)
+    own = float(np.sqrt(np.sum(weight * one**2) * np.sum(weight * other**2)))
+    return float(np.sum(weight * one * other)) > COMMON * own
 
 
 def loop_state(deflection: Array, reach: float) -> Array:
