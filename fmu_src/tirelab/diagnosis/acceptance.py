@@ -10,12 +10,12 @@ where the others leave as little without it.
 Recordings given as held-out are used where there are any; they had a part in the ranking too, though nothing is fitted
 to them (`estimation.ranking`). Without any, the accepted effects are fitted once more without one part of the data,
 which is then simulated from its true history: a whole recording, the last one first, or the end of each recording that
-holds the last part of the misfit. The part has to be driven like the data that stay fitted: on the same surfaces, at
-depths and speeds and after rests within a factor of two, and where the set explains at least half as much; otherwise
-its error is one of extrapolation and refutes nothing. So do samples deeper than all that stay fitted on their surface:
-those of a recording's end are fitted too. The set also has to change the force in the part, or it proves nothing. Where
-no part fulfils this, the end of each kind of driving is held out, surface by surface. The effects were chosen on all of
-the data; the parameters were fitted without the held-out part.
+holds the last part of the misfit. The part has to be driven like the data that stay fitted: on the same surfaces, in
+the same direction, at depths and speeds and after rests within a factor of two, and where the set explains at least
+half as much; otherwise its error is one of extrapolation and refutes nothing. So do samples deeper than all that stay
+fitted on their surface: those of a recording's end are fitted too. The set also has to change the force in the part, or
+it proves nothing. Where no part fulfils this, the end of each kind of driving is held out, surface by surface. The
+effects were chosen on all of the data; the parameters were fitted without the held-out part.
 """
 
 from __future__ import annotations
@@ -161,8 +161,8 @@ def split(
 def _ways(
     recordings: Sequence[Recorded], motions: Sequence[Motion], surfaces: Sequence[IndexArray]
 ) -> list[IndexArray]:
-    """Return a number for the kind of driving at each sample: the same on one surface, at depths and speeds within one
-    factor of two and, at rest, after rests within one factor of two.
+    """Return a number for the kind of driving at each sample: the same on one surface in one direction, at depths and
+    speeds within one factor of two and, at rest, after rests within one factor of two.
     """
     deepest = max(float(np.abs(m.deflection).max()) for m in motions)
     fastest = max(float(np.abs(m.rate).max()) for m in motions)
@@ -171,7 +171,8 @@ def _ways(
     rested = [_rested(r.time, s == HALVINGS - 1) for r, s in zip(recordings, speeds, strict=True)]
     longest = max(float(r.max()) for r in rested)
     found = []
-    for way, motion, speed, rest in zip(surfaces, motions, speeds, rested, strict=True):
+    for surface, motion, speed, rest in zip(surfaces, motions, speeds, rested, strict=True):
+        way = 2 * surface + (motion.direction > 0.0)
         for part in (speed, _halvings(rest, longest)) if timed else ():
             way = way * HALVINGS + part
         found.append(np.asarray(way * HALVINGS + _halvings(motion.deflection, deepest)))
@@ -268,7 +269,8 @@ def _shows_as_much(
     each, other = (
         np.maximum(e, 0.0) / np.maximum(n, 1) for e, n in zip((fitted, held_out), samples, strict=True)
     )
-    alike = 4.0 * each >= other
+    # The way back of one loop is not driven like what stays fitted of it, its first few samples.
+    alike = (4.0 * each >= other) & (samples[0] >= NEGLIGIBLE * samples[1])
     whole = np.maximum(all_of_it, 0.0).sum()
     return bool(
         np.sum(~fits & inside) >= FEWEST_EVENTS
