@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from ..errors import TirelabError
 from ..preprocessing.spread import robust_sigma
@@ -47,11 +48,12 @@ a part has some."""
 SAMPLES_OF_LINE = 8
 """Fewest samples of one of many lines: four for each of its two numbers. A place is one of as many parts of a line."""
 
-PASSES = 5
-"""Number of fits of lines beside a loop that is in proportion to them."""
+PASSES = 6
+"""Number of steps in which lines and a loop in proportion to them are fitted."""
 
-REACHES = (0.001, 0.002, 0.003, 0.004, 0.006, 0.01, 0.015, 0.02, 0.03, 0.05, 0.1, 0.2)
-"""Parts of the range of the deflection over which a loop may go from one way to the other after a turn."""
+REACHES, REACH_KNOWN = (0.001, 0.003, 0.01, 0.03, 0.1), 0.02
+"""Parts of the range of the deflection over which a loop may go half from one way to the other after a turn, of which
+the best is looked for further, to so much of itself."""
 
 UNSEEN = 1e-9
 """Part of what a law leaves by which a constant moves its force at most where the recordings do not determine it."""
@@ -208,11 +210,27 @@ def _piecewise(s: _Samples) -> LawFit:
     best = min((_lines(s, n, None) for n in few), key=lambda pair: pair[0])
     if s.both_ways:
         # At a turn the two ways meet: lines through all samples follow the way in there, and the middle elsewhere.
-        count, span = len(best[1].at) - 1, float(np.ptp(s.x))
-        states = (np.concatenate([loop_state(x, reach * span) for x in s.each]) for reach in REACHES)
-        _, state = min(((_lines(s, count, u)[0], u) for u in states), key=lambda pair: pair[0])
+        state = _loop_state(s, len(best[1].at) - 1)
         best = min((best, *(_lines(s, n, state) for n in few)), key=lambda pair: pair[0])
     return best[1]
+
+
+def _loop_state(s: _Samples, count: int) -> Array:
+    """Return the state (n,) of the loop beside which so many lines have the least criterion."""
+    span = float(np.ptp(s.x))
+
+    def state(reach: float) -> Array:
+        return np.concatenate([loop_state(x, np.exp(reach) * span) for x in s.each])
+
+    def criterion(reach: float) -> float:
+        return _lines(s, count, state(reach))[0]
+
+    tried = np.log(REACHES)
+    best = int(np.argmin([criterion(reach) for reach in tried.tolist()]))
+    near = tried[max(best - 1, 0)], tried[min(best + 1, tried.size - 1)]
+    return state(
+        float(minimize_scalar(criterion, bounds=near, method="bounded", options={"xatol": REACH_KNOWN}).x)
+    )
 
 
 def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]:
@@ -220,17 +238,18 @@ def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]
     knots = _knots(s, count)
     hats, n = _hats(s.x, knots), knots.size
     values, (residual, matrix) = _lstsq(hats, s)
-    if state is not None:
-        for _ in range(PASSES):
-            # The loop is in proportion to the lines themselves: to those of the pass before.
-            in_proportion = state * (matrix[:, :n] @ values[:n])
-            values, (residual, matrix) = _lstsq([*hats, state, in_proportion], s)
+    lines, share = np.stack(hats, axis=1), 0.0
+    for u in [] if state is None else [state] * PASSES:
+        # Gauss and Newton: the last column changes the share b of the loop, whose product with the lines is no column.
+        in_proportion = [hat * (1.0 + share * u) for hat in hats]
+        values, (residual, matrix) = _lstsq([*in_proportion, u, u * (lines @ values[:n])], s)
+        share += float(values[-1])
     digits = 3 if count == LINES[0] else 9  # so that near ones have different symbols
     units = [(f"F({10.0 * knot:.{digits}g} mm)", 1.0, "N") for knot in knots]
     at = tuple(float(knot) / CM_PER_M for knot in knots)
     loop = (("a", 1.0, "N"), ("b", 1.0, "1"))[: values.size - n]
     fit = _fit("piecewise", [*units, *loop], values, (residual, matrix))
-    left, criterion = _left(s.force - matrix[:, :n] @ values[:n], n)
+    left, criterion = _left(s.force - lines @ values[:n], n)
     return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at)
 
 

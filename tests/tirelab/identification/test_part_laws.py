@@ -52,7 +52,7 @@ def test_a_curve_has_its_corners_where_the_force_changes() -> None:
 def test_a_curve_is_the_middle_of_a_loop_at_its_turns_too() -> None:
     """Dry friction of 20 N and a fifth of the force, which turns within 0.2 mm: 120 N to either side at the top.
 
-    Lines through all samples are off by half of that there; the reach is one of a few, so a tenth may remain.
+    Lines through all samples are off by half of that there, and 2 N of noise move ten lines by less than 1 N.
     """
     way = np.linspace(0.0, 0.02, 1500)
     x = np.concatenate([way, way[::-1], way, way[::-1]])
@@ -60,7 +60,7 @@ def test_a_curve_is_the_middle_of_a_loop_at_its_turns_too() -> None:
     force = elastic + loop_state(x, 1e-4) * (20.0 + 0.2 * elastic)
     found = {fit.name: fit for fit in fit_laws([recording(x, force)])}["piecewise"]
     middle = np.interp(way, found.at, [value for _, value, _, _ in found.constants])
-    assert middle == pytest.approx(1.5e4 * way + 5e5 * way**2, abs=12.0)
+    assert middle == pytest.approx(1.5e4 * way + 5e5 * way**2, abs=2.0)
     # What is stated to be left is what the curve alone leaves: the loop.
     assert found.rmse == pytest.approx(
         float(np.sqrt(np.mean((force - np.interp(x, way, middle)) ** 2))), rel=0.01
