@@ -14,7 +14,13 @@ from ..estimation.explanation import Explanation, catalogue_names, explain_misfi
 from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..estimation.ranking import MOST_WORK
 from ..planning.waveforms import Limits
-from ..preprocessing.data_checks import PoorRecording, check_recordings, check_signal, not_compared
+from ..preprocessing.data_checks import (
+    PoorRecording,
+    check_recordings,
+    check_signal,
+    not_compared,
+    outliers_told,
+)
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_timed, raw_dataset_of
 from ..recordings.zero import refuse_far_zeros
@@ -126,7 +132,7 @@ def diagnose(
         remainder=remainder,
         unexplained_by=unexplained,
         residual_models=models,
-        summary=" ".join([*sentences, *missing]),
+        summary=" ".join([*sentences, *missing, *outliers_told(fitted, explanation.noise_free)]),
         not_compared=missing,
         contradiction=contradiction,
         where=where,

@@ -18,7 +18,7 @@ from ..errors import TirelabError
 from .gauge import deflection_noise
 from .levels import white_level
 from .noise import FEWEST_EVENTS, STANDS_OUT
-from .samples import RawDataset, Recorded
+from .samples import RawDataset, Recorded, is_timed
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -200,6 +200,22 @@ def spikes(misfit: FloatArray) -> BoolArray:
         lone[end] = not lone[near] and abs(step) > far * max(level, abs(float(np.median(others))))
     # Frequent ones are noise of a part of the recording, such as the steps of a gauge while the tire moves.
     return lone if lone.mean() < RARE else np.zeros_like(lone)
+
+
+def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray]) -> tuple[str, ...]:
+    """Return a sentence on each recording with outliers; residuals [N]: of each, with a noise-free deflection."""
+    sentences = []
+    for r, residual in zip(recordings, residuals, strict=True):
+        lone = np.flatnonzero(spikes(residual))
+        if lone.size:
+            first = f"{float(r.time[lone[0]]):.4g} s" if is_timed([r]) else f"sample {lone[0] + 1}"
+            which = "sample stands" if lone.size == 1 else "samples stand"
+            where = f"at {first}" if lone.size == 1 else f"the first at {first}"
+            sentences.append(
+                f"In {r.name} {lone.size} single {which} out from both neighbours, {where}: false readings, or a "
+                "channel that hangs for a moment. The verdict does not rest on them."
+            )
+    return tuple(sentences)
 
 
 def are_rare(lone: BoolArray) -> bool:

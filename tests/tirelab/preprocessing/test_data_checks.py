@@ -24,6 +24,7 @@ from tirelab.preprocessing.data_checks import (
     check_signal,
     compared,
     not_compared,
+    outliers_told,
     spikes,
 )
 from tirelab.preprocessing.samples import raw_dataset_of
@@ -265,6 +266,16 @@ def with_lone(**lone: float) -> FloatArray:
 @pytest.mark.parametrize("place", [0, 1, 500, 998, 999])
 def test_one_sample_far_off_is_an_outlier_also_at_an_end(place: int) -> None:
     assert np.flatnonzero(spikes(with_lone(**{f"at_{place}": -40.0}))).tolist() == [place]
+
+
+def test_outliers_are_told_with_the_time_of_the_first() -> None:
+    residual = np.random.default_rng(2).normal(0.0, 1.0, TIME.size)
+    residual[[400, 1200]] += 25.0
+    (said,) = outliers_told([recording(), recording()], [residual, np.zeros(TIME.size)])
+    assert said.startswith("In ")
+    assert f" 2 single samples stand out from both neighbours, the first at {TIME[400]:.4g} s: " in said
+    (said,) = outliers_told([replace(recording(), timed=False)], [np.where(TIME[400] == TIME, 0.0, residual)])
+    assert " 1 single sample stands out from both neighbours, at sample 1201: " in said
 
 
 def test_an_outlier_is_what_the_noise_of_all_samples_does_not_show() -> None:
