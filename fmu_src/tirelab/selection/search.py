@@ -27,14 +27,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg.lapack import dpotrf, dtrtrs
 from scipy.optimize import minimize
 
 from ..regressors.signature import LAW, Signature, candidates, form_error
@@ -298,7 +298,8 @@ def parts_of(
     """Return what each candidate of a set explains of the misfit, in units of the noise."""
     if not evidence.names:
         return {}
-    _, coefficients = _likelihood(evidence.names, evidence.sizes, evidence.variance, equations, discrepancy)
+    _, found = _likelihood(evidence.names, evidence.sizes, evidence.variance, equations, discrepancy)
+    coefficients = found()
     parts, begin = {}, 0
     for name, size in zip(evidence.names, evidence.sizes, strict=True):
         place = equations.places[name]
@@ -315,26 +316,28 @@ def _likelihood(
     variance: float,
     equations: NormalEquations,
     discrepancy: Discrepancy,
-) -> tuple[float, FloatArray]:
-    """Return the log marginal likelihood and the coefficients of the bases at their posterior mean."""
+) -> tuple[float, Callable[[], FloatArray]]:
+    """Return the log marginal likelihood, and a function for the coefficients of the bases at their posterior mean."""
     places = [equations.places[n] for n in names]
     means = np.array([p.start for p in places])
     free = np.concatenate([np.arange(p.start + 1, p.stop) for p in places])
-    scale = np.concatenate([np.full(p.stop - p.start - 1, s) for p, s in zip(places, sizes, strict=True)])
     s = np.asarray(sizes)
+    scale = np.repeat(s, [p.stop - p.start - 1 for p in places])
     gram, moment = equations.gram, equations.moment
-    power = equations.power - 2.0 * s @ moment[means] + s @ gram[np.ix_(means, means)] @ s
+    power = equations.power - 2.0 * s @ moment[means] + s @ gram[means][:, means] @ s
     if not free.size:
-        return discrepancy.likelihood(power, variance), np.zeros(0)
-    right = scale * (moment[free] - gram[np.ix_(free, means)] @ s)
-    left = scale[:, None] * gram[np.ix_(free, free)] * scale / variance
+        return discrepancy.likelihood(power, variance), lambda: np.zeros(0)
+    own = gram[free]
+    right = scale * (moment[free] - own[:, means] @ s)
+    left = scale[:, None] * own[:, free] * scale / variance
     left[np.diag_indices(free.size)] += 1.0
-    factor = cholesky(left, lower=True, check_finite=False)
-    z = solve_triangular(factor, right, lower=True, check_finite=False)
+    # Called straight from LAPACK: these are small, and what checks them first would take longer.
+    factor, _ = dpotrf(left, lower=1)
+    z, _ = dtrtrs(factor, right, lower=1)
     remaining = power - float(z @ z) / variance
     determinant = 2.0 * float(np.log(np.diag(factor)).sum())
-    mean = scale * solve_triangular(factor.T, z, lower=False, check_finite=False) / variance
-    return discrepancy.likelihood(remaining, variance) - 0.5 * determinant, mean
+    likelihood = discrepancy.likelihood(remaining, variance) - 0.5 * determinant
+    return likelihood, lambda: np.asarray(scale * dtrtrs(factor, z, lower=1, trans=1)[0] / variance)
 
 
 PRIOR_ODDS = 5.0
