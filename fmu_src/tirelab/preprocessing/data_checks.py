@@ -213,7 +213,7 @@ def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray
             where = f"at {first}" if lone.size == 1 else f"the first at {first}"
             sentences.append(
                 f"In {r.name} {lone.size} single {which} out from both neighbours, {where}: false readings, or a "
-                "channel that hangs for a moment. The verdict does not rest on them."
+                "channel that hangs for a moment; look at them."
             )
     return tuple(sentences)
 
