@@ -168,6 +168,7 @@ class Excitation:
     returns: part of the variance of time between visits of the same deflection and direction; speeds: standard
     deviation over mean of the speed there; timed: whether the times of the samples are known; surfaces: their number;
     channels: what the recorded channels show; single_valued: effects that are functions of the deflection here
+    once: whether no deflection is passed twice, so that everything is such a function
     """
 
     returns: float
@@ -176,6 +177,7 @@ class Excitation:
     surfaces: int = 1
     channels: ChannelEvidence = NO_EVIDENCE
     single_valued: frozenset[str] = frozenset()
+    once: bool = False
 
     @property
     def one_speed(self) -> bool:
@@ -208,9 +210,9 @@ class Excitation:
 
     def of_deflection(self, name: str) -> bool:
         """Whether an effect depends on deflection and surface only, as a law does: in every motion, or in this one, as
-        a mass does at one frequency.
+        a mass does at one frequency, and everything where no deflection is passed twice.
         """
-        return always_of_deflection(name) or name in self.single_valued
+        return self.once or always_of_deflection(name) or name in self.single_valued
 
     def within_law(self, name: str) -> bool:
         """Whether a law of another shape can imitate an effect: on one surface, one of the deflection alone can be
@@ -254,7 +256,8 @@ def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
         for same in together.values()
     ]
     channels = channel_evidence(dataset, _common_cells(dataset.experiments))
-    return Excitation(max(returns), max(speeds), timed, len(dataset.radii), channels)
+    once = all(_passed_once(dataset.experiments, radius) for radius in together)
+    return Excitation(max(returns), max(speeds), timed, len(dataset.radii), channels, once=once)
 
 
 @dataclass(frozen=True)
@@ -284,6 +287,24 @@ def _returns(e: Experiment) -> float:
     time = e.time[moving]
     mean = np.bincount(visit, time) / np.maximum(np.bincount(visit), 1)
     return _within(mean[visit], cell) / max(float(np.var(time)), 1e-300) if time.size else 0.0
+
+
+def _passed_once(experiments: Sequence[Experiment], radius: float) -> bool:
+    """Return whether hardly any deflection is passed twice on a surface, in one direction or the other."""
+    own = [e for e in experiments if float(np.median(e.surface_radius)) == radius]
+    low, high = (end(end(e.deflection) for e in own) for end in (min, max))
+    cells, visits, begin = [], [], 0
+    for e in own:
+        direction, cycle = branches(e.deflection, e.gauge)
+        moving = _moving(e)
+        cells.append(_cells(e, np.zeros_like(direction), low, high)[moving])
+        visit = (2 * cycle + (direction > 0.0)).astype(int)[moving] + begin
+        visits.append(visit)
+        begin = int(visit.max(initial=begin)) + 1
+    cell, visit = np.concatenate(cells), np.concatenate(visits)
+    pairs = np.unique(cell * begin + visit)
+    several = np.bincount(pairs // begin) > 1
+    return bool(np.mean(several[cell]) < NEGLIGIBLE) if cell.size else False
 
 
 def _moving(e: Experiment, part: float = STILL) -> NDArray[np.bool_]:
