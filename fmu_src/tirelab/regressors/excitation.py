@@ -168,7 +168,7 @@ class Excitation:
     returns: part of the variance of time between visits of the same deflection and direction; speeds: standard
     deviation over mean of the speed there; timed: whether the times of the samples are known; surfaces: their number;
     channels: what the recorded channels show; single_valued: effects that are functions of the deflection here
-    once: whether no deflection is passed twice, so that everything is such a function
+    once: whether no deflection is passed twice, and all at one speed, so that everything is such a function
     """
 
     returns: float
@@ -210,7 +210,7 @@ class Excitation:
 
     def of_deflection(self, name: str) -> bool:
         """Whether an effect depends on deflection and surface only, as a law does: in every motion, or in this one, as
-        a mass does at one frequency, and everything where no deflection is passed twice.
+        a mass does at one frequency, and everything in a single pull at one speed.
         """
         return self.once or always_of_deflection(name) or name in self.single_valued
 
@@ -290,13 +290,18 @@ def _returns(e: Experiment) -> float:
 
 
 def _passed_once(experiments: Sequence[Experiment], radius: float) -> bool:
-    """Return whether hardly any deflection is passed twice on a surface, in one direction or the other."""
+    """Return whether hardly any deflection is passed twice on a surface, in either direction, and all at one speed.
+
+    A jump of the speed shows what depends on it, and a rest what depends on time.
+    """
     own = [e for e in experiments if float(np.median(e.surface_radius)) == radius]
     low, high = (end(end(e.deflection) for e in own) for end in (min, max))
     cells, visits, begin = [], [], 0
     for e in own:
         direction, cycle = branches(e.deflection, e.gauge)
-        moving = _moving(e)
+        moving, speed = _moving(e), np.abs(e.rate)
+        if np.mean(~moving) > NEGLIGIBLE or np.std(speed) > SPEEDS * np.mean(speed):
+            return False
         cells.append(_cells(e, np.zeros_like(direction), low, high)[moving])
         visit = (2 * cycle + (direction > 0.0)).astype(int)[moving] + begin
         visits.append(visit)
@@ -304,7 +309,7 @@ def _passed_once(experiments: Sequence[Experiment], radius: float) -> bool:
     cell, visit = np.concatenate(cells), np.concatenate(visits)
     pairs = np.unique(cell * begin + visit)
     several = np.bincount(pairs // begin) > 1
-    return bool(np.mean(several[cell]) < NEGLIGIBLE) if cell.size else False
+    return bool(np.mean(several[cell]) < NEGLIGIBLE)
 
 
 def _moving(e: Experiment, part: float = STILL) -> NDArray[np.bool_]:

@@ -164,13 +164,17 @@ def test_what_is_a_function_of_the_deflection_in_this_motion_is_within_the_law_t
     assert motion.of_deflection("bottoming")
 
 
-def test_in_a_single_pull_everything_is_a_function_of_the_deflection() -> None:
-    """One ramp; two of them pass each deflection twice, and so does one with its way back."""
+def test_in_a_single_pull_at_one_speed_everything_is_a_function_of_the_deflection() -> None:
+    """One ramp; two of them pass each deflection twice, and so does one with its way back; one holds, one is quicker in
+    the end.
+    """
     time = np.arange(0.0, 20.0, 0.02)
     pull = recorded(time, 1e-3 * time)
     assert all(excitation(pull).of_deflection(n) for n in CATALOGUE)
     quick = recorded(0.2 * time, 1e-3 * time)
-    for shown in (excitation(pull, quick), excitation(triangle(1))):
+    held = recorded(time, 1e-3 * np.minimum(time, 15.0))
+    jump = recorded(time, 1e-3 * np.where(time < 15.0, 0.2 * time, 3.0 + 3.4 * (time - 15.0)))
+    for shown in (excitation(pull, quick), *map(excitation, (triangle(1), held, jump))):
         assert not shown.of_deflection("viscous_damping")
 
 
