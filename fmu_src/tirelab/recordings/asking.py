@@ -323,6 +323,9 @@ def _guessed_columns(
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
     free = [i for i in free if not _is_index(headers, i, values[i])]
     free = [i for i in free if not is_strained(headers[i].name) or _states(headers[i], "deflection")]
+    known = [len(values[i]) for i in taken if i in values]
+    samples = known[0] if known else max((len(values[i]) for i in free), default=0)
+    free = [i for i in free if len(values[i]) == samples]
     guessed: dict[str, int] = {}
     if "time" in missing:
         clocks = [i for i in free if rises(values[i]) and may_count_time(headers[i])]
@@ -331,9 +334,6 @@ def _guessed_columns(
         if clocks:
             guessed["time"] = clocks[0]
             free = [i for i in free if i != clocks[0]]
-    known = [*guessed.values(), *(index for index in taken if index in values)]
-    samples = len(values[known[0]]) if known else max((len(values[i]) for i in free), default=0)
-    free = [i for i in free if len(values[i]) == samples]
     for name in ("deflection", "force"):
         fits = [i for i in free if _states(headers[i], name)]
         axes = {_axis(headers[matches[other].index]) for other in ("deflection", "force") if other in matches}
