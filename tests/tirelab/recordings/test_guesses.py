@@ -149,7 +149,9 @@ def test_what_was_sampled_another_number_of_times_is_not_guessed(tmp_path: Path)
 def test_of_vectors_without_a_time_the_longest_are_guessed(tmp_path: Path) -> None:
     """Beside its readings a file holds what was worked out of each of nine specimens."""
     _, deflection, force = loading()
-    scipy.io.savemat(tmp_path / "a.mat", {"all": np.arange(18.0).reshape(9, 2), "one": deflection, "two": force})
+    scipy.io.savemat(
+        tmp_path / "a.mat", {"all": np.arange(18.0).reshape(9, 2), "one": deflection, "two": force}
+    )
     assert proposed(tmp_path / "a.mat")[1] == "time=NAME,deflection=#3,force=#4"
 
 
