@@ -160,7 +160,8 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
             f"Repeat one recording with another {given.kind}.",
             "The remaining error is larger than the noise: if it comes back, the rig causes it.",
         )
-    return NextStep(given.use if verdict["effects"] else given.leave, _as_good(verdict))
+    said = [_left_in_order(verdict), _as_good(verdict)]
+    return NextStep(given.use if verdict["effects"] else given.leave, " ".join(filter(None, said)))
 
 
 def _as_good(verdict: Mapping[str, Any]) -> str:

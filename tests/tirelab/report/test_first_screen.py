@@ -179,6 +179,15 @@ def test_one_thing_to_do_next(given: dict[str, Any], reasons: list[str], action:
     assert step.drive == action.startswith("Record ")
 
 
+def test_an_undecided_verdict_that_may_be_used_says_what_is_left() -> None:
+    given = diagnosis({"inertia": 9.0}, 0.4, alternatives=[["force_lag"]], before=60.0, after=6.0)
+    given["verdict"]["remainder"] = {"size": 0.9, "depends_on": [{"by": "deflection"}]}
+    said = first_screen.next_step(given).why
+    assert said.startswith(
+        "The remainder, 0.9 times the noise, depends on the deflection. No motion of this rig"
+    )
+
+
 @pytest.mark.parametrize(
     ("sizes", "others", "headline", "action", "why"),
     [
