@@ -228,7 +228,7 @@ def explain_misfit(
     progress("comparing the effects' signatures")
     dataset, raw, quiet = with_signatures(dataset, recordings, shown, catalogue)
     hidden |= dict.fromkeys(misread(raw, dataset.read_anew(recordings)), LIKE_READING)
-    excitation = replace(excitation, single_valued=single_valued(raw, dataset))
+    excitation = replace(excitation, single_valued=excitation.single_valued | single_valued(raw, dataset))
     if baseline.two_sided and LAW in catalogue:
         hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
     if (gap := gap_of(baseline)) and LAW in catalogue:

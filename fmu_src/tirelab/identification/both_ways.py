@@ -41,7 +41,7 @@ def common_curve(recordings: Sequence[Recording], tire: TireModel) -> tuple[floa
     coefficient, exponent = tire.law.coefficients(float(recordings[0].surface_radius[0]))
     spring = coefficient * np.sign(x) * np.abs(CM_PER_M * x) ** exponent
     error = np.concatenate([r.force for r in recordings]) - spring
-    place = np.minimum((PLACES * (x - x.min()) / max(float(np.ptp(x)), 1e-300)).astype(int), PLACES - 1)
+    place = _places(x)
     ways = [way == side for side in (LOADING, UNLOADING)]
     both = np.minimum(*(np.bincount(place[w], minlength=PLACES) for w in ways))
     passed = np.flatnonzero(both)
@@ -60,7 +60,7 @@ def passed_both_ways(recordings: Sequence[Recording]) -> bool:
     """Return whether most places of the deflection are passed in and out."""
     x = np.concatenate([r.deflection for r in recordings])
     way = np.concatenate([branches(r.time, r.deflection) for r in recordings])
-    place = np.minimum((PLACES * (x - x.min()) / max(float(np.ptp(x)), 1e-300)).astype(int), PLACES - 1)
+    place = _places(x)
     seen = [np.bincount(place[way == side], minlength=PLACES) > 0 for side in (LOADING, UNLOADING)]
     return bool(2 * np.count_nonzero(seen[0] & seen[1]) > np.count_nonzero(seen[0] | seen[1]))
 
@@ -86,7 +86,7 @@ def _in_every_cycle(recordings: Sequence[Recording], error: Array, place: NDArra
 def loop_state(deflection: Array, reach: float) -> Array:
     """Return the state u of a loop along a deflection (n,), from -1 on the way out to 1 on the way in.
 
-    du = dx / reach within these limits: dry friction behind a spring (J. Jenkin's element; W. D. Iwan, J. Appl. Mech.
+    du = dx / reach within these limits: dry friction behind a spring (Jenkin's element; W. D. Iwan, J. Appl. Mech.
     33 (1966) 893-900). It begins at 0; reach: in the unit of the deflection
     """
     found, state = [], 0.0
@@ -94,6 +94,13 @@ def loop_state(deflection: Array, reach: float) -> Array:
         state = min(1.0, max(-1.0, state + step / reach))
         found.append(state)
     return np.array(found)
+
+
+def _places(x: Array) -> NDArray[np.intp]:
+    """Return the number of the place of every deflection (n,)."""
+    return np.asarray(
+        np.minimum((PLACES * (x - x.min()) / max(float(np.ptp(x)), 1e-300)).astype(int), PLACES - 1)
+    )
 
 
 def _means(values: Array, place: NDArray[np.intp]) -> Array:

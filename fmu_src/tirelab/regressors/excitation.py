@@ -167,8 +167,8 @@ class Excitation:
 
     returns: part of the variance of time between visits of the same deflection and direction; speeds: standard
     deviation over mean of the speed there; timed: whether the times of the samples are known; surfaces: their number;
-    channels: what the recorded channels show; single_valued: effects that are functions of the deflection here
-    once: whether no deflection is passed twice, and all at one speed, so that everything is such a function
+    channels: what the recorded channels show; single_valued: effects that are functions of the deflection here, all of
+    them where no deflection is passed twice and all at one speed
     """
 
     returns: float
@@ -177,7 +177,6 @@ class Excitation:
     surfaces: int = 1
     channels: ChannelEvidence = NO_EVIDENCE
     single_valued: frozenset[str] = frozenset()
-    once: bool = False
 
     @property
     def one_speed(self) -> bool:
@@ -212,7 +211,7 @@ class Excitation:
         """Whether an effect depends on deflection and surface only, as a law does: in every motion, or in this one, as
         a mass does at one frequency, and everything in a single pull at one speed.
         """
-        return self.once or always_of_deflection(name) or name in self.single_valued
+        return always_of_deflection(name) or name in self.single_valued
 
     def within_law(self, name: str) -> bool:
         """Whether a law of another shape can imitate an effect: on one surface, one of the deflection alone can be
@@ -257,7 +256,8 @@ def excitation_of(dataset: Dataset, *, timed: bool = True) -> Excitation:
     ]
     channels = channel_evidence(dataset, _common_cells(dataset.experiments))
     once = all(_passed_once(dataset.experiments, radius) for radius in together)
-    return Excitation(max(returns), max(speeds), timed, len(dataset.radii), channels, once=once)
+    single = frozenset(CATALOGUE) if once else frozenset[str]()
+    return Excitation(max(returns), max(speeds), timed, len(dataset.radii), channels, single)
 
 
 @dataclass(frozen=True)

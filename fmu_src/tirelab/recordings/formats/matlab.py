@@ -144,8 +144,8 @@ def _fields(opened: Mapping[str, Any]) -> Iterator[tuple[str, NDArray[Any]]]:
             for i, struct in enumerate(inner, 1):
                 own = name if one else f"{name}({i})"
                 fields = {f"{own}.{field}": struct[field] for field in value.dtype.names}
-                if set(LOGGED) <= set(value.dtype.names):
-                    logged = struct["signals"].ravel(order="F")
+                logged = struct["signals"].ravel(order="F") if set(LOGGED) <= set(value.dtype.names) else None
+                if logged is not None and "values" in (logged.dtype.names or ()):
                     fields = {f"{own}.time": struct["time"]}
                     numbered = {f"{own}({j})": signal for j, signal in enumerate(logged, 1)}
                     signals = {own: logged[0]} if len(logged) == 1 else numbered

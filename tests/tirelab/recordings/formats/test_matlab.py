@@ -57,6 +57,12 @@ class TestMatlab:
         scipy.io.savemat(tmp_path / "a.mat", {"deflection": logged(DEFLECTION), "force": logged(FORCE)})
         assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
 
+    def test_a_field_called_signals_need_not_be_of_simulink(self, tmp_path: Path) -> None:
+        run = {"time": TIME, "signals": np.column_stack([DEFLECTION, FORCE])}
+        scipy.io.savemat(tmp_path / "a.mat", {"run": run})
+        named = {"deflection": "run.signals:0", "force": "run.signals:1"}
+        assert_the_recording(read_recording(tmp_path / "a.mat", columns=named, units=UNITS, radius="flat"))
+
     def test_a_file_with_an_object_of_a_class_is_read_without_it(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
