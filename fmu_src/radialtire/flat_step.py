@@ -129,24 +129,24 @@ def step(
         store(n, path.track, reading)
         rate, acceleration = tracking.rate(reading), tracking.acceleration(reading)
     held = p[TWO_SIDED] != 0.0
-    moment = time - start, interval, first, pressure, temperature, held
-    surface = A, B, bend
-    x = compressed(path, (deflection, rate, acceleration), moment, surface, p, s)
+    where = time - start, interval, first, pressure, temperature, held, A, B, bend
     v = rate
-    if p[FOLLOWED] != 0.0:
-        if p[TRACKED] != 0.0 and p[NOISE] < tracking.FINEST:
+    differenced = p[FOLLOWED] != 0.0 and (p[TRACKED] == 0.0 or p[NOISE] >= tracking.FINEST)
+    if differenced:
+        # x holds rates: of noisy readings it is too noisy to be differentiated once more, as if it were a reading.
+        h = AHEAD
+        later = deflection + h * rate, rate + h * acceleration, acceleration
+        sooner = deflection - h * rate, rate - h * acceleration, acceleration
+        above = compressed(path, later, where, p, s, n)
+        v = (above - compressed(path, sooner, where, p, s, n)) / (2.0 * h)
+    x = compressed(path, (deflection, rate, acceleration), where, p, s, n)  # its states are those kept
+    if p[FOLLOWED] != 0.0 and p[TRACKED] != 0.0:
+        if differenced:
+            store(n, path.compression, tracking.begin(x))
+        else:
             compression = tracked(s, path.compression, x, interval, p[NOISE])
             store(n, path.compression, compression)
             v = tracking.rate(compression)
-        else:
-            # x holds rates: of noisy readings it is too noisy to be differentiated once more, as if it were a reading.
-            h = AHEAD
-            later = deflection + h * rate, rate + h * acceleration, acceleration
-            sooner = deflection - h * rate, rate - h * acceleration, acceleration
-            above = compressed(path, later, moment, surface, p, s)
-            v = (above - compressed(path, sooner, moment, surface, p, s)) / (2.0 * h)
-            if p[TRACKED] != 0.0:
-                store(n, path.compression, tracking.begin(x))
 
     bare = power_law.two_sided(x, A, B) if held else power_law.force(x, A, B)
     preload = p[PRELOAD] if held and p[INFLATED] != 0.0 else 0.0
@@ -238,19 +238,18 @@ def through(
 def compressed(
     path: SignalPath,
     read: tuple[float, float, float],
-    moment: tuple[float, float, bool, float, float, bool],
-    surface: tuple[float, float, float],
+    where: tuple[float, float, bool, float, float, bool, float, float, float],
     p: Sequence[float],
     s: Sequence[float],
+    n: list[float],
 ) -> float:
-    """Return the tire's deflection [m] for one that is read; effects before the elastic law have no memory.
+    """Return the tire's deflection [m] for one that is read, and write the states of the effects before the law.
 
-    read: deflection [m], rate [m/s], acceleration [m/s^2]; moment: time since the first sample [s], interval [s],
-    whether it is the first one, the channels, whether the part is two-sided; surface: A, B and curvature [1/m]
+    read: deflection [m], rate [m/s], acceleration [m/s^2]; where: time since the first sample [s], interval [s],
+    whether it is the first one, the channels, whether the part is two-sided, and the surface's A, B, curvature [1/m]
     """
     deflection, rate, acceleration = read
-    time, interval, first, pressure, temperature, held = moment
-    A, B, bend = surface
+    time, interval, first, pressure, temperature, held, A, B, bend = where
     at = Instant(
         time,
         interval,
@@ -267,23 +266,11 @@ def compressed(
         held,
         0.0,
     )
-    x = unremembered(path.deflection, deflection, at, p, s)
+    x = through(path.deflection, deflection, at, p, s, n)
     at = Instant(
         time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held, 0.0
     )
-    return unremembered(path.series, x, at, p, s)
-
-
-def unremembered(
-    stages: tuple[Stage, ...], signal: float, at: Instant, p: Sequence[float], s: Sequence[float]
-) -> float:
-    """Return the signal after the effects of one place, which have no state."""
-    for stage in stages:
-        if p[stage.switch] != 0.0:
-            signal, _ = stage.respond(
-                signal, at, tuple(s[stage.state : stage.state_end]), tuple(p[stage.values : stage.values_end])
-            )
-    return signal
+    return through(path.series, x, at, p, s, n)
 
 
 def tracked(s: Sequence[float], at: int, deflection: float, interval: float, noise: float) -> Track:

@@ -15,6 +15,7 @@ from .inertia import INERTIA
 from .inflation_pressure import INFLATION_PRESSURE
 from .mullins_softening import MULLINS_SOFTENING
 from .part_shape import PART_SHAPE
+from .permanent_set import PERMANENT_SET
 from .pressure_leak import PRESSURE_LEAK
 from .rate_independent_hysteresis import RATE_INDEPENDENT_HYSTERESIS
 from .saturation import SATURATION
@@ -28,6 +29,7 @@ CATALOGUE: dict[str, Effect] = {
     for effect in (
         DEFLECTION_OFFSET,
         DEFLECTION_LAG,
+        PERMANENT_SET,
         SERIES_COMPLIANCE,
         ELASTIC_SHAPE,
         PART_SHAPE,

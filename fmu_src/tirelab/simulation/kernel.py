@@ -21,6 +21,38 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
     return signal, state
 
 
+def instant(history: tuple[FloatArray, ...], i: int, part: tuple[bool, FloatArray]) -> Instant:
+    """Return what an effect may use at sample `i`; history and part as in `respond_loop`."""
+    (
+        time,
+        deflection,
+        rates,
+        accelerations,
+        coefficient,
+        exponent,
+        elastic,
+        curvature,
+        pressure,
+        temperature,
+    ) = history
+    return Instant(
+        time[i] - time[0],
+        time[i] - time[max(i - 1, 0)],
+        i == 0,
+        deflection[i],
+        rates[i],
+        accelerations[i],
+        coefficient[i],
+        exponent[i],
+        elastic[i],
+        curvature[i],
+        pressure[i],
+        temperature[i],
+        part[0],
+        part[1][i],
+    )
+
+
 def respond_loop(
     signal: FloatArray,
     history: tuple[FloatArray, ...],
@@ -35,40 +67,25 @@ def respond_loop(
     history: time, deflection, rate, acceleration, coefficient, exponent, elastic force, curvature and the channels
     of every sample
     """
-    (
-        time,
-        deflection,
-        rates,
-        accelerations,
-        coefficient,
-        exponent,
-        elastic,
-        curvature,
-        pressure,
-        temperature,
-    ) = history
     for i in range(signal.size):
-        answer[i], state = respond(
-            signal[i],
-            Instant(
-                time[i] - time[0],
-                time[i] - time[max(i - 1, 0)],
-                i == 0,
-                deflection[i],
-                rates[i],
-                accelerations[i],
-                coefficient[i],
-                exponent[i],
-                elastic[i],
-                curvature[i],
-                pressure[i],
-                temperature[i],
-                part[0],
-                part[1][i],
-            ),
-            state,
-            values,
-        )
+        answer[i], state = respond(signal[i], instant(history, i, part), state, values)
+
+
+def beside_loop(
+    beside: tuple[FloatArray, tuple[FloatArray, ...]],
+    taken: tuple[FloatArray, tuple[FloatArray, ...]],
+    state: State,
+    values: State,
+    answer: FloatArray,
+    part: tuple[bool, FloatArray],
+) -> None:
+    """Fill `answer` with the effect's signal where each sample alone is another; arguments as of `respond_loop`.
+
+    beside: signal and history of the other samples, of which the state keeps nothing; taken: those of the recording
+    """
+    for i in range(answer.size):
+        answer[i], _ = respond(beside[0][i], instant(beside[1], i, part), state, values)
+        _, state = respond(taken[0][i], instant(taken[1], i, part), state, values)
 
 
 def track_loop(

@@ -240,7 +240,7 @@ def _moved(tire: TireModel, read: History, kinematics: Kinematics | None, stages
             elif tire.reading_noise < FINEST:
                 rate, _ = track(read.time, x, tire.reading_noise)
             else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
-                later, sooner = (upstream(tire, extrapolated(read, h)) for h in (AHEAD, -AHEAD))
+                later, sooner = (upstream_beside(tire, extrapolated(read, h), read) for h in (AHEAD, -AHEAD))
                 rate = (later - sooner) / (2.0 * AHEAD)
         return replace(read, deflection=x, rate=rate)
 
@@ -257,6 +257,17 @@ def upstream(tire: TireModel, history: History) -> FloatArray:
     for place in UPSTREAM:
         history = replace(history, deflection=downstream(tire, history, history.deflection, (place,)))
     return history.deflection
+
+
+def upstream_beside(tire: TireModel, beside: History, history: History) -> FloatArray:
+    """Return the tire's own deflection [m] where each sample alone is that of another history, as if it were tried."""
+    for place in UPSTREAM:
+        tried, taken = beside.deflection, history.deflection
+        for effect, values in _at(tire, place):
+            tried = respond_beside(effect, values, (tried, beside), (taken, history))
+            taken = respond_series(effect, values, taken, history)
+        beside, history = replace(beside, deflection=tried), replace(history, deflection=taken)
+    return beside.deflection
 
 
 def extrapolated(history: History, ahead: float) -> History:
@@ -310,25 +321,38 @@ def respond_series(effect: Effect, values: State, signal: FloatArray, history: H
     """Return the signal after `effect` with the parameters' `values`, from its initial state."""
     answer = np.empty_like(signal)
     loop = compiled.loop("respond_loop", effect.name, effect.respond)
-    loop(
-        signal,
-        (
-            history.time,
-            history.deflection,
-            history.rate,
-            history.acceleration,
-            history.coefficient,
-            history.exponent,
-            history.elastic_force,
-            history.curvature,
-            *history.channels,
-        ),
-        effect.initial_state,
-        tuple(float(value) for value in values),
-        answer,
-        (history.two_sided, history.preload),
-    )
+    given = tuple(float(value) for value in values)
+    part = history.two_sided, history.preload
+    loop(signal, _columns(history), effect.initial_state, given, answer, part)
     return answer
+
+
+def respond_beside(
+    effect: Effect, values: State, beside: tuple[FloatArray, History], taken: tuple[FloatArray, History]
+) -> FloatArray:
+    """Return the signal after `effect` where each sample alone is that of `beside`; its state follows those `taken`."""
+    history = taken[1]
+    answer = np.empty_like(taken[0])
+    loop = compiled.loop("beside_loop", effect.name, effect.respond)
+    given = tuple(float(value) for value in values)
+    other, own = ((signal, _columns(of)) for signal, of in (beside, taken))
+    loop(other, own, effect.initial_state, given, answer, (history.two_sided, history.preload))
+    return answer
+
+
+def _columns(history: History) -> tuple[FloatArray, ...]:
+    """Return the quantities of every sample as the loops take them."""
+    return (
+        history.time,
+        history.deflection,
+        history.rate,
+        history.acceleration,
+        history.coefficient,
+        history.exponent,
+        history.elastic_force,
+        history.curvature,
+        *history.channels,
+    )
 
 
 def elastic_force(

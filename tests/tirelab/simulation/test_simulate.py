@@ -197,6 +197,17 @@ def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
     assert simulate(tire, motion, known) == pytest.approx(expected, abs=0.02 * part * damping * 0.004 * np.pi)
 
 
+@pytest.mark.parametrize("noise", [0.0, 2e-5])
+def test_behind_what_stays_the_rate_is_that_of_the_tire(noise: float) -> None:
+    """An effect before the law remembers the readings alone, not those that are tried for a rate."""
+    effects = (CATALOGUE["permanent_set"], (0.3, 0.8, 0.004, 0.0)), (CATALOGUE["viscous_damping"], None)
+    tire = TireModel(
+        effects=tuple((e, e.nominal if v is None else v) for e, v in effects), reading_noise=noise
+    )
+    motion = random_motion(5)
+    assert simulate(tire, motion) == pytest.approx(stepped(tire, motion), rel=1e-12, abs=1e-9)
+
+
 def test_stages_can_be_kept_and_continued() -> None:
     tire = random_tire(["series_compliance", "pressure_leak", "viscous_damping", "inertia", "force_lag"], 8)
     motion = random_motion(8)

@@ -49,17 +49,17 @@ typedef struct { double v[14]; } Vector14;
 typedef struct { Vector14 v[4]; } Vector14x4;
 typedef struct { double v[4]; } Vector4;
 typedef struct { Vector14x4 a; Vector4 b; double c; } Tuple3;
-typedef struct { double a; double b; bool c; double d; double e; bool f; } Tuple4;
+typedef struct { double a; double b; bool c; double d; double e; bool f; double g; double h; double i; } Tuple4;
 typedef struct { double v[3]; } Vector3;
 typedef struct { double time; double interval; bool first; double deflection; double rate; double acceleration; double coefficient; double exponent; double elastic_force; double curvature; double pressure; double temperature; bool two_sided; double preload; } Instant;
 typedef struct { char unused; } Nothing;
 typedef struct { double a; Nothing b; } Tuple8;
 typedef struct { double v[1]; } Vector1;
+typedef struct { double a; Vector1 b; } Tuple11;
 typedef struct { double v[13]; } Vector13;
 typedef struct { double v[12]; } Vector12;
 typedef struct { double v[5]; } Vector5;
-typedef struct { double a; Vector3 b; } Tuple14;
-typedef struct { double a; Vector1 b; } Tuple16;
+typedef struct { double a; Vector3 b; } Tuple15;
 typedef struct { double v[8]; } Vector8;
 typedef struct { double a; Vector8 b; } Tuple18;
 typedef struct { double v[6]; } Vector6;
@@ -320,8 +320,8 @@ static inline Tuple3 tracked_track(const double *s, double deflection, double in
     if (s[4] == 0.0) {
         return tracking_begin(deflection);
     }
-    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 60), *(const Vector14 *)(s + 74), *(const
-        Vector14 *)(s + 88), *(const Vector14 *)(s + 102)}}, *(const Vector4 *)(s + 116), s[120]};
+    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 61), *(const Vector14 *)(s + 75), *(const
+        Vector14 *)(s + 89), *(const Vector14 *)(s + 103)}}, *(const Vector4 *)(s + 117), s[121]};
     if (interval > 0.0) {
         return tracking_follow(before, interval, deflection, noise);
     }
@@ -335,16 +335,16 @@ static inline void store_track(double *n, Tuple3 track)
     Vector4 probability = track.b;
     double last = track.c;
     for (int i = 0; i < 14; i++)
-        n[60 + i] = modes.v[0].v[i];
+        n[61 + i] = modes.v[0].v[i];
     for (int i = 0; i < 14; i++)
-        n[74 + i] = modes.v[1].v[i];
+        n[75 + i] = modes.v[1].v[i];
     for (int i = 0; i < 14; i++)
-        n[88 + i] = modes.v[2].v[i];
+        n[89 + i] = modes.v[2].v[i];
     for (int i = 0; i < 14; i++)
-        n[102 + i] = modes.v[3].v[i];
+        n[103 + i] = modes.v[3].v[i];
     for (int i = 0; i < 4; i++)
-        n[116 + i] = probability.v[i];
-    n[120] = last;
+        n[117 + i] = probability.v[i];
+    n[121] = last;
 }
 
 /* tracking.py: Return the rate [m/s] of the deflection at the last sample, 0 before the second one. */
@@ -394,8 +394,24 @@ static inline Tuple8 deflection_lag_respond(double signal, Instant instant, Noth
     return (Tuple8){signal + first_order + second_order, state};
 }
 
-/* flat_step.py: Return the signal after the effects of one place, which have no state. */
-static inline double unremembered_deflection(double signal, Instant at, const double *p, const double *s)
+/* effects.permanent_set.py: Return the deflection [m] at which the law has the force; the state: largest deflection
+   so far [m]. */
+static inline Tuple11 permanent_set_respond(double signal, Instant instant, Vector1 state, Vector4 values)
+{
+    double share = values.v[0], power = values.v[1], onset = values.v[2], history = values.v[3];
+    double largest = greater(instant.first ? history : state.v[0], signal);
+    double stays = share * greater(largest - onset, 0.0);
+    if (signal >= largest || stays <= 0.0) {
+        return (Tuple11){signal, (Vector1){{largest}}};
+    }
+    if (signal <= stays) {
+        return (Tuple11){signal - stays, (Vector1){{largest}}};
+    }
+    return (Tuple11){largest * pow((signal - stays) / (largest - stays), pow(power, share)), (Vector1){{largest}}};
+}
+
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static inline double through_deflection(double signal, Instant at, const double *p, const double *s, double *n)
 {
     if (p[8] != 0.0) {
         const Tuple8 t1 = deflection_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[9]}});
@@ -404,6 +420,12 @@ static inline double unremembered_deflection(double signal, Instant at, const do
     if (p[10] != 0.0) {
         const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[11], p[12]}});
         signal = t2.a;
+    }
+    if (p[13] != 0.0) {
+        const Tuple11 t3 = permanent_set_respond(signal, at, (Vector1){{s[6]}}, *(const Vector4 *)(p + 14));
+        signal = t3.a;
+        Vector1 after = t3.b;
+        n[6] = after.v[0];
     }
     return signal;
 }
@@ -491,48 +513,35 @@ static inline Tuple8 series_compliance_respond(double signal, Instant instant, N
     return (Tuple8){series_compliance_pressed(signal, instant, values), state};
 }
 
-/* flat_step.py: Return the signal after the effects of one place, which have no state. */
-static inline double unremembered_series(double signal, Instant at, const double *p, const double *s)
+/* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
+static inline double through_series(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[13] != 0.0) {
-        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[14], p[15]}});
+    if (p[18] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[19], p[20]}});
         signal = t1.a;
     }
     return signal;
 }
 
-/* flat_step.py: Return the tire's deflection [m] for one that is read; effects before the elastic law have no
-   memory. */
-static inline double compressed(Vector3 read, Tuple4 moment, Vector3 surface, const double *p, const double *s)
+/* flat_step.py: Return the tire's deflection [m] for one that is read, and write the states of the effects before
+   the law. */
+static inline double compressed(Vector3 read, Tuple4 where, const double *p, const double *s, double *n)
 {
     double deflection = read.v[0], rate = read.v[1], acceleration = read.v[2];
-    double time = moment.a;
-    double interval = moment.b;
-    bool first = moment.c;
-    double pressure = moment.d;
-    double temperature = moment.e;
-    bool held = moment.f;
-    double A = surface.v[0], B = surface.v[1], bend = surface.v[2];
+    double time = where.a;
+    double interval = where.b;
+    bool first = where.c;
+    double pressure = where.d;
+    double temperature = where.e;
+    bool held = where.f;
+    double A = where.g;
+    double B = where.h;
+    double bend = where.i;
     Instant at = (Instant){time, interval, first, deflection, rate, acceleration, A, B, 0.0, bend, pressure,
         temperature, held, 0.0};
-    double x = unremembered_deflection(deflection, at, p, s);
+    double x = through_deflection(deflection, at, p, s, n);
     at = (Instant){time, interval, first, x, rate, acceleration, A, B, 0.0, bend, pressure, temperature, held, 0.0};
-    return unremembered_series(x, at, p, s);
-}
-
-/* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
-   */
-static inline Tuple3 tracked_compression(const double *s, double deflection, double interval, double noise)
-{
-    if (s[4] == 0.0) {
-        return tracking_begin(deflection);
-    }
-    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 121), *(const Vector14 *)(s + 135), *(const
-        Vector14 *)(s + 149), *(const Vector14 *)(s + 163)}}, *(const Vector4 *)(s + 177), s[181]};
-    if (interval > 0.0) {
-        return tracking_follow(before, interval, deflection, noise);
-    }
-    return before;
+    return through_series(x, at, p, s, n);
 }
 
 /* flat_step.py: Write a track into a state. */
@@ -542,16 +551,31 @@ static inline void store_compression(double *n, Tuple3 track)
     Vector4 probability = track.b;
     double last = track.c;
     for (int i = 0; i < 14; i++)
-        n[121 + i] = modes.v[0].v[i];
+        n[122 + i] = modes.v[0].v[i];
     for (int i = 0; i < 14; i++)
-        n[135 + i] = modes.v[1].v[i];
+        n[136 + i] = modes.v[1].v[i];
     for (int i = 0; i < 14; i++)
-        n[149 + i] = modes.v[2].v[i];
+        n[150 + i] = modes.v[2].v[i];
     for (int i = 0; i < 14; i++)
-        n[163 + i] = modes.v[3].v[i];
+        n[164 + i] = modes.v[3].v[i];
     for (int i = 0; i < 4; i++)
-        n[177 + i] = probability.v[i];
-    n[181] = last;
+        n[178 + i] = probability.v[i];
+    n[182] = last;
+}
+
+/* flat_step.py: Return the track after a reading of `deflection` [m], `interval` [s] after the last one; noise [m].
+   */
+static inline Tuple3 tracked_compression(const double *s, double deflection, double interval, double noise)
+{
+    if (s[4] == 0.0) {
+        return tracking_begin(deflection);
+    }
+    Tuple3 before = (Tuple3){(Vector14x4){{*(const Vector14 *)(s + 122), *(const Vector14 *)(s + 136), *(const
+        Vector14 *)(s + 150), *(const Vector14 *)(s + 164)}}, *(const Vector4 *)(s + 178), s[182]};
+    if (interval > 0.0) {
+        return tracking_follow(before, interval, deflection, noise);
+    }
+    return before;
 }
 
 /* power_law.py: Return the force [N] of a part that is held at both ends and pulls as it presses: A sign(x) |x|^B,
@@ -630,12 +654,12 @@ static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_law(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[16] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 17));
+    if (p[21] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 22));
         signal = t1.a;
     }
-    if (p[30] != 0.0) {
-        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 31));
+    if (p[35] != 0.0) {
+        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 36));
         signal = t2.a;
     }
     return signal;
@@ -679,7 +703,7 @@ static inline Tuple8 gas_compression_respond(double signal, Instant instant, Not
 
 /* effects.mullins_softening.py: Multiply the factor by the softening; the state: largest measure, last counted
    position [m], path length [m]. */
-static inline Tuple14 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
+static inline Tuple15 mullins_softening_respond(double signal, Instant instant, Vector3 state, Vector7 values)
 {
     double share = values.v[0], ratio = values.v[1], width = values.v[2], gaussian = values.v[3], history =
         values.v[4], gathering = values.v[5], load = values.v[6];
@@ -703,7 +727,7 @@ static inline Tuple14 mullins_softening_respond(double signal, Instant instant, 
         uncounted = 0.0;
     }
     if (share == 0.0 || (x <= 0.0 && !instant.two_sided) || measure >= largest) {
-        return (Tuple14){signal, (Vector3){{largest, counted, path}}};
+        return (Tuple15){signal, (Vector3){{largest, counted, path}}};
     }
     double fixed = by_surface * pow(100.0 * width, power);
     if (!instant.two_sided) {
@@ -714,7 +738,7 @@ static inline Tuple14 mullins_softening_respond(double signal, Instant instant, 
     if (gathering > 0.0) {
         share *= -expm1(-(path + uncounted) / gathering);
     }
-    return (Tuple14){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
+    return (Tuple15){signal * (1.0 + share * expm1(-below)), (Vector3){{largest, counted, path}}};
 }
 
 /* effects.pressure_leak.py: Multiply the factor by the remaining pressure. */
@@ -734,47 +758,47 @@ static inline Tuple8 pressure_leak_respond(double signal, Instant instant, Nothi
 
 /* effects.warm_up.py: Multiply the factor by the rise of the pressure; the state is the temperature [K] at the
    start. */
-static inline Tuple16 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
+static inline Tuple11 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
 {
     double start;
     double gain = values.v[0], tau = values.v[1], stretch = values.v[2];
     if (effect_is_measured(instant.temperature)) {
         start = instant.first ? instant.temperature : state.v[0];
-        return (Tuple16){signal * greater(1.0 + gain * (instant.temperature - start) / WARMING, 0.0),
+        return (Tuple11){signal * greater(1.0 + gain * (instant.temperature - start) / WARMING, 0.0),
             (Vector1){{start}}};
     }
-    return (Tuple16){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
+    return (Tuple11){signal * (1.0 - gain * expm1(-pow(instant.time / tau, stretch))), state};
 }
 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[43] != 0.0) {
-        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[44], p[45], p[46]}});
+    if (p[48] != 0.0) {
+        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[49], p[50], p[51]}});
         signal = t1.a;
     }
-    if (p[47] != 0.0) {
-        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 48));
+    if (p[52] != 0.0) {
+        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 53));
         signal = t2.a;
     }
-    if (p[53] != 0.0) {
-        const Tuple14 t3 = mullins_softening_respond(signal, at, (Vector3){{s[6], s[7], s[8]}}, *(const Vector7 *)(p
-            + 54));
+    if (p[58] != 0.0) {
+        const Tuple15 t3 = mullins_softening_respond(signal, at, (Vector3){{s[7], s[8], s[9]}}, *(const Vector7 *)(p
+            + 59));
         signal = t3.a;
         Vector3 after = t3.b;
-        n[6] = after.v[0];
-        n[7] = after.v[1];
-        n[8] = after.v[2];
+        n[7] = after.v[0];
+        n[8] = after.v[1];
+        n[9] = after.v[2];
     }
-    if (p[61] != 0.0) {
-        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[62], p[63], p[64]}});
+    if (p[66] != 0.0) {
+        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[67], p[68], p[69]}});
         signal = t4.a;
     }
-    if (p[65] != 0.0) {
-        const Tuple16 t5 = warm_up_respond(signal, at, (Vector1){{s[9]}}, (Vector3){{p[66], p[67], p[68]}});
+    if (p[70] != 0.0) {
+        const Tuple11 t5 = warm_up_respond(signal, at, (Vector1){{s[10]}}, (Vector3){{p[71], p[72], p[73]}});
         signal = t5.a;
         Vector1 after = t5.b;
-        n[9] = after.v[0];
+        n[10] = after.v[0];
     }
     return signal;
 }
@@ -901,42 +925,42 @@ static inline Vector3 viscous_damping_rate_at(double force, double size, double 
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] for a solver: the state is by how much compliance and
    play give way. */
-static inline Tuple16 viscous_damping_flow(double signal, Instant instant, Vector1 state, Vector7 values)
+static inline Tuple11 viscous_damping_flow(double signal, Instant instant, Vector1 state, Vector7 values)
 {
     double compliance = values.v[5];
     double half = 0.5 * values.v[6];
     double x = instant.deflection;
     double v = instant.rate;
     if (x <= 0.0 && !instant.two_sided) {
-        return (Tuple16){signal, (Vector1){{instant.first ? 0.0 : -state.v[0] / RELEASED}}};
+        return (Tuple11){signal, (Vector1){{instant.first ? 0.0 : -state.v[0] / RELEASED}}};
     }
     const Vector2 t1 = viscous_damping_steady(v, x, values);
     double force = t1.v[0], given_way = t1.v[1];
     if (instant.first) {
-        return (Tuple16){signal + force, (Vector1){{given_way}}};
+        return (Tuple11){signal + force, (Vector1){{given_way}}};
     }
     if (compliance <= 0.0 && half <= 0.0) {
-        return (Tuple16){signal + force, (Vector1){{0.0}}};
+        return (Tuple11){signal + force, (Vector1){{0.0}}};
     }
     double z = state.v[0];
     double side = z > 0.0 ? 1.0 : -1.0;
     double beyond = fabs(z) - half;
     if (compliance <= 0.0) {
         if (beyond >= 0.0 && v * side > 0.0) {
-            return (Tuple16){signal + force, (Vector1){{0.0}}};
+            return (Tuple11){signal + force, (Vector1){{0.0}}};
         }
-        return (Tuple16){signal, (Vector1){{v}}};
+        return (Tuple11){signal, (Vector1){{v}}};
     }
     if (beyond <= 0.0) {
-        return (Tuple16){signal, (Vector1){{v}}};
+        return (Tuple11){signal, (Vector1){{v}}};
     }
     double size = viscous_damping_size_of(side, x, values);
     if (size <= 0.0) {
-        return (Tuple16){signal, (Vector1){{v - side * beyond / RELEASED}}};
+        return (Tuple11){signal, (Vector1){{v - side * beyond / RELEASED}}};
     }
     const Vector3 t2 = viscous_damping_rate_at(beyond / compliance, size, values.v[1], values.v[3]);
     double rate = t2.v[0];
-    return (Tuple16){signal + side * beyond / compliance, (Vector1){{v - side * rate}}};
+    return (Tuple11){signal + side * beyond / compliance, (Vector1){{v - side * rate}}};
 }
 
 /* effects.viscous_damping.py: Return the force D [N] with e D + h v_d(D) = reach [m], h the interval [s]: by
@@ -1021,7 +1045,7 @@ static inline Vector2 viscous_damping_in_series(Instant instant, double given_wa
 
 /* effects.viscous_damping.py: Add the dashpot's force [N] while the tire is loaded; a part that is held at both
    ends always is. */
-static inline Tuple16 viscous_damping_respond(double signal, Instant instant, Vector1 state, Vector7 values)
+static inline Tuple11 viscous_damping_respond(double signal, Instant instant, Vector1 state, Vector7 values)
 {
     double force;
     double given_way;
@@ -1031,7 +1055,7 @@ static inline Tuple16 viscous_damping_respond(double signal, Instant instant, Ve
     double x = instant.deflection;
     double v = instant.rate;
     if (x <= 0.0 && !instant.two_sided) {
-        return (Tuple16){signal, (Vector1){{0.0}}};
+        return (Tuple11){signal, (Vector1){{0.0}}};
     }
     if (compliance > 0.0 || play > 0.0) {
         if (instant.first) {
@@ -1043,7 +1067,7 @@ static inline Tuple16 viscous_damping_respond(double signal, Instant instant, Ve
             force = t2.v[0];
             given_way = t2.v[1];
         }
-        return (Tuple16){signal + force, (Vector1){{given_way}}};
+        return (Tuple11){signal + force, (Vector1){{given_way}}};
     }
     if (thinning > 0.0) {
         v = asinh(thinning * v) / thinning;
@@ -1058,7 +1082,7 @@ static inline Tuple16 viscous_damping_respond(double signal, Instant instant, Ve
     if (v < 0.0) {
         v *= rebound;
     }
-    return (Tuple16){signal + damping * v, (Vector1){{0.0}}};
+    return (Tuple11){signal + damping * v, (Vector1){{0.0}}};
 }
 
 /* effects.viscoelastic_relaxation.py: Return t0 [s] for a freshness above 0 and the first relaxation time [s]. */
@@ -1187,42 +1211,42 @@ static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing s
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[69] != 0.0) {
-        const Tuple18 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 10), *(const
-            Vector8 *)(p + 70));
+    if (p[74] != 0.0) {
+        const Tuple18 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 11), *(const
+            Vector8 *)(p + 75));
         signal = t1.a;
         Vector8 after = t1.b;
         for (int i = 0; i < 8; i++)
-            n[10 + i] = after.v[i];
+            n[11 + i] = after.v[i];
     }
-    if (p[78] != 0.0 && p[3] != 0.0) {
-        const Tuple16 t2 = viscous_damping_flow(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 79));
+    if (p[83] != 0.0 && p[3] != 0.0) {
+        const Tuple11 t2 = viscous_damping_flow(signal, at, (Vector1){{s[19]}}, *(const Vector7 *)(p + 84));
         signal = t2.a;
         Vector1 flowed = t2.b;
-        n[18] = flowed.v[0];
-    } else if (p[78] != 0.0) {
-        const Tuple16 t3 = viscous_damping_respond(signal, at, (Vector1){{s[18]}}, *(const Vector7 *)(p + 79));
+        n[19] = flowed.v[0];
+    } else if (p[83] != 0.0) {
+        const Tuple11 t3 = viscous_damping_respond(signal, at, (Vector1){{s[19]}}, *(const Vector7 *)(p + 84));
         signal = t3.a;
         Vector1 after = t3.b;
-        n[18] = after.v[0];
+        n[19] = after.v[0];
     }
-    if (p[86] != 0.0 && p[3] != 0.0) {
-        const Tuple20 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 87));
+    if (p[91] != 0.0 && p[3] != 0.0) {
+        const Tuple20 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 20), *(const Vector12
+            *)(p + 92));
         signal = t4.a;
         Vector6 flowed = t4.b;
         for (int i = 0; i < 6; i++)
-            n[19 + i] = flowed.v[i];
-    } else if (p[86] != 0.0) {
-        const Tuple20 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 19), *(const Vector12
-            *)(p + 87));
+            n[20 + i] = flowed.v[i];
+    } else if (p[91] != 0.0) {
+        const Tuple20 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 20), *(const Vector12
+            *)(p + 92));
         signal = t5.a;
         Vector6 after = t5.b;
         for (int i = 0; i < 6; i++)
-            n[19 + i] = after.v[i];
+            n[20 + i] = after.v[i];
     }
-    if (p[99] != 0.0) {
-        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 100));
+    if (p[104] != 0.0) {
+        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 105));
         signal = t6.a;
     }
     return signal;
@@ -1237,8 +1261,8 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_mass(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[104] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[105]}});
+    if (p[109] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[110]}});
         signal = t1.a;
     }
     return signal;
@@ -1463,31 +1487,31 @@ static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[106] != 0.0 && p[3] != 0.0) {
-        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[107], p[108],
-            p[109]}});
+    if (p[111] != 0.0 && p[3] != 0.0) {
+        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 26), (Vector3){{p[112], p[113],
+            p[114]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
-            n[25 + i] = flowed.v[i];
-    } else if (p[106] != 0.0) {
-        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 25), (Vector3){{p[107], p[108],
-            p[109]}});
+            n[26 + i] = flowed.v[i];
+    } else if (p[111] != 0.0) {
+        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 26), (Vector3){{p[112], p[113],
+            p[114]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
-            n[25 + i] = after.v[i];
-    }
-    if (p[110] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[111]}});
-        signal = t3.a;
-    }
-    if (p[112] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[113], p[114]}});
-        signal = t4.a;
+            n[26 + i] = after.v[i];
     }
     if (p[115] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[116], p[117]}});
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[116]}});
+        signal = t3.a;
+    }
+    if (p[117] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[118], p[119]}});
+        signal = t4.a;
+    }
+    if (p[120] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[121], p[122]}});
         signal = t5.a;
     }
     return signal;
@@ -1498,11 +1522,11 @@ static inline double through_reading(double signal, Instant at, const double *p,
 Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s, double *n)
 {
     Tuple3 reading;
-    Tuple3 compression;
     double h;
     Vector3 later;
     Vector3 sooner;
     double above;
+    Tuple3 compression;
     double A = law.v[0], B = law.v[1];
     double deflection = motion.v[0], surface_radius = motion.v[1], time = motion.v[2], rate = motion.v[3],
         acceleration = motion.v[4], pressure = motion.v[5], temperature = motion.v[6];
@@ -1517,24 +1541,24 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
         acceleration = tracking_acceleration(reading);
     }
     bool held = p[4] != 0.0;
-    Tuple4 moment = (Tuple4){time - start, interval, first, pressure, temperature, held};
-    Vector3 surface = (Vector3){{A, B, bend}};
-    double x = compressed((Vector3){{deflection, rate, acceleration}}, moment, surface, p, s);
+    Tuple4 where = (Tuple4){time - start, interval, first, pressure, temperature, held, A, B, bend};
     double v = rate;
-    if (p[1] != 0.0) {
-        if (p[0] != 0.0 && p[2] < FINEST) {
+    bool differenced = p[1] != 0.0 && (p[0] == 0.0 || p[2] >= FINEST);
+    if (differenced) {
+        h = AHEAD;
+        later = (Vector3){{deflection + h * rate, rate + h * acceleration, acceleration}};
+        sooner = (Vector3){{deflection - h * rate, rate - h * acceleration, acceleration}};
+        above = compressed(later, where, p, s, n);
+        v = (above - compressed(sooner, where, p, s, n)) / (2.0 * h);
+    }
+    double x = compressed((Vector3){{deflection, rate, acceleration}}, where, p, s, n);
+    if (p[1] != 0.0 && p[0] != 0.0) {
+        if (differenced) {
+            store_compression(n, tracking_begin(x));
+        } else {
             compression = tracked_compression(s, x, interval, p[2]);
             store_compression(n, compression);
             v = tracking_rate(compression);
-        } else {
-            h = AHEAD;
-            later = (Vector3){{deflection + h * rate, rate + h * acceleration, acceleration}};
-            sooner = (Vector3){{deflection - h * rate, rate - h * acceleration, acceleration}};
-            above = compressed(later, moment, surface, p, s);
-            v = (above - compressed(sooner, moment, surface, p, s)) / (2.0 * h);
-            if (p[0] != 0.0) {
-                store_compression(n, tracking_begin(x));
-            }
         }
     }
     double bare = held ? power_law_two_sided(x, A, B) : tire_elastic(x, A, B);

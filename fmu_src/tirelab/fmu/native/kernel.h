@@ -2,10 +2,10 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "db0755e16feceb5e" /* what stands where in p and s */
+#define LAYOUT "a9b0a236ae634d7c" /* what stands where in p and s */
 enum {
-    PARAMETERS = 118,
-    STATES = 182,
+    PARAMETERS = 123,
+    STATES = 183,
     S_TIME = 0,
     S_STARTED = 4,
     P_TRACKED = 0, /* p: rate and acceleration follow from the readings */
