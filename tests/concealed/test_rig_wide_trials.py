@@ -36,7 +36,7 @@ def drawn() -> Drawn:
 
 def test_wide_kinds_are_never_drawn_unasked() -> None:
     assert IN_TURN == ("loud", "press", "foreign", "outside", "beside")
-    assert WIDE_KINDS == ("loud", "press", "foreign", "outside", "pressure", "beside")
+    assert WIDE_KINDS == ("loud", "press", "foreign", "outside", "pressure", "beside", "set")
     assert not set(WIDE_KINDS) & set(KINDS)
     assert sum(KINDS.values()) == pytest.approx(1.0)
 
@@ -52,7 +52,8 @@ def test_the_same_seed_gives_the_same_wide_trial(drawn: Drawn, kind: str) -> Non
 
 @pytest.mark.parametrize("kind", WIDE_KINDS)
 def test_the_true_set_comes_first_and_held_out_tests_are_of_both_sorts(drawn: Drawn, kind: str) -> None:
-    beside = {"recalibration", "inflation_pressure"} if kind == "pressure" else {"recalibration"}
+    own = {"pressure": {"inflation_pressure"}, "set": {"permanent_set"}}.get(kind, set())
+    beside = {"recalibration", *own}
     for trial in drawn(kind):
         truth = set(trial.answer.right[0]) - {"none", "unknown"}
         hidden = {e.name for e in trial.bench.effects if e.name in NAMES}

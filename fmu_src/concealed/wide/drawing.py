@@ -21,12 +21,13 @@ from ..regressors import NAMES
 from ..tires import PowerTire
 from ..trial import Answer, Parameters, Record, Trial, recorded
 from . import press, pressure
+from .permanent import PERMANENT_SET
 from .worlds import WORLDS, World
 
 #: The kinds that are drawn only where they are asked for; their places decide what their seeds mean.
-WIDE_KINDS = ("loud", "press", "foreign", "outside", pressure.KIND, "beside")
+WIDE_KINDS = ("loud", "press", "foreign", "outside", pressure.KIND, "beside", "set")
 #: Those of them of which a proof of all kinds draws in turn; which these are decides what its seeds mean.
-IN_TURN = tuple(WORLDS)
+IN_TURN = ("loud", "press", "foreign", "outside", "beside")
 #: Streams of random numbers of these trials stand apart from those of the other kinds by this key.
 STREAM = 1_000_003
 ATTEMPTS, PATIENCE = 400, 40
@@ -36,8 +37,8 @@ STANDS_FOR = 0.5
 #: Where its family leaves more than this part, one more name beside the family may be right too.
 COMPLETED = 0.15
 REFIT = "recalibration"
-#: The kinds in which something acts that no catalogue holds.
-UNKNOWN = ("outside", "beside")
+#: The kinds in which something acts that the rig's own forms cannot stand for: what no catalogue holds, or a set.
+UNKNOWN = ("outside", "beside", "set")
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def _trial(rng: np.random.Generator, seed: int, kind: str, world: World, attempt
     answer = WideAnswer(
         kind=kind,
         effects=_named(world, baseline),
-        hidden={e.name: e.parameters() for e in world.bench.effects if e.name not in NAMES},
+        hidden={e.name: e.parameters() for e in world.bench.effects if not _is_named(e.name)},
         right=right,
         margins={" + ".join(sorted(s)) or "none": round(0.5 * left, 3) for s, left in found.sets.items()},
         rule="the rig's own fits leave no more than the noise can explain" if len(right) > 1 else "",
@@ -144,15 +145,18 @@ def _is_fair(kind: str, world: World, linear: Explanations) -> bool:
     """
     if kind == "press":
         return True
-    base = set(world.names)
+    base = set(world.names) - {PERMANENT_SET}
     truth = linear.loss(base)
     if kind in UNKNOWN:
         best = linear.best(base, 2)
-        if best <= BEYOND_CATALOGUE or best <= BEYOND_SHARE * truth:
+        share = (
+            0.0 if kind == "set" else BEYOND_SHARE
+        )  # a set is told from others by little of what it changes
+        if best <= BEYOND_CATALOGUE or best <= share * truth:
             return False
     if kind == "outside":
         return True
-    if kind == "beside" and any(linear.loss(s) - truth < VISIBLE for s in _exchanged(base)):
+    if kind in UNKNOWN and any(linear.loss(s) - truth < VISIBLE for s in _exchanged(base)):
         return False
     return all(linear.loss(base - {name}) - truth >= VISIBLE for name in base)
 
@@ -182,6 +186,8 @@ def _right(kind: str, world: World, linear: Explanations, found: Equivalent) -> 
         sets = [truth | {"unknown"}, frozenset({"unknown"})]
     elif kind == "beside":
         sets = [truth | {"unknown"}, truth - {REFIT} | {"unknown"}]
+    elif kind == "set":
+        sets = [truth]
     elif kind == "press":
         matters = linear.loss(truth - {REFIT}) - linear.loss(truth) >= SAME_TIRE_LOSS
         sets = [truth if matters else truth - {REFIT}]
@@ -194,7 +200,12 @@ def _right(kind: str, world: World, linear: Explanations, found: Equivalent) -> 
 
 def _named(world: World, baseline: PowerTire) -> dict[str, Parameters]:
     """Parameters of the effects that have a name in a catalogue; a refitted law has those of its baseline."""
-    named: dict[str, Parameters] = {e.name: e.parameters() for e in world.bench.effects if e.name in BY_NAME}
+    named: dict[str, Parameters] = {e.name: e.parameters() for e in world.bench.effects if _is_named(e.name)}
     if REFIT in world.names:
         named[REFIT] = {"believed": [asdict(s) for s in baseline.surfaces]}
     return named
+
+
+def _is_named(name: str) -> bool:
+    """Whether a catalogue has a name for an effect."""
+    return name in BY_NAME or name == PERMANENT_SET

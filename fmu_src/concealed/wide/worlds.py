@@ -1,4 +1,4 @@
-"""The plan of a wide trial: tire, effects and tests of the kinds loud, press, foreign, outside and beside."""
+"""The plan of a wide trial: tire, effects and tests of the kinds loud, press, foreign, outside, beside and set."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -19,6 +19,7 @@ from . import press
 from .foreign import FOREIGN
 from .laws import drawn_law
 from .outside import OUTSIDE, StiffeningTread
+from .permanent import PERMANENT, PERMANENT_SET
 
 #: Sizes over the noise, between which each kind draws evenly over the logarithm.
 LOUD, PRESS, STRANGE, BEYOND = (30.0, 1000.0), (1.5, 30.0), (5.0, 300.0), (3.0, 100.0)
@@ -109,6 +110,21 @@ def beside(rng: np.random.Generator, turn: int) -> World | None:
     return of_plan(rng, plan, setup, forms, (KNOWN, (QUIETER, 1.0)), BESIDE)
 
 
+def permanent(rng: np.random.Generator, turn: int) -> World | None:
+    """A part that keeps some of its deflection, 5 to 300 times the noise, every other time beside another effect."""
+    form = PERMANENT[turn % len(PERMANENT)]
+    others = (str(rng.choice([name for name in NAMES if name != "recalibration"])),)
+    names = (PERMANENT_SET, *(others if turn // len(PERMANENT) % 2 else ()))
+    plan = Plan("single", names, None, False, False)
+    setup = as_baseline(drawn_setup(rng, plan), plan)
+    forms = [form, *(BY_NAME[n][int(rng.integers(len(BY_NAME[n])))] for n in names[1:])]
+    world = of_plan(rng, plan, setup, forms, (STRANGE, (QUIETER, 1.0)))
+    # what stays is of the deflection alone: on another surface its force at the deepest point is not known
+    if world is None or any(len(motion.surfaces) > 1 for motion in (*world.train, *world.heldout)):
+        return None
+    return world
+
+
 def first_file(rng: np.random.Generator, turn: int) -> World | None:
     """An engineer's first file of a press; the baseline is what a power law fitted to it gives."""
     like = deviating_tire(rng)
@@ -138,6 +154,7 @@ WORLDS: Mapping[str, Callable[[np.random.Generator, int], World | None]] = {
     "foreign": foreign,
     "outside": outside,
     "beside": beside,
+    "set": permanent,
 }
 
 

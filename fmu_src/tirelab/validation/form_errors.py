@@ -49,12 +49,12 @@ HIDDEN = 2.0
 """A motion is hidden where the true tire leaves this much more power on the readings than on the motion itself."""
 
 
-def form_error_of(folder: Path, seed: int, number: int, only: str | None) -> dict[str, Any]:
-    """Return the name of the one effect of a loud draw and its form error; nothing where there are several, or another
-    than the one that is wanted, or its motion is hidden.
+def form_error_of(folder: Path, seed: int, number: int, only: str | None, kind: str) -> dict[str, Any]:
+    """Return the name of the one effect of a draw of a kind and its form error; nothing where there are several, or
+    another than the one that is wanted, or its motion is hidden.
     """
     folders = Folders(folder / str(number))
-    (key,) = (k for k in draw_and_commit(folders, seed, number, "loud") if not k.endswith(".derived"))
+    (key,) = (k for k in draw_and_commit(folders, seed, number, kind) if not k.endswith(".derived"))
     answer = read_json(folders.sealed(key))
     (name, *more) = answer["right"][0]
     if more or len(answer["right"]) > 1 or name != (only or name):
@@ -114,13 +114,20 @@ def form_errors_of(errors: Mapping[str, Sequence[float]]) -> dict[str, float]:
 @click.option("--seed", type=int, required=True)
 @click.option("--draws", type=click.IntRange(min=1), default=300, show_default=True)
 @click.option("--only", help="One effect.")
-def main(seed: int, draws: int, only: str | None) -> None:
+@click.option(
+    "--kind",
+    type=click.Choice(["loud", "set"]),
+    default="loud",
+    show_default=True,
+    help="Trials that hide it: set holds a permanent set.",
+)
+def main(seed: int, draws: int, only: str | None, kind: str) -> None:
     """Print the form error of every effect that was drawn alone, and from how many draws."""
     errors: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as name:
         found: list[Done[dict[str, Any]]] = []
         if only != CURVE:
-            tasks = {str(n): (Path(name), seed, n, only) for n in range(draws)}
+            tasks = {str(n): (Path(name), seed, n, only, kind) for n in range(draws)}
             found += work(form_error_of, tasks, Cores(), "measuring forms")
         if only in (None, CURVE):
             parts = {str(n): (seed, n) for n in range(draws)}

@@ -138,6 +138,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ("beside", "the known effects named, nothing else above a half", sound, 0.90),
     ("pressure", "all hidden effects named and nothing else but a remainder", sound, 0.90),
     ("pressure", "held-out misfit at most a quarter", corrected, 0.90),
+    ("set", "all hidden effects named and nothing else but a remainder", sound, 0.90),
+    ("set", "held-out misfit at most a quarter", corrected, 0.90),
 )
 """Kind, figure, what a trial has to meet, and the least rate."""
 
