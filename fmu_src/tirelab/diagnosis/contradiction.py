@@ -49,6 +49,8 @@ class Contradiction:
     that this leaves of them; own [N]: error that it leaves of the recording, where it is driven as they are
     as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
     inflated: whether they are of tires, which have a pressure, and not of parts
+    other: the name of the other one where there is one only; one_series: whether they are parts of one file, so that
+    gauges and specimen are the same
     """
 
     names: tuple[str, ...]
@@ -57,13 +59,15 @@ class Contradiction:
     own: float
     as_if: str = ""
     inflated: bool = True
+    other: str = ""
+    one_series: bool = False
 
     @property
     def headline(self) -> str:
         """The message about it without figures."""
         if len(self.names) > 1:
             return f"Recordings {' and '.join(self.names)} contradict each other"
-        return f"Recording {self.names[0]} contradicts the others"
+        return f"Recording {self.names[0]} contradicts {self.other or 'the others'}"
 
     @property
     def finding(self) -> str:
@@ -74,6 +78,8 @@ class Contradiction:
             whom, missed, where = "one", "the other", "they are driven alike"
         else:
             whom, missed, where = "the others", self.names[0], "it is driven as they are"
+            if self.other:
+                whom, where = self.other, "they are driven alike"
         verb, misses = ("explain", "miss") if len(self.effects) > 1 else ("explains", "misses")
         found = f"{explained} {verb} {whom} to {left} and {misses} {missed} by {own} where {where}."
         return " ".join(filter(None, (f"{found[0].upper()}{found[1:]}", self.as_if)))
@@ -87,6 +93,8 @@ class Contradiction:
     def action(self) -> str:
         """What to do about it, as a sentence."""
         apart = "them" if len(self.names) > 1 else self.names[0]
+        if self.one_series:
+            return f"Look for what slipped, yielded, cracked or drifted between them, or diagnose {apart} apart."
         return f"Check {self.suspects} of each, and what it had been through, or diagnose {apart} apart."
 
     @property
@@ -141,6 +149,7 @@ def contradiction_of(
             as_if = _as_if(recording, moved, others.model.tire, alike, own)
             inflated = others.model.tire.inflated
             one = Contradiction(tuple(names), others.model.names, others.error, own, as_if, inflated=inflated)
+            one = replace(one, one_series=_of_one_series(recordings))
             found.append((others.error, one))
         if not others.remainder.unexplained:
             break
@@ -172,9 +181,23 @@ def contradiction_held_out(
             if as_if:
                 model = explanation.model
                 who = (recording.name,)
-                inflated = model.tire.inflated
-                return Contradiction(who, model.names, explanation.error, own, as_if, inflated=inflated)
+                found = Contradiction(who, model.names, explanation.error, own, as_if)
+                return replace(
+                    found,
+                    inflated=model.tire.inflated,
+                    other=recordings[0].name if len(recordings) == 1 else "",
+                    one_series=_of_one_series([*recordings, recording]),
+                )
     return None
+
+
+def _of_one_series(recordings: Sequence[Recorded]) -> bool:
+    """Return whether all are parts of what was recorded in one go: ranges of one file, all but the first with what was
+    recorded before them; trials that stand in one file have nothing before them.
+    """
+    sources = {str(getattr(recording, "source", None)) for recording in recordings}
+    begun = sum(getattr(recording, "history", None) is not None for recording in recordings)
+    return len(sources) == 1 and begun >= len(recordings) - 1
 
 
 DEPTHS = 24

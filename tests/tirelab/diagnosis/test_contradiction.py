@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -159,7 +160,24 @@ def test_a_held_out_recording_of_another_tire_is_named_where_it_refuses_the_law(
     assert (found.names, found.effects) == (("other",), ("recalibration",))
     assert found.without == pytest.approx(NOISE, rel=0.1)
     assert found.as_if == "It is as if the force of other were 17 % less, by another pressure or tire."
-    assert verdict.summary.startswith("Recording other contradicts the others.")
+    assert verdict.summary.startswith("Recording other contradicts a.")
+
+
+def test_two_ranges_of_one_file_have_one_specimen_and_its_gauges() -> None:
+    """A tenth of the force is lost between them: no other zero or part is to be looked for."""
+    fitted = replace(pressed("a@0s-60s", 1), source=Path("a.csv"))
+    later = pressed("a@60s-120s", 2, 495.0)
+    kept = replace(later, time=later.time + 120.0, source=Path("a.csv"), history=fitted)
+    found = diagnose([fitted], TIRE, held_out=[kept], catalogue=FEW).contradiction
+    assert found is not None
+    assert found.headline == "Recording a@60s-120s contradicts a@0s-60s"
+    assert found.action == (
+        "Look for what slipped, yielded, cracked or drifted between them, or diagnose a@60s-120s apart."
+    )
+    trial = replace(kept, history=None)  # trials that stand in one file may be of other specimens
+    apart = diagnose([fitted], TIRE, held_out=[trial], catalogue=FEW).contradiction
+    assert apart is not None
+    assert apart.action.startswith("Check tire, pressure and zero of each")
 
 
 def test_a_held_out_recording_of_another_tire_is_named_where_nothing_was_refused() -> None:
@@ -218,4 +236,4 @@ def test_a_held_out_recording_that_refuses_one_of_two_effects_is_named() -> None
     assert (found.names, set(found.effects)) == (("other",), {"recalibration", "viscous_damping"})
     # 525 of 575 is 8.7 % less.
     assert "the force of other were 8." in found.as_if
-    assert verdict.summary.startswith("Recording other contradicts the others.")
+    assert verdict.summary.startswith("Recording other contradicts a.")
