@@ -129,8 +129,8 @@ def difference_between(
         explanation.error,
         found.sentence(names),
         anew.model.tire.inflated,
-        found.kind,
-        tuple(found.amounts.tolist()),
+        differs=found.kind,
+        amounts=tuple(found.amounts.tolist()),
     )
 
 

@@ -94,7 +94,9 @@ class Contradiction:
         """What to do about it, as a sentence."""
         apart = "them" if len(self.names) > 1 else self.names[0]
         if self.one_series:
-            return f"Look for what slipped, yielded, cracked or drifted between them, or diagnose {apart} apart."
+            return (
+                f"Look for what slipped, yielded, cracked or drifted between them, or diagnose {apart} apart."
+            )
         return f"Check {self.suspects} of each, and what it had been through, or diagnose {apart} apart."
 
     @property

@@ -10,6 +10,8 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import TirelabError
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
@@ -35,10 +37,10 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
             if not same or split_piece(file)[1].part != split_piece(other_file)[1].part:
                 continue
             if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
-                raise TirelabError(
-                    f"{other_file} and {file} share {max(one.time[0], other.time[0]):.6g} to "
-                    f"{min(one.time[-1], other.time[-1]):.6g} s; give each part of a file once"
-                )
+                first, last = max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1])
+                count = int(np.sum((one.time >= first) & (one.time <= last)))
+                shared = f"{first:.6g} to {last:.6g} s" if one.timed else f"{count} sample{'s' * (count > 1)}"
+                raise TirelabError(f"{other_file} and {file} share {shared}; give each part of a file once")
 
 
 def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_sided: bool = False) -> None:

@@ -109,7 +109,7 @@ def interpret(
         before = {name: column[: part.start] for name, column in values.items()}
         values = {name: column[part] for name, column in values.items()}
         notes.append(f"{part.stop - part.start} of {samples} samples read: {_part_text(piece)}")
-    notes += gap_notes(values["time"])
+    notes += gap_notes(values["time"]) if plan.timed else []
     units = {name: convert.unit for name, convert in plan.conversions.items()}
     first = len(before.get("time", ()))
 

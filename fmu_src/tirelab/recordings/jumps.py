@@ -107,17 +107,23 @@ AROUND = 4
 """Readings before one, and as many after it, by which it is judged."""
 
 
-def false_readings(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> NDArray[np.intp]:
+def false_readings(
+    deflection: NDArray[np.float64], force: NDArray[np.float64], *, timed: bool = True
+) -> NDArray[np.intp]:
     """Return the samples at which a gauge read falsely: off the motion by more than its noise can be; arrays (n,).
 
     Neither the line through the readings before a false one leads to it, nor that through those after it, nor the
     middle between its neighbours, all to the same side. A corner of the motion lies on one of the two lines, and the
     bend of a motion is on other sides of line and middle. The readings before and after it lie on one curve but for
     their noise, and it is more than a step of the gauge. The force does not go along. Bright spots do so to a laser,
-    and dirt to a potentiometer.
+    and dirt to a potentiometer. Without a time (`timed`) rows may be of uneven moments: a reading between both its
+    neighbours may be one of the motion, a little sooner or later.
     """
     with np.errstate(all="ignore"):
         found = _off_the_motion(deflection)
+        if not timed:
+            before, own, after = (deflection[found + by] for by in (-1, 0, 1))
+            found = found[(own < np.minimum(before, after)) | (own > np.maximum(before, after))]
         if found.size > RARE * deflection.size:
             return np.empty(0, dtype=np.intp)
         along = _off_the_motion(force) if found.size else found

@@ -83,7 +83,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             "readings that the gauge of the deflection lost, far from those before and after",
         ),
         (
-            partial(_misread, false_readings),
+            partial(_misread, partial(false_readings, timed="time" in values)),
             "false readings of the deflection, off the motion before and after by more than noise",
         ),
     ):

@@ -100,9 +100,15 @@ def number(value: Any, digits: int = 3) -> str:
     return text.replace("-", "−")
 
 
+MOST_DECIMALS = 6
+"""A figure that needs more decimals is written with a power of ten."""
+
+
 def residual(value: float, noise: float) -> str:
     """Return a mean residual [N] to the tenth of the noise [N]."""
-    decimals = min(max(1 - math.floor(math.log10(noise)), 0), 6) if noise > 0.0 else 3
+    decimals = max(1 - math.floor(math.log10(noise)), 0) if noise > 0.0 else 3
+    if decimals > MOST_DECIMALS:
+        return number(value)
     return f"{value + 0.0:.{decimals}f}".replace("-", "−")
 
 
@@ -112,7 +118,7 @@ def estimate(value: float, std: float | None, unit: str) -> str:
     if std is None or not math.isfinite(std) or std <= 0.0:
         return with_unit(number(factor * value, 4), name)
     decimals = 1 - math.floor(math.log10(factor * std))
-    if not 0 <= decimals <= 6 or abs(factor * value) >= 1e6:
+    if not 0 <= decimals <= MOST_DECIMALS or abs(factor * value) >= 1e6:
         return with_unit(f"{number(factor * value, 4)} ± {number(factor * std, 2)}", name)
     return with_unit(f"{fixed(factor * value, decimals)} ± {fixed(factor * std, decimals)}", name)
 

@@ -237,6 +237,26 @@ def test_what_the_force_follows_or_is_frequent_was_read_rightly() -> None:
     assert false_readings(often, 1e4 * STROKES).size == 0
 
 
+def test_without_a_time_a_reading_between_its_neighbours_may_be_one_of_another_moment() -> None:
+    """Rows are 20 micrometres apart; one is taken 8 of them later, another stands 0.4 mm beside the motion."""
+    uneven = 20e-6 * np.arange(400.0) + 0.1e-6 * np.random.default_rng(3).standard_normal(400)
+    later, beside = uneven.copy(), uneven.copy()
+    later[200] += 8e-6
+    beside[200] += 0.4e-3
+    assert false_readings(later, np.zeros(400)).tolist() == [200]
+    assert false_readings(later, np.zeros(400), timed=False).size == 0
+    assert false_readings(beside, np.zeros(400), timed=False).tolist() == [200]
+
+
+def test_rows_that_are_skipped_without_a_time_leave_no_gap_in_it(tmp_path: Path) -> None:
+    deflection = with_noise(1)
+    deflection[777] += 0.4e-3
+    path = write_rows(tmp_path / "untimed.csv", "deflection [mm],force [N]", 1e3 * deflection, 1e4 * STROKES)
+    notes = understand(path, Choices(part=True)).recording.notes
+    assert any("false readings of the deflection" in note for note in notes)
+    assert not any("gap" in note for note in notes)
+
+
 def test_a_row_that_was_read_falsely_is_skipped_and_named(tmp_path: Path) -> None:
     read = with_noise(1)
     read[[333, 777]] += 0.4e-3

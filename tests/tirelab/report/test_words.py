@@ -145,6 +145,7 @@ def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
     assert words.residual(-0.42, 6.0) == "−0.4"
     assert words.residual(0.00123, 0.0) == "0.001"
     assert words.residual(12.3456, 0.05) == "12.346"
+    assert words.residual(-3.24e-9, 6e-11) == "−3.24·10^−9"
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.0, "0 %"), (0.001, "< 1 %"), (0.424, "42 %"), (1.0, "100 %")])
