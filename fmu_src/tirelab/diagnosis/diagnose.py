@@ -141,7 +141,7 @@ def diagnose(
         evidence=explanation.evidence,
         test=test if test is not None and test.sufficient else None,
         compared=len(explanation.evidence),
-        evaluations=explanation.evaluations,
+        evaluations=explanation.model.fit.evaluations,
         recordings=tuple(fitted),
         held_out=tuple(kept),
         baseline=baseline,

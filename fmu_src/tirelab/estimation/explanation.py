@@ -77,8 +77,7 @@ class Explanation:
     the one it replaces, or by the refitted law in place of the effects that a law of another shape can imitate
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     within_law: names of effects that the refitted law of the set follows entirely
-    model: the set, fitted; residuals [N]: of the set in each recording; floors: noise floor of each recording
-    noise_free [N]: residuals of the set where it is given the noise-free deflection
+    model: the set, fitted; floors: noise floor of each recording
     compared: which samples of each recording are compared (see `data_checks.compared`)
     """
 
@@ -90,8 +89,6 @@ class Explanation:
     within_law: tuple[str, ...]
     remainder: Remainder
     model: FittedModel
-    residuals: tuple[FloatArray, ...]
-    noise_free: tuple[FloatArray, ...]
     floors: tuple[NoiseFloor, ...]
     compared: tuple[BoolArray, ...]
     excitation: Excitation
@@ -99,15 +96,22 @@ class Explanation:
     _samples: Samples = field(repr=False)
     _like_law: tuple[str, ...] = field(repr=False)
 
-    @property
-    def evaluations(self) -> int:
-        """Simulations of the final fit."""
-        return self.model.fit.evaluations
-
-    @property
+    @cached_property
     def error(self) -> float:
         """RMS residual [N] of the set over all compared samples."""
-        return self._rms(self.residuals)
+        return self._rms(
+            _residuals(self.model.tire, self._samples.recordings)
+        )  # long arrays: of few sets to keep
+
+    @cached_property
+    def residuals(self) -> tuple[FloatArray, ...]:
+        """Residuals [N] of the set in each recording."""
+        return _residuals(self.model.tire, self._samples.recordings)
+
+    @cached_property
+    def noise_free(self) -> tuple[FloatArray, ...]:
+        """Residuals [N] of the set in each recording where it is given the noise-free deflection."""
+        return self._samples.residuals(self.model.tire)
 
     @property
     def noises(self) -> tuple[FloatArray, ...]:
@@ -326,8 +330,6 @@ def _explanation(
         tuple(n for n in like_law if LAW in chosen.names and n not in chosen.names),
         remainder_of(chosen),
         FittedModel(chosen),
-        _residuals(chosen.tire, samples.recordings),
-        samples.residuals(chosen.tire),
         tuple(e.floor for e in chosen.problem.dataset.experiments),
         compared(samples.recordings),
         excitation,

@@ -80,13 +80,14 @@ LONG, KEPT, KEPT_LONG = 50_000, 32, 2
 of long ones; a diagnosis asks for each up to ten times."""
 
 
-def motion_of(time: FloatArray, deflection: FloatArray, *, timed: bool = True) -> Motion:
+def motion_of(time: FloatArray, deflection: FloatArray, *, timed: bool = True, keep: bool = True) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]; its arrays are not to be written to.
 
-    timed: whether the times were measured
+    timed: whether the times were measured; keep: whether it is asked for again, since a long one is large to keep
     """
-    kept = _kept if deflection.size <= LONG else _kept_long
-    return kept(*(np.asarray(values, dtype=np.float64).tobytes() for values in (time, deflection)), timed)
+    t, x = (np.asarray(values, dtype=np.float64) for values in (time, deflection))
+    kept = _kept if x.size <= LONG else _kept_long
+    return kept(t.tobytes(), x.tobytes(), timed) if keep else _motion(t, x, timed)
 
 
 def _motion_of_bytes(time: bytes, deflection: bytes, timed: bool) -> Motion:

@@ -195,7 +195,7 @@ def read_anew(recording: Recorded, experiment: Experiment, tire: TireModel) -> E
         other = destepped(recording.time, stepped, step)
     else:
         other = read_again(motion.deflection, read, motion.noise, gauge_step(read), random)
-    anew = motion_of(recording.time, other, timed=timed)
+    anew = motion_of(recording.time, other, timed=timed, keep=False)
     blocks = experiment.blocks
     averaged = _averaged(smoothed_motion(recording, anew), np.zeros(other.size, dtype=bool), blocks)
     known = blocks.of(motion.resolved & anew.resolved).all(axis=1)
