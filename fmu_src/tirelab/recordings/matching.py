@@ -185,11 +185,29 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
     """Return the columns that may hold a channel: by our words, else by foreign ones, else but for a number."""
     free = [(i, header) for i, header in enumerate(headers) if i not in assigned]
     found = [i for i, header in free if may_be(header, channel)]
-    if not found and channel.name == "time":
-        dated = [i for i, header in free if header.dated]
-        found = dated if len(dated) == 1 else []
+    if channel.name == "time" and any(header.dated for _, header in free):
+        found = _beside_dates(free, channel, found)
     if found:
         return _in_fitting_units(headers, channel, found)
+    found = _without_counted_again(headers, _otherwise_named(free, channel))
+    return _in_fitting_units(headers, channel, found) if channel.required or len(found) == 1 else []
+
+
+def _beside_dates(free: Sequence[tuple[int, Header]], channel: Channel, found: list[int]) -> list[int]:
+    """Return what may be the time beside dates: the one clock with a name and unit of time, else what our words find,
+    else the one date, which is coarser."""
+    clocks = [
+        (i, h)
+        for i, h in free
+        if not h.dated and measures(unit_of_column(h, channel.name) or "", channel.unit)
+    ]
+    named = [i for i, _ in clocks if i in found] or _otherwise_named(clocks, channel)
+    dated = [i for i, header in free if header.dated]
+    return named if len(named) == 1 else found or (dated if len(dated) == 1 else [])
+
+
+def _otherwise_named(free: Sequence[tuple[int, Header]], channel: Channel) -> list[int]:
+    """Return the columns that may hold a channel by the best of the names that are not our own."""
     sourceless = [(i, without_source(header)) for i, header in free]
     for named, columns in (
         (may_be_foreign, free),
@@ -201,9 +219,8 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
     ):
         found = [i for i, header in columns if named(header, channel)]
         if found:
-            break
-    found = _without_counted_again(headers, found)
-    return _in_fitting_units(headers, channel, found) if channel.required or len(found) == 1 else []
+            return found
+    return []
 
 
 def _on_axis_of_force(headers: Sequence[Header], found: Mapping[str, list[int]]) -> dict[str, list[int]]:

@@ -245,3 +245,27 @@ class TestColumns:
             tmp_path / "a.csv", "time [s],x [cm],cell [N],cell [N]", time, deflection, force, force
         )
         assert "force=#3" in refusal(path, radius="flat", columns={"force": "cell"})
+
+    @pytest.mark.parametrize("clock", ["Temps[s]", "C_1_Temps[s]", "Ch 1 Time (s)", "Zeit [s]", "Time [s]"])
+    @pytest.mark.parametrize("date", ["System Date", "Timestamp"])
+    def test_a_clock_with_its_unit_goes_before_a_date(self, tmp_path: Path, clock: str, date: str) -> None:
+        """The date has whole seconds: five samples have the same one."""
+        time, deflection, force = loading()
+        rows = [
+            f"2026-01-01 12:00:{int(t):02d},{t:.6g},{x:.6g},{f:.6g}"
+            for t, x, f in zip(time, deflection, force, strict=True)
+        ]
+        path = tmp_path / "a.csv"
+        path.write_text("\n".join([f"{date},{clock},stroke [cm],force [N]", *rows]), encoding="utf-8")
+        np.testing.assert_allclose(read_recording(path, radius="flat").time, time)
+
+    def test_a_date_is_the_time_beside_a_clock_without_a_unit_or_beside_several(self, tmp_path: Path) -> None:
+        _, deflection, force = loading()
+        rows = [
+            f"2026-01-01 12:{i // 60:02d}:{i % 60:02d},{i + 9},{i + 7},{x:.6g},{f:.6g}"
+            for i, (x, f) in enumerate(zip(deflection, force, strict=True))
+        ]
+        for clocks in ("Temps,Zeit", "Temps [s],Zeit [s]"):
+            path = tmp_path / "a.csv"
+            path.write_text("\n".join([f"Date,{clocks},stroke [cm],force [N]", *rows]), encoding="utf-8")
+            np.testing.assert_allclose(read_recording(path, radius="flat").time, np.arange(101.0))
