@@ -317,10 +317,11 @@ def _loop_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
 def _pull_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
     """Return a sentence where a part pulls all the time, the less the more it is deflected, "" where it does not.
 
-    A part that is stretched further pulls more, so that what is read may be a load cell that was not zeroed.
+    A part that is stretched further pulls more, so that what is read may be a load cell that was not zeroed; one that
+    is deflected below zero rather than above is stretched.
     """
     least, most = float(f.min()), float(f.max())
-    if not most < 0.0 or np.ptp(x) == 0.0 or not float(np.corrcoef(x, f)[0, 1]) > FOLLOWS:
+    if not (most < 0.0 and x.max() > -x.min() and np.ptp(x) > 0.0 and np.corrcoef(x, f)[0, 1] > FOLLOWS):
         return ""
     given = gauges.origin.zero(gauges.at_zero({"force": float(f"{least:.3g}")}))
     return (

@@ -150,3 +150,18 @@ def test_a_load_cell_that_was_not_zeroed_is_asked_about(tmp_path: Path) -> None:
     zeroed = inspect_recording(path, Choices(part=True, columns=signed, zero={"force": "-15 N"})).recording
     assert zeroed.doubts == ()
     np.testing.assert_allclose(zeroed.force, 0.5 + 6.0 * X / X.max(), atol=1e-3)
+
+
+@pytest.mark.parametrize("ends", [(0.0, -1.0), (0.1, -0.9)])
+def test_a_part_that_pulls_more_the_further_it_is_stretched_is_not(
+    tmp_path: Path, ends: tuple[float, float]
+) -> None:
+    """Extension and pull are counted negative, both signs are given, and the load cell reads -0.04 kN at the start."""
+    path = tmp_path / "a.csv"
+    stretched = np.linspace(*ends, T.size)
+    table = np.column_stack([T, 0.3 * stretched, -0.04 - 18.0 * (ends[0] - stretched)])
+    np.savetxt(
+        path, table, fmt="%.5f", delimiter=",", header="time [s],deflection [mm],force [kN]", comments=""
+    )
+    signed = {"deflection": "+deflection [mm]", "force": "+force [kN]"}
+    assert inspect_recording(path, Choices(part=True, columns=signed)).recording.doubts == ()
