@@ -49,7 +49,8 @@ def count_from_zero(
     """Subtract the zeros that are given from channels [SI], and turn those that count the other way round, in place.
 
     A part may pull: where its force does not fall with the deflection, signs that leave a doubt are taken as they are,
-    but for both being negative under load, as of a part that is loaded the other way and then relaxes or breaks.
+    but for both being negative under load, as of a part that is loaded the other way and then relaxes or breaks: then
+    nothing tells whether it is pressed or pulled.
     A part that is loaded both ways, as a damper is, shows by no sign how its rig counts: the larger of its forces is
     that of its stiffer way.
     Where a mass that moves may be why the force falls, nothing is turned without asking.
@@ -92,7 +93,9 @@ def count_from_zero(
         return Counted(gauges, tuple(notes), _asked(values, gauges, likely, why, settings))
     for name in sorted(turned):
         values[name] = 0.0 - values[name]
-    if turned:
+    if len(turned) == 2 and settings.part:
+        notes.append("deflection and force are both negative under load: both turned in sign")
+    elif turned:
         notes.append(f"the rig counts compression negative: {' and '.join(sorted(turned))} turned in sign")
     return Counted(replace(gauges, turned=gauges.turned ^ turned), tuple(notes))
 
