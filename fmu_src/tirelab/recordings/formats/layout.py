@@ -21,6 +21,7 @@ from .separator import find_separator
 from .spaced import TAB, spaced_columns, with_tabs
 from .table import (
     BLANK_WORDS,
+    TRUTH_WORDS,
     Header,
     RecordingError,
     is_comment,
@@ -365,7 +366,8 @@ def _words_above(preamble: Sequence[str], separator: str) -> list[str]:
 
 
 def _all_numeric(cells: Sequence[str]) -> bool:
-    values = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS]
+    """Whether a row holds numbers and no name; switches beside them are none."""
+    values = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS | TRUTH_WORDS]
     return bool(values) and all(is_value(cell) for cell in values)
 
 

@@ -16,6 +16,9 @@ FloatArray = NDArray[np.float64]
 BLANK_WORDS = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none"})
 """What a cell may hold, in lower case, to say that nothing was measured."""
 
+TRUTH_WORDS = frozenset({"true", "false"})
+"""What a cell may hold, in lower case, that is neither a number nor the name of a column: a switch."""
+
 
 _EXCEL_ERRORS = ("#n/a", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!")
 

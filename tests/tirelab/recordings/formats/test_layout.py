@@ -351,3 +351,14 @@ def test_a_header_with_a_column_of_events_that_few_rows_have(tmp_path: Path) -> 
     np.testing.assert_allclose(found.time, 0.05 * np.arange(40), atol=1e-9)
     np.testing.assert_allclose(found.deflection, 1e-4 * np.arange(40))
     np.testing.assert_allclose(found.force, 490.3325 * np.arange(40))
+
+
+@pytest.mark.parametrize("switch", ["False", "TRUE", "false"])
+def test_a_switch_beside_numbers_makes_no_header_of_the_first_row(tmp_path: Path, switch: str) -> None:
+    path = tmp_path / "a.tsv"
+    path.write_text("".join(f"{0.1 * i:g}\t{2.0 * i:g}\t{switch}\t{0.5 * i:g}\n" for i in range(40)))
+    columns = {"time": "#1", "deflection": "#2", "force": "#4"}
+    units = {"time": "s", "deflection": "mm", "force": "N"}
+    found = read_recording(path, radius="flat", columns=columns, units=units)
+    assert "the file has no header row: its columns are known by number only" in found.notes
+    np.testing.assert_allclose(found.force, 0.5 * np.arange(40))
