@@ -96,13 +96,20 @@ def asked(
             "export the readings themselves, one row for each sample"
         )
     guessed = _guessed_columns(lacking.columns, matches, values, headers) if lacking.columns else {}
+    unknown = {"deflection", "force"} & set(lacking.columns) - set(guessed)
     strained = [quoted(h.text) for h in headers if is_strained(h.name)]
-    if strained and {"deflection", "force"} & set(lacking.columns) - set(guessed):
+    if strained and unknown:
         return RecordingError(
             f"{origin}: no column for {', '.join(lacking.columns)}: {listed(strained)} "
             f"{'says' if len(strained) == 1 else 'say'} strain or stress, which are neither deflection nor force; "
             "export the readings of the travel and the load cell, or multiply the strain by the gauge length and the "
             "engineering stress by the cross-section"
+        )
+    taken = {*guessed.values(), *(match.index for match in matches.values())}
+    if unknown and taken.issuperset(range(len(headers))) and origin.kind == "file":
+        return RecordingError(
+            f"{origin}: no column is left for the {' and the '.join(sorted(unknown))} (its columns are "
+            f"{columns_listed(headers)}); export {'it' if len(unknown) == 1 else 'them'} with the others"
         )
     sized = {name: values[i] for name, i in guessed.items()}
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}

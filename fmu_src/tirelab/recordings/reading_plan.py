@@ -81,7 +81,8 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         first, width = found.looked_at
         looked_at = SomeColumns(table, first, width)
         of_test = {name: replace(match, index=match.index - first) for name, match in matches.items()}
-    if no_time and settings.columns.get("time") is None and _may_hold_time(looked_at, of_test):
+    asks = no_time and settings.columns.get("time") is None
+    if asks and _may_hold_time(looked_at, of_test, len(lacking)):
         lacking = ("time", *lacking)
     wanted = Lacking(lacking, without_unit, radius is None and "radius" not in matches, wrong)
     if wanted:
@@ -162,12 +163,17 @@ def _given_interval(
     return interval, [f"time made of samples {interval:.6g} s apart, as given{instead}"]
 
 
-def _may_hold_time(table: Table, matches: Mapping[str, Match]) -> bool:
-    """Return whether a column that is no channel may be the time: it has a unit of time, or its numbers rise evenly."""
+def _may_hold_time(table: Table, matches: Mapping[str, Match], lacking: int) -> bool:
+    """Return whether a column that is no channel may be the time: it has a unit of time, or its numbers rise evenly.
+
+    lacking: how many other channels have no column; where they take all that are left, rising is no sign of a clock
+    """
     taken = {match.index for match in matches.values()}
     free = [i for i in range(len(table.headers)) if i not in taken]
     if stating_time(table.headers, taken):
         return True
+    if len(free) <= lacking:
+        return False
     for index in [i for i in free if may_count_time(table.headers[i])][:MOST_LOOKED_AT]:
         try:
             if rises(table.read((Wanted(index, "time"),)).values[0]):

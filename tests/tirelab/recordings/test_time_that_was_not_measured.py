@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from house_form import loading, write_rows
+from house_form import loading, refusal, write_rows
+from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
 from tirelab.recordings.units import UnitError, parse_interval
 
@@ -86,6 +87,36 @@ def test_a_time_is_not_asked_for_where_no_column_can_be_one(tmp_path: Path) -> N
     assert "time" not in str(caught.value)
     columns, units = {"deflection": "#1", "force": "#2"}, {"deflection": "cm", "force": "N"}
     assert not read_recording(path, radius="flat", columns=columns, units=units).timed
+
+
+@pytest.mark.parametrize("header", ["", "A,B"])
+def test_of_two_columns_none_is_asked_for_as_the_time(tmp_path: Path, header: str) -> None:
+    """A stroke that is driven evenly one way rises as a clock does; the two other channels need both columns."""
+    stroke = np.linspace(0.0, 0.3, 61)
+    path = write_rows(tmp_path / "a.csv", header, stroke, 20.0 * stroke**1.4)
+    with pytest.raises(IncompleteRecording) as caught:
+        read_recording(path, radius="flat")
+    assert caught.value.words()[:2] == ["--columns", "deflection=#1,force=#2"]
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ("time_ms,force_N", "no column is left for the deflection (its columns are 'time_ms', 'force_N')"),
+        (
+            "time_ms,deflection_mm",
+            "no column is left for the force (its columns are 'time_ms', 'deflection_mm')",
+        ),
+    ],
+)
+def test_a_channel_that_no_column_is_left_for_is_to_be_exported(
+    tmp_path: Path, header: str, said: str
+) -> None:
+    time, _, force = loading()
+    path = write_rows(tmp_path / "a.csv", header, 1e3 * time, force)
+    refused = refusal(path, radius="flat")
+    assert f"{said}; export it with the others" in refused
+    assert "--columns" not in refused
 
 
 def test_arrays_and_frames_alike() -> None:
