@@ -33,14 +33,22 @@ WIDTH_LEAST = 100
 
 @dataclass(frozen=True)
 class _Words:
-    """The recordings and how they are read, as words of the commands that are proposed."""
+    """The recordings and how they are read, as words of the commands that are proposed.
+
+    refused: why no diagnosis takes these recordings, "" where one does
+    """
 
     recordings: tuple[str, ...]
     reading: tuple[str, ...]
+    refused: str
 
     def diagnose(self, tire: Path) -> str:
         """Return the command that tells what a tire leaves out of the recordings."""
         return shlex.join(["tirelab", "diagnose", *self.recordings, *self.reading, "--tire", str(tire)])
+
+    def then(self, tire: Path) -> str:
+        """Return the end of a sentence that proposes the diagnosis after another command."""
+        return "" if self.refused else f", then `{self.diagnose(tire)}`"
 
     def identify(self, recordings: Sequence[str], part: str, out: Path) -> str:
         """Return the command that identifies one law of a part; recordings: these or pieces of them."""
@@ -112,7 +120,9 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
     known = part and all(_is_said_to_be_a_part(file, said) for file in files)
-    words = _Words(tuple(map(str, recordings)), tuple((said if known else reading).words()))
+    words = _Words(
+        tuple(map(str, recordings)), tuple((said if known else reading).words()), _refused(read, bool(part))
+    )
     if found is None:
         _part(output, console, dict(zip(files, read, strict=True)), (part, options["name"]), words)
         return
@@ -120,7 +130,7 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     with staged(out.parent) as folder:
         write_tire(found.tire, folder / out.name)
         (folder / beside.name).write_text(found.to_json(), encoding="utf-8")
-    misfit = misfit_sentence(found.rmse, found.reading_noise, words.diagnose(out))
+    misfit = misfit_sentence(found.rmse, found.reading_noise, words.diagnose(out), refused=words.refused)
     if output.as_json:
         output.result((), found.to_json())
         if misfit:
@@ -160,13 +170,12 @@ def _part(
         best = best_writable(fits, recordings)
         law = next((fit for fit in fits if fit.name == best), None) or min(fits, key=lambda fit: fit.rmse)
         named = f"the law {law.name}"
-    misfit = misfit_sentence(law.rmse, reading_noise(recordings), words.diagnose(output.out), named)
+    noise, diagnosis = reading_noise(recordings), words.diagnose(output.out)
+    misfit = misfit_sentence(law.rmse, noise, diagnosis, named, words.refused)
     if tire is not None:
         reason = curve_advice(model, recordings) if misfit else ""
         if reason:
-            misfit = (
-                f"{reason}: `{words.identify(words.recordings, CURVE, tire)}`, then `{words.diagnose(tire)}`"
-            )
+            misfit = f"{reason}: `{words.identify(words.recordings, CURVE, tire)}`{words.then(tire)}"
         misfit = _advice_on_holds(found, part, tire, words) or misfit
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]
@@ -189,7 +198,8 @@ def _part(
         if advice := _advice_on_holds(found, best, output.out, words):
             console.print(f"- {advice}", markup=False, soft_wrap=True)
         elif misfit:
-            console.print(f"- {misfit} then", markup=False, soft_wrap=True)
+            then = "" if words.refused else " then"
+            console.print(f"- {misfit}{then}", markup=False, soft_wrap=True)
         curve = next(fit for fit in fits if fit.name == CURVE)
         if misfit and law.rmse > MISFIT * curve.rmse:
             own = words.identify(words.recordings, CURVE, output.out)
@@ -212,8 +222,19 @@ def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words:
     pieces = [f"{path}@{ramp[0]:.4g}s:{ramp[1]:.4g}s" if ramp else str(path) for path, ramp in ramps.items()]
     return (
         f"nearly all of {listed(held)} is a hold, in which the force may relax, and this is its law, of no spring: "
-        f"identify the way there, `{words.identify(pieces, part, tire)}`, then `{words.diagnose(tire)}`"
+        f"identify the way there, `{words.identify(pieces, part, tire)}`{words.then(tire)}"
     )
+
+
+def _refused(recordings: Sequence[Recording], part: bool) -> str:
+    """Return why no diagnosis takes recordings, "" where one does."""
+    from ..preprocessing.data_checks import PoorRecording, check_recordings
+
+    try:
+        check_recordings(recordings, two_sided=part)
+    except PoorRecording as error:
+        return str(error)
+    return ""
 
 
 def _is_said_to_be_a_part(path: Path, reading: Reading) -> bool:

@@ -38,11 +38,13 @@ def reading_noise(surfaces: Sequence[Surface], pairs: NDArray[np.float64]) -> fl
     return float(np.sqrt(squares / samples)) if samples else float("nan")
 
 
-def misfit_sentence(rmse: float, noise: float, command: str, law: str = "the law") -> str:
+def misfit_sentence(rmse: float, noise: float, command: str, law: str = "the law", refused: str = "") -> str:
     """Return the sentence for a law that leaves more than the noise, both [N], "" where it does not.
 
-    command: that looks for what is missing; law: what it is called
+    command: that looks for what is missing; law: what it is called; refused: why that command takes no such recordings
     """
     if not noise > 0.0 or rmse < MISFIT * noise:
         return ""
-    return f"{law} leaves {rmse:.2g} N beside {noise:.2g} N of noise, so something else acts here: try `{command}`"
+    step = f"but no diagnosis can say what: {refused}" if refused else f"try `{command}`"
+    mark = ", " if refused else ": "
+    return f"{law} leaves {rmse:.2g} N beside {noise:.2g} N of noise, so something else acts here{mark}{step}"

@@ -63,3 +63,20 @@ def test_the_command_proposes_one_that_runs(tmp_path: Path) -> None:
     write_recording(pressed(0.0, 4.0), tmp_path / "press.csv")
     done = CliRunner().invoke(main, ["identify", str(tmp_path / "press.csv"), "--out", str(out)])
     assert "of noise" not in done.output
+
+
+@pytest.mark.parametrize("part", [[], ["--part", "linear"], ["--part", "compare"]])
+def test_no_diagnosis_is_proposed_that_would_be_refused(tmp_path: Path, part: list[str]) -> None:
+    """One stroke there and back of 80 samples, on a line with 27 N of friction: a hundred are needed."""
+    time = 0.05 * np.arange(80)
+    x = 0.02 * (1.0 - np.abs(time - 2.0) / 2.0) + 1e-4
+    force = 3e4 * x + 27.0 * np.sign(2.0 - time) + 0.1 * np.random.default_rng(1).standard_normal(80)
+    path, out = tmp_path / "press.csv", tmp_path / "tire.json"
+    write_recording(Recording.from_arrays(time, x, force, "flat"), path)
+    done = CliRunner().invoke(main, ["identify", str(path), "--out", str(out), *part])
+    assert done.exit_code == 0, done.output
+    (said,) = [line for line in done.output.splitlines() if "of noise" in line]
+    assert said.endswith(
+        "but no diagnosis can say what: recording press has 80 samples; at least 100 are needed"
+    )
+    assert "tirelab diagnose" not in done.output
