@@ -154,7 +154,7 @@ def _part(
     from ..computing.staging import staged
     from ..identification.misfit import MISFIT, misfit_sentence
     from ..identification.part_laws import fit_laws, reading_noise
-    from ..identification.part_tire import CURVE, best_writable, curve_advice, springless, tire_of
+    from ..identification.part_tire import CURVE, best_writable, curve_advice, falling, springless, tire_of
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
@@ -163,7 +163,8 @@ def _part(
     if tire is not None:
         law = next(fit for fit in fits if fit.name == part)
         model = tire_of(law, recordings, name)
-        written = springless(law, model)
+        line = next(fit for fit in fits if fit.name == "linear")
+        written = springless(law, model) or falling(law, line)
         with staged(tire.parent) as folder:
             write_tire(model, folder / tire.name)
     else:

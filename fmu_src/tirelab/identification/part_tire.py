@@ -163,6 +163,22 @@ def springless(fit: LawFit, tire: TireModel) -> str:
     )
 
 
+def falling(fit: LawFit, linear: LawFit) -> str:
+    """Return a sentence for a curve of a force that falls as the deflection grows, "" where it does not.
+
+    linear: the straight line through the same readings, which is refused as a spring where it falls
+    """
+    k, deviation = next(
+        (value, deviation) for symbol, value, deviation, _ in linear.constants if symbol == "k"
+    )
+    if fit.name != CURVE or not k + SURE * deviation < 0.0:
+        return ""
+    return (
+        f"the force falls as the deflection grows, by {-k:.3g} N/mm on the whole, as between magnets; if this is a "
+        "spring, check the signs of force and deflection"
+    )
+
+
 def ramp_before_hold(recording: Recording) -> tuple[float, float] | None:
     """Return the times [s] of the ramp after which a recording is a hold; None where it is not nearly all a hold.
 

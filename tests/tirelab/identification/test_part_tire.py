@@ -51,6 +51,20 @@ def test_a_force_that_falls_as_the_deflection_grows_is_no_spring() -> None:
         tire_of(linear, [turned], "")
 
 
+@pytest.mark.parametrize(("stiffness", "said"), [(-40e3, True), (40e3, False)])
+def test_a_curve_of_it_is_written_with_a_word(tmp_path: Path, stiffness: float, said: bool) -> None:
+    path, out = tmp_path / "part.csv", tmp_path / "tire.json"
+    write_recording(recording(BOTH, 10.0 + stiffness * BOTH), path)
+    signed = ["--columns", "deflection=+deflection,force=+force"]
+    done = CliRunner().invoke(
+        main, ["identify", str(path), *signed, "--part", "piecewise", "--out", str(out)]
+    )
+    assert done.exit_code == 0, done.output
+    words = "the force falls as the deflection grows, by 40 N/mm on the whole, as between magnets"
+    assert (words in done.output) == said
+    assert out.exists()
+
+
 def slack(tmp_path: Path) -> list[str]:
     """Write a spring that is loose below 4 mm and pulled out of contact, with 10 % friction, and return the words."""
     time = np.arange(1200) / 50.0
