@@ -21,7 +21,8 @@ class Signs:
     """The factors, 1 or -1, that make deflection and force positive in compression, and why they are in doubt.
 
     In doubt they are the likely ones: a tire pushes, and more the more it is pressed.
-    falls: whether the force falls where the deflection rises; negative: whether both are negative under load
+    falls: whether the force falls where the deflection rises, up to the largest one where the whole does not tell
+    negative: whether both are negative under load
     """
 
     deflection: int = 1
@@ -56,14 +57,16 @@ def compressive_signs(deflection: NDArray[np.float64], force: NDArray[np.float64
     unloaded = together == 0 and pushing == 0
     if not negative or unloaded:
         return Signs()
+    at_first = together == 0 and before < 0.0
     falls = {1: "rises with", 0: "does not follow", -1: "falls with"}[together]
+    follows = "falls, up to the largest one, with" if at_first else falls
     side = {1: "positive", 0: "of both signs", -1: "negative"}
     force_sign = pushing or 1
     return Signs(
         together * force_sign if together else compressed or 1,
         force_sign,
-        doubt=f"force {falls} deflection; under load force is {side[pushing]}, deflection {side[compressed]}",
-        falls=together < 0,
+        doubt=f"force {follows} deflection; under load force is {side[pushing]}, deflection {side[compressed]}",
+        falls=together < 0 or at_first,
         negative=pushing < 0 and compressed < 0,
     )
 

@@ -113,6 +113,22 @@ class TestSigns:
         down = compressive_signs(-deflection - 0.2, force)
         assert (down.deflection, down.force) == (-1, 1)
 
+    @pytest.mark.parametrize("softens_to", [0.6, 0.4])
+    def test_a_specimen_that_yields_while_its_gauge_counts_down_is_asked_about(
+        self, tmp_path: Path, softens_to: float
+    ) -> None:
+        """Its force rises over the first third of the way, and falls over the rest."""
+        way = np.linspace(0.0, 4.5, 400)
+        force = np.interp(way, [0.0, 1.5, 4.5], [0.0, 1200.0, softens_to * 1200.0])
+        path = write_rows(tmp_path / "a.csv", "time [s],Displacement [mm],Force [N]", way, -way, force)
+        with pytest.raises(IncompleteRecording) as caught:
+            Reading(part=True)(path)
+        assert caught.value.words() == ["--columns", "deflection=-Displacement [mm],force=+Force [N]"]
+        columns = caught.value.settings.columns
+        np.testing.assert_allclose(
+            Reading(part=True, columns=columns)(path).deflection, 1e-3 * way, rtol=1e-5
+        )
+
     def test_a_part_whose_force_has_both_signs_is_left_as_it_is(self, tmp_path: Path) -> None:
         time = np.arange(400) / 10.0
         header = "time [s],Displacement [mm],Force [N]"
