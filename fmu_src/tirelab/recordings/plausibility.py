@@ -307,10 +307,9 @@ def _loop_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
     share = work_share(x, f)
     if not share < -CLEAR:
         return ""
-    naming = gauges.signed(flipped="force")
     return (
         f"the loops of force over deflection run backwards: {-share:.0%} of the work comes out of the part, and "
-        f"nothing passive gives out energy; is one of the two counted the other way? Then {naming} turns the force"
+        f"nothing passive gives out energy; {gauges.otherwise()}"
     )
 
 

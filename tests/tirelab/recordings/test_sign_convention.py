@@ -208,6 +208,21 @@ def test_loops_that_run_backwards_are_doubted_and_the_turned_force_is_not(tmp_pa
     assert "backwards" not in " ".join(read_recording(path, radius="flat", columns=turned).notes)
 
 
+def test_columns_without_names_whose_loops_run_backwards_may_be_exchanged(tmp_path: Path) -> None:
+    """A spring with friction whose force is the first column: the loop of x over F runs the other way round."""
+    turn = 2.0 * np.pi * np.arange(2000) / 400.0
+    x = 2.0 + np.sin(turn)
+    path = write_rows(tmp_path / "a.csv", "", 5.0 * x + 20.0 * np.cos(turn), x)
+    units = {"deflection": "mm", "force": "N"}
+    (doubt,) = Reading(part=True, columns={"deflection": "+#1", "force": "+#2"}, units=units)(path).doubts
+    assert "are they exchanged, or is one counted the other way? --columns deflection=#2,force=#1" in doubt
+    assert Reading(part=True, columns={"deflection": "+#2", "force": "+#1"}, units=units)(path).doubts == ()
+    named = write_rows(tmp_path / "b.csv", "deflection,force", 5.0 * x + 20.0 * np.cos(turn), x)
+    columns = {"deflection": "+deflection", "force": "+force"}
+    (doubt,) = Reading(part=True, columns=columns, units=units)(named).doubts
+    assert "exchanged" not in doubt
+
+
 SIGNED = {"deflection": "+deflection [cm]", "force": "+force [N]"}
 
 
