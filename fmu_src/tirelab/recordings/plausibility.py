@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .jumps import sudden_doubts
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
-from .sign_convention import CLEAR, work_share
+from .work_doubt import work_doubt
 from .zero import Gauges, Zero
 
 FloatArray = NDArray[np.float64]
@@ -101,7 +101,7 @@ def doubts_of(
         if not largest <= LARGEST_PLAUSIBLE[name]:
             return Doubts()  # the recording refuses it
     origin = gauges.origin
-    backwards = _loop_doubt(gauges, values["deflection"], values["force"])
+    backwards = work_doubt(gauges, values["deflection"], values["force"], part)
     loops: tuple[str, ...] = (_placed(where("force", None), backwards),) if backwards else ()
     loops += tuple(_placed(where(name, None), said) for name, said in _state_doubts(values, units, part))
     for name, at, said in sudden_doubts(values["deflection"], values["force"]):
@@ -299,17 +299,6 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
         f"{what}: {guess[1]}? Then {origin.units(**{guess[0]: guess[1]})}{other}"
         if guess
         else f"{what}: check both units{other}"
-    )
-
-
-def _loop_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
-    """Return a sentence where the part gives out energy in every cycle, "" where it does not."""
-    share = work_share(x, f)
-    if not share < -CLEAR:
-        return ""
-    return (
-        f"the loops of force over deflection run backwards: {-share:.0%} of the work comes out of the part, and "
-        f"nothing passive gives out energy; {gauges.otherwise()}"
     )
 
 

@@ -126,6 +126,24 @@ def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> f
         return float((middle @ way) / np.sum(np.abs(middle - middle.mean()) * np.abs(way)))
 
 
+def loading_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
+    """Return the work of what the force gains up to its largest, over the largest that it could be, -1 to 1.
+
+        sum (F - F_1) dx / sum |F - F_1| |dx|,    from the first sample to the largest |F|
+
+    1 of a spring that is loaded, whatever its preload or the zero of its load cell; a snap-through has its barrier in
+    it. NaN where the force gains less than `CLEAR` of its largest, as friction alone, or the way is short (`PASSED`).
+    """
+    first = slice(0, int(np.argmax(np.abs(force))) + 1)
+    way, gained = np.diff(deflection[first]), force[first] - force[0]
+    short = not np.ptp(deflection[first]) > PASSED * np.ptp(deflection)
+    if short or not abs(gained[-1]) > CLEAR * np.max(np.abs(force)):
+        return float("nan")
+    middle = 0.5 * (gained[1:] + gained[:-1])
+    with np.errstate(all="ignore"):
+        return float((middle @ way) / (np.abs(middle) @ np.abs(way)))
+
+
 def mass_alike(
     time: NDArray[np.float64], deflection: NDArray[np.float64], force: NDArray[np.float64]
 ) -> float:

@@ -110,17 +110,6 @@ class Gauges:
         """Return the option that names both columns with their signs, with one of them the other way round."""
         return self.origin.columns(**self.columns(flipped))
 
-    def otherwise(self) -> str:
-        """Return what may be wrong where loops run backwards, and what to write: exchanged columns turn a loop, too."""
-        turns = f"{self.signed(flipped='force')} turns the force"
-        if not all(self.names[name].startswith("#") for name in ZEROED):
-            return f"is one of the two counted the other way? Then {turns}"
-        exchanged = self.origin.columns(deflection=self.names["force"], force=self.names["deflection"])
-        return (
-            "nothing names the columns: are they exchanged, or is one counted the other way? "
-            f"{exchanged} exchanges them, {turns}"
-        )
-
     def at_zero(self, more: Mapping[str, float]) -> dict[str, str]:
         """Return the zeros to give, where after those that are given so much more [SI] is left."""
         found = dict(self.zeros)
