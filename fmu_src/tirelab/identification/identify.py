@@ -15,10 +15,11 @@ from radialtire.tirefile import LAWS
 from ..errors import TirelabError
 from ..recordings.recording import Recording
 from ..recordings.zero import refuse_far_zeros
+from ..simulation.simulate import simulate
 from .forms import Form, HullForm, form_of
 from .intervals import profile
 from .joint import JointFit, joint_fit
-from .misfit import reading_noise
+from .misfit import noise_beside
 from .noise import PowerFit, with_covariance
 from .power_fit import chunks, fit_power, inner_products
 from .result import Constant, Identification, SurfaceFit, recording_notes, statements
@@ -75,8 +76,9 @@ def identify(
         for surface, fit, pair in zip(surfaces, fits, form.coefficients(joint.logs).tolist(), strict=True)
     )
     alone = tuple(0 in s.samples for s in surfaces)
+    tire = _tire(form.law(joint.logs), surfaces, recordings, name)
     return Identification(
-        tire=_tire(form.law(joint.logs), surfaces, recordings, name),
+        tire=tire,
         surfaces=rows,
         constants=constants,
         correlation=_correlation(joint),
@@ -85,7 +87,7 @@ def identify(
         two_stage_rmse=_rmse(surfaces, form.coefficients(start)),
         chi_square=profiles.chi_square,
         freedom=profiles.freedom,
-        reading_noise=reading_noise(surfaces, form.coefficients(joint.logs)),
+        reading_noise=noise_beside(recordings, [r.force - simulate(tire, r) for r in recordings]),
         notes=(
             *why,
             *recording_notes(rows, alone),

@@ -7,34 +7,41 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..preprocessing.spread import robust_sigma
-from .surfaces import Surface
+from ..preprocessing.driven import Driven
+from ..preprocessing.motion import motion_of
+from ..preprocessing.noise import noise_of
+from ..preprocessing.samples import is_timed, surface_numbers
+from ..recordings.recording import Recording
+
+Array = NDArray[np.float64]
 
 MISFIT = 1.5
 """A law misfits where it leaves this many times the noise of the readings: their error is known to a few percent."""
 
-THIRD = 20.0**0.5
-"""Root of the sum of squares of the weights 1, -3, 3, -1: the deviation of a third difference of white noise."""
-
 SAMPLES_LEAST = 50
 """With fewer samples of a recording the noise is not taken from it."""
 
+SAMPLES_MOST = 100_000
+"""Budget: samples of a recording, the first ones, that show its noise."""
 
-def reading_noise(surfaces: Sequence[Surface], pairs: NDArray[np.float64]) -> float:
+
+def noise_beside(recordings: Sequence[Recording], residuals: Sequence[Array]) -> float:
     """Return the noise of the readings [N], root mean square over the recordings; NaN where they are too short.
 
-    Third differences of successive errors F - A x^B leave noise alone: what the law misses changes little from one
-    sample to the next. The noise of the deflection, passed on by the stiffness, is in it. pairs: A, B of each surface
+    It is the noise that a diagnosis finds in a residual [N]: one that a filter smoothed counts whole, and what comes
+    again at the same deflection is none. The noise of the deflection, passed on by the stiffness, is in it.
     """
     squares, samples = 0.0, 0
-    for surface, (coefficient, exponent) in zip(surfaces, pairs.tolist(), strict=True):
-        for piece in surface.pieces:
-            if piece.force.size < SAMPLES_LEAST:
-                continue
-            error = piece.force - coefficient * np.exp(exponent * piece.log_deflection)
-            level = robust_sigma(np.diff(error, 3)) / THIRD
-            squares += piece.force.size * level**2
-            samples += piece.force.size
+    for recording, residual in zip(recordings, residuals, strict=True):
+        if residual.size < SAMPLES_LEAST:
+            continue
+        first = slice(0, SAMPLES_MOST)
+        motion = motion_of(recording.time[first], recording.deflection[first], timed=is_timed([recording]))
+        (surface,) = surface_numbers([recording.surface_radius[first]])
+        interval = float(np.median(np.diff(recording.time)))
+        driven = Driven(interval, motion.deflection, motion.rate, motion.acceleration, surface)
+        squares += residual.size * noise_of(residual[first], driven).level ** 2
+        samples += residual.size
     return float(np.sqrt(squares / samples)) if samples else float("nan")
 
 

@@ -29,11 +29,10 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from ..errors import TirelabError
-from ..preprocessing.spread import robust_sigma
 from ..recordings.plausibility import force_begins
 from ..recordings.recording import Recording
 from .both_ways import loop_state, passed_both_ways
-from .misfit import SAMPLES_LEAST, THIRD
+from .misfit import noise_beside
 from .surfaces import CM_PER_M
 
 Array = NDArray[np.float64]
@@ -130,11 +129,15 @@ def constant_fit(recordings: Sequence[Recording]) -> LawFit:
 def reading_noise(recordings: Sequence[Recording]) -> float:
     """Return the noise of the forces [N], root mean square over the recordings; NaN where they are too short.
 
-    From third differences of the force, which changes little from one sample to the next but for noise.
+    It is that beside a polynomial over the deflection, whatever law is fitted: the noise is no part of it.
     """
-    long = [r for r in recordings if len(r) >= SAMPLES_LEAST]
-    squares = [len(r) * (robust_sigma(np.diff(r.force, 3)) / THIRD) ** 2 for r in long]
-    return float(np.sqrt(sum(squares) / sum(len(r) for r in long))) if long else float("nan")
+    return noise_beside(recordings, [_beside_polynomial(r.deflection, r.force) for r in recordings])
+
+
+def _beside_polynomial(x: Array, force: Array) -> Array:
+    way = (x - x.mean()) / max(float(np.ptp(x)), 1e-300)
+    powers = np.vander(way, 4)
+    return np.asarray(force - powers @ np.linalg.lstsq(powers, force, rcond=None)[0])
 
 
 def _samples(recordings: Sequence[Recording]) -> _Samples:

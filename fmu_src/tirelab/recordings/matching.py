@@ -195,7 +195,8 @@ def _found(headers: Sequence[Header], channel: Channel, assigned: set[int]) -> l
 
 def _beside_dates(free: Sequence[tuple[int, Header]], channel: Channel, found: list[int]) -> list[int]:
     """Return what may be the time beside dates: the one clock with a name and unit of time, else what our words find,
-    else the one date, which is coarser."""
+    else the one date, which is coarser.
+    """
     clocks = [
         (i, h)
         for i, h in free

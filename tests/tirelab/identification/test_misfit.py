@@ -3,12 +3,14 @@
 import json
 import math
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from rivals import looking_for
+from scipy.signal import lfilter
 from tirelab.cli import main
 from tirelab.identification.identify import identify
 from tirelab.identification.misfit import misfit_sentence
@@ -34,6 +36,19 @@ def test_the_noise_is_that_of_the_readings_whatever_the_law_leaves(friction: flo
     found = identify([pressed(friction, noise)])
     assert found.reading_noise == pytest.approx(noise, rel=0.06)
     assert found.rmse == pytest.approx(math.hypot(friction, noise), rel=0.08)
+
+
+@pytest.mark.parametrize("samples", [3.0, 10.0])
+def test_noise_that_a_filter_made_smooth_counts_whole_and_is_no_misfit(samples: float) -> None:
+    """White noise behind a first-order filter of so many samples, 4 N in all: from sample to sample it is 0.5 N."""
+    white = np.random.default_rng(7).standard_normal(T.size + 100)
+    keep = math.exp(-1.0 / samples)
+    smooth = 4.0 * math.sqrt(1.0 - keep**2) * lfilter([1.0], [1.0, -keep], white)[100:]
+    one = pressed(0.0, 0.0)
+    found = identify([replace(one, force=one.force + smooth)])
+    # known to 1 / sqrt(2 n) of the 3000 / (2 samples) that are independent, and to the memory that is seen
+    assert found.reading_noise == pytest.approx(4.0, rel=0.25)
+    assert misfit_sentence(found.rmse, found.reading_noise, "x") == ""
 
 
 def test_only_what_is_more_than_the_noise_is_said() -> None:
