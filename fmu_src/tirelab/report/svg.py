@@ -106,11 +106,24 @@ def _make_room(figure: Figure) -> None:
     axes, *bars = figure.axes
     left = max(_room(axes), MARGINS[0])
     figure.subplots_adjust(left=left)
+    if not bars:
+        figure.subplots_adjust(right=_right_of_last_number(axes, left))
     for bar in bars:
         bar.apply_aspect()
         edge, right = bar.get_position().x1, figure.subplotpars.right
         if edge > 1.0 - _room(bar):
             figure.subplots_adjust(right=left + (right - left) * (1.0 - _room(bar) - left) / (edge - left))
+
+
+def _right_of_last_number(axes: Axes, left: float) -> float:
+    """Return the right edge of the axes with which the last number below them ends inside the figure."""
+    low, high = sorted(axes.get_xlim())
+    ticks = [tick for tick in axes.xaxis.get_majorticklocs() if low <= tick <= high]
+    if not ticks or not max(ticks) > low:
+        return MARGINS[1]
+    number = axes.xaxis.get_major_formatter().format_ticks(ticks)[ticks.index(max(ticks))]
+    half = 0.5 * CHARACTER * len(number) / (72.0 * WIDTH)
+    return min(MARGINS[1], float(left + (1.0 - half - left) * (high - low) / (max(ticks) - low)))
 
 
 def _room(axes: Axes) -> float:

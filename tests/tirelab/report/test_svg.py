@@ -66,6 +66,18 @@ def test_numbers_and_labels_stay_inside_the_picture(size: float) -> None:
         assert bar.ax.get_tightbbox(renderer).x1 <= figure.bbox.width
 
 
+@pytest.mark.parametrize("size", [4.05e-4, 4.0, 40.4, 4e5])
+def test_the_last_number_below_the_axes_stays_inside_the_picture(size: float) -> None:
+    with drawing() as (figure, axes):
+        axes.plot([0.0, size], [0.0, 1.0])
+        axes.set_xlim(-0.05 * size, size)
+        inline_svg(figure, "a line", "a")
+        renderer = RendererAgg(int(figure.bbox.width), int(figure.bbox.height), figure.dpi)
+        pairs = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
+        numbers = [label for tick, label in pairs if -0.05 * size <= tick <= size]
+        assert max(n.get_window_extent(renderer).x1 for n in numbers) <= figure.bbox.width
+
+
 def test_two_pictures_share_no_id() -> None:
     time = np.arange(50.0)
     case = Case(Recording("r", time, time / 1e4, np.full(50, np.inf), time), time, 2 * time)
