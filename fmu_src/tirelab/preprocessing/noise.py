@@ -299,8 +299,9 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
         could = any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
         if least * STAYS < most or ((could or not visits) and rises[min(last, len(rises) - 1)]):
             continue
+        # Apart, since of all of them together a recording of a few hundred memories could not tell.
         shapes = [driven.signals, driven.shapes(found.memory)]
-        if not (could and _follows(residual, np.column_stack(shapes), found.memory)):
+        if not (could and any(_follows(residual, own, found.memory) for own in shapes)):
             yield Noise(least, found.memory)
 
 

@@ -130,6 +130,20 @@ def test_a_white_part_does_not_hide_the_filtered_one() -> None:
     assert found.level == pytest.approx(1.0, rel=0.25)
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_few_hundred_memories_tell_a_filtered_noise_from_what_follows_a_sweep(order: int) -> None:
+    """30 s at 200 Hz from 0.1 to 12 Hz, where noise behind a filter at 12 Hz has some 400 independent values."""
+    time = np.arange(6000) / 200.0
+    motion = 4e-3 * np.sin(2.0 * np.pi * (0.1 * time + 0.5 * 11.9 / 30.0 * time**2))
+    rate = np.gradient(motion, time)
+    driven = Driven(1.0 / 200.0, motion, rate, np.gradient(rate, time), np.zeros(6000, dtype=np.intp))
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        filtered = lfilter(*butter(order, 0.116), random.standard_normal(6100))[100:]
+        found = noise_of(filtered / np.std(filtered) + random.normal(0.0, 0.1, 6000), driven)
+        assert found.level == pytest.approx(1.0, rel=0.25)
+
+
 def test_a_misfit_that_rises_with_the_lag_to_the_motions_own_length_is_no_noise() -> None:
     found = noise_beside(0.01 * WHITE + SLOW, MOTION)
     assert found.level == pytest.approx(0.01, rel=0.2)
