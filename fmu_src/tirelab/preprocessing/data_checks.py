@@ -184,20 +184,17 @@ RARE = 0.02
 
 
 def spikes(misfit: FloatArray) -> BoolArray:
-    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction, from each
-    by more than white noise makes two samples differ, and from their mean by more than it makes one of all (BY_CHANCE).
+    """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction, by more
+    than white noise makes one of all samples differ (BY_CHANCE).
 
-    The variance of a sample less that mean is 1.5 times that of a sample, of a difference twice that. A step differs
-    from one neighbour alone. The first and the last sample have one neighbour: they differ from it by as much more than
-    the misfit rises there.
+    Both differences are larger than a limit only if their mean is, whose variance is 1.5 times that of a sample. The
+    first and the last one have one neighbour: they differ from it by as much more than the misfit rises there.
     """
     level = white_level(misfit)
     far = float(np.sqrt(1.5) * norm.isf(BY_CHANCE / (2.0 * misfit.size)))
-    apart = float(np.sqrt(2.0) * norm.isf(BY_CHANCE / 2.0))
     lone = np.zeros(misfit.size, dtype=bool)
     before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
-    each = np.minimum(np.abs(before), np.abs(after)) * (before * after > 0.0)
-    lone[1:-1] = (each > apart * level) & (0.5 * np.abs(before + after) > far * level)
+    lone[1:-1] = (np.abs(before) > far * level) & (np.abs(after) > far * level) & (before * after > 0.0)
     for end, near, inwards in ((0, 1, misfit), (-1, -2, misfit[::-1])):
         step, *others = np.diff(inwards[: FEWEST_STEPS + 1]).tolist()
         lone[end] = not lone[near] and abs(step) > far * max(level, abs(float(np.median(others))))

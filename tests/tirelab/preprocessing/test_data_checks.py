@@ -268,16 +268,6 @@ def test_one_sample_far_off_is_an_outlier_also_at_an_end(place: int) -> None:
     assert np.flatnonzero(spikes(with_lone(**{f"at_{place}": -40.0}))).tolist() == [place]
 
 
-def test_an_outlier_is_judged_by_the_mean_of_its_neighbours_and_a_step_is_none() -> None:
-    """Noise moves the neighbours: 6.7 N beside 0.4 and 1.5 N is 5.75 N off their mean, whose limit is 5.4 N."""
-    misfit = np.random.default_rng(8).normal(size=1000)
-    misfit[499:502] = 0.4, 6.7, 1.5
-    assert np.flatnonzero(spikes(misfit)).tolist() == [500]
-    misfit[499:502] = 0.4, 30.0, 29.0
-    misfit[502:] += 30.0
-    assert not spikes(misfit).any()
-
-
 def test_outliers_are_told_with_the_time_of_the_first() -> None:
     residual = np.random.default_rng(2).normal(0.0, 1.0, TIME.size)
     residual[[400, 1200]] += 25.0
