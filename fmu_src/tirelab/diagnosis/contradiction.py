@@ -143,8 +143,8 @@ def contradiction_of(
         alike = _as_others(states, number) & explanation.compared[number]
         if others.error >= EXPLAINED * together or alike.mean() < NEGLIGIBLE:
             continue
-        own = rmse([(recording.force - simulate(others.model.tire, recording))[alike]])
         moved = smoothed_motion(recording, motions[number])
+        own = min(_missed(others.model.tire, recording, m, alike) for m in (None, moved))
         forms = others.model.missed(moved)
         if own > max(others.error / EXPLAINED, BEYOND_NOISE * float(np.hypot(level, forms))):
             names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
@@ -176,7 +176,8 @@ def contradiction_held_out(
         if alike.mean() < NEGLIGIBLE:
             continue
         moved = smoothed_motion(recording, motions[own_number])
-        own = rmse([(recording.force - simulate(explanation.model.tire, recording))[alike]])
+        # What begins in motion is not followed at once, and what follows noise of the reading is not of the part.
+        own = min(_missed(explanation.model.tire, recording, m, alike) for m in (None, moved))
         beyond = BEYOND_NOISE * float(np.hypot(level, explanation.model.missed(moved)))
         if own > max(explanation.error / EXPLAINED, beyond):
             as_if = _as_if(recording, moved, explanation.model.tire, alike, own)
@@ -191,6 +192,12 @@ def contradiction_held_out(
                     one_series=_of_one_series([*recordings, recording]),
                 )
     return None
+
+
+def _missed(tire: TireModel, recording: Recorded, moved: SmoothedMotion | None, alike: BoolArray) -> float:
+    """Return the error [N] of a tire on some samples of a recording, given its deflection as read or smoothed."""
+    force = simulate(tire, recording) if moved is None else simulate(tire, moved, moved)
+    return rmse([(recording.force - force)[alike]])
 
 
 def _of_one_series(recordings: Sequence[Recorded]) -> bool:

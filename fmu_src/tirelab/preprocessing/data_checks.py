@@ -17,6 +17,7 @@ from scipy.stats import binom, norm, t
 from ..errors import TirelabError
 from .gauge import deflection_noise
 from .levels import white_level
+from .motion import motion_of
 from .noise import FEWEST_EVENTS, STANDS_OUT
 from .samples import RawDataset, Recorded, is_timed
 
@@ -206,7 +207,11 @@ def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray
     """Return a sentence on each recording with outliers; residuals [N]: of each, with a noise-free deflection."""
     sentences = []
     for r, residual in zip(recordings, residuals, strict=True):
-        lone = np.flatnonzero(spikes(residual))
+        # In a reversal within a sample a mass or a damper has a force of one sample, and an end has one neighbour.
+        lone = np.flatnonzero(
+            spikes(residual) & motion_of(r.time, r.deflection, timed=is_timed([r])).resolved
+        )
+        lone = lone[(lone > 0) & (lone < residual.size - 1)]
         if lone.size:
             first = f"{float(r.time[lone[0]]):.4g} s" if is_timed([r]) else f"sample {lone[0] + 1}"
             which = "sample stands" if lone.size == 1 else "samples stand"

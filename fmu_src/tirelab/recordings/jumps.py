@@ -106,9 +106,14 @@ that does not, half of them are."""
 AROUND = 4
 """Readings before one, and as many after it, by which it is judged."""
 
+UNEVEN = 0.1
+"""Part of the usual step of the clock by which another one makes rows uneven: a motion is read as much further."""
+
 
 def false_readings(
-    deflection: NDArray[np.float64], force: NDArray[np.float64], *, timed: bool = True
+    deflection: NDArray[np.float64],
+    force: NDArray[np.float64],
+    uneven: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.intp]:
     """Return the samples at which a gauge read falsely: off the motion by more than its noise can be; arrays (n,).
 
@@ -116,18 +121,31 @@ def false_readings(
     middle between its neighbours, all to the same side. A corner of the motion lies on one of the two lines, and the
     bend of a motion is on other sides of line and middle. The readings before and after it lie on one curve but for
     their noise, and it is more than a step of the gauge. The force does not go along. Bright spots do so to a laser,
-    and dirt to a potentiometer. Without a time (`timed`) rows may be of uneven moments: a reading between both its
-    neighbours may be one of the motion, a little sooner or later.
+    and dirt to a potentiometer. Where rows are not known to be evenly apart in time (`uneven`), a reading between both
+    its neighbours may be one of the motion, a little sooner or later.
     """
     with np.errstate(all="ignore"):
         found = _off_the_motion(deflection)
-        if not timed:
+        if uneven is not None:
             before, own, after = (deflection[found + by] for by in (-1, 0, 1))
-            found = found[(own < np.minimum(before, after)) | (own > np.maximum(before, after))]
+            beyond = (own < np.minimum(before, after)) | (own > np.maximum(before, after))
+            found = found[beyond | ~uneven[found]]
         if found.size > RARE * deflection.size:
             return np.empty(0, dtype=np.intp)
         along = _off_the_motion(force) if found.size else found
     return np.setdiff1d(found, (along[:, None] + np.arange(-1, 2)).ravel())
+
+
+def unevenly_read(time: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return at which samples (n,) those around, by which a reading is judged, are not evenly apart in time [s]."""
+    if time.size < 2:
+        return np.zeros(time.size, dtype=bool)
+    with np.errstate(all="ignore"):
+        steps = np.diff(time)
+        usual = float(np.median(steps))
+        odd = ~(np.abs(steps - usual) <= UNEVEN * usual)
+    seen = np.convolve(odd, np.ones(2 * AROUND), mode="full")[AROUND - 1 : AROUND - 1 + time.size]
+    return np.asarray(seen > 0.5)
 
 
 def _off_the_motion(values: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .channels import CHANNELS
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
-from .jumps import false_readings, lost_readings
+from .jumps import false_readings, lost_readings, unevenly_read
 from .origin import Origin
 
 FloatArray = NDArray[np.float64]
@@ -83,7 +83,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             "readings that the gauge of the deflection lost, far from those before and after",
         ),
         (
-            partial(_misread, partial(false_readings, timed="time" in values)),
+            _read_falsely,
             "false readings of the deflection, off the motion before and after by more than noise",
         ),
     ):
@@ -170,6 +170,13 @@ def _misread(
     if deflection is None or force is None:
         return np.empty(0, dtype=np.intp)
     return search(deflection, force)
+
+
+def _read_falsely(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+    """Return the rows whose deflection is off the motion."""
+    count, time = len(next(iter(values.values()))), values.get("time")
+    uneven = np.ones(count, dtype=bool) if time is None else unevenly_read(time)
+    return _misread(partial(false_readings, uneven=uneven), values)
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:

@@ -105,12 +105,12 @@ def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> f
 
         sum F dx / sum |F - mean F| |dx|,    from the first to the last passage of the middle inwards
 
-    The middle is the median deflection. A passage counts once, where the deflection has gone on beyond it by `PASSED`:
-    the noise of a gauge passes the middle many times in one slow stroke.
+    The middle is that of the stroke: a median is where a part rests for long. A passage counts once, where the
+    deflection has gone on beyond it by `PASSED`: the noise of a gauge passes the middle many times in one slow stroke.
     1 of friction or a damper alone, 0 of a spring; nothing passive is below 0 but for a force that is read late: by
     phi of a cycle, a spring has -pi/2 sin phi. NaN where no cycle is whole. `deflection`, `force`: (samples,).
     """
-    above = deflection > np.median(deflection)
+    above = deflection > _middle(deflection)
     far, passages = _passages(deflection)
     inwards = [
         int(before + np.flatnonzero(above[before + 1 : after + 1] & ~above[before:after])[-1])
@@ -165,9 +165,14 @@ def mass_alike(
     return fall / float(x @ x) / rate**2
 
 
+def _middle(deflection: NDArray[np.float64]) -> float:
+    with np.errstate(all="ignore"):
+        return 0.5 * float(deflection.min()) + 0.5 * float(deflection.max())
+
+
 def _passages(deflection: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the samples that are beyond the middle by `PASSED` of the stroke, and those of them after which the next
     one is on the other side."""
-    beyond = (deflection - np.median(deflection)) / max(float(np.ptp(deflection)), np.finfo(float).tiny)
+    beyond = (deflection - _middle(deflection)) / max(float(np.ptp(deflection)), np.finfo(float).tiny)
     far = np.flatnonzero(np.abs(beyond) > PASSED)
     return far, np.flatnonzero(np.diff(np.sign(beyond[far])) != 0.0)

@@ -180,6 +180,16 @@ def test_two_ranges_of_one_file_have_one_specimen_and_its_gauges() -> None:
     assert apart.action.startswith("Check tire, pressure and zero of each")
 
 
+def test_a_held_out_recording_that_begins_in_motion_does_not_contradict_the_one_it_was_cut_from() -> None:
+    """A tire that is driven at 2 Hz over a damper; the last half, whose first rates nothing tells."""
+    whole = pressed("a", 1, damping=2e4, period=0.5)
+    half = slice(450, None)
+    cut = [getattr(whole, name)[half] for name in ("time", "deflection", "surface_radius", "force")]
+    verdict = diagnose([whole], TIRE, held_out=[Recording("cut", *cut)], catalogue=FEW)
+    assert [e.name for e in verdict.effects] == ["viscous_damping"]
+    assert verdict.contradiction is None
+
+
 def test_a_held_out_recording_of_another_tire_is_named_where_nothing_was_refused() -> None:
     """The fitted recording is that of the baseline; another tire of 500 N/cm^B is held out, a tenth less force."""
     verdict = diagnose([pressed("a", 1, 550.0)], TIRE, held_out=[pressed("other", 2, 495.0)], catalogue=FEW)

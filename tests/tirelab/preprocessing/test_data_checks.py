@@ -278,6 +278,16 @@ def test_outliers_are_told_with_the_time_of_the_first() -> None:
     assert " 1 single sample stands out from both neighbours, at sample 1201: " in said
 
 
+def test_what_a_mass_does_in_a_reversal_within_a_sample_is_told_as_no_outlier() -> None:
+    """Triangles of 4 s: at each corner the acceleration is one sample's, 25 N of a mass."""
+    corners = np.arange(200, TIME.size, 200)
+    triangles = 5e-3 * np.abs((TIME / 2.0 + 1.0) % 2.0 - 1.0) * 2.0
+    residual = np.random.default_rng(2).normal(0.0, 1.0, TIME.size)
+    residual[corners] += 25.0
+    assert np.flatnonzero(spikes(residual)).tolist() == corners.tolist()
+    assert outliers_told([recording(deflection=triangles)], [residual]) == ()
+
+
 def test_an_outlier_is_what_the_noise_of_all_samples_does_not_show() -> None:
     """By chance at most one sample in a hundred recordings is taken for one; with 3, that has a probability of 2 %.
 

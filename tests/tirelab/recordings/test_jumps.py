@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from house_form import write_rows
 from tirelab.recordings.choices import Choices
-from tirelab.recordings.jumps import break_doubt, false_readings, jump_doubt, lost_readings
+from tirelab.recordings.jumps import break_doubt, false_readings, jump_doubt, lost_readings, unevenly_read
 from tirelab.recordings.recording import understand
 
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -244,8 +244,20 @@ def test_without_a_time_a_reading_between_its_neighbours_may_be_one_of_another_m
     later[200] += 8e-6
     beside[200] += 0.4e-3
     assert false_readings(later, np.zeros(400)).tolist() == [200]
-    assert false_readings(later, np.zeros(400), timed=False).size == 0
-    assert false_readings(beside, np.zeros(400), timed=False).tolist() == [200]
+    assert false_readings(later, np.zeros(400), uneven=np.ones(400, dtype=bool)).size == 0
+    assert false_readings(beside, np.zeros(400), uneven=np.ones(400, dtype=bool)).tolist() == [200]
+
+
+def test_around_an_uneven_step_of_the_clock_a_reading_between_its_neighbours_is_of_another_moment() -> None:
+    """200 rows a second and one 4 ms later: read where the motion is by then, 0.8 of a step further."""
+    time = 0.005 * np.arange(400.0)
+    time[200] += 0.004
+    motion = 4e-3 * time + 0.1e-6 * np.random.default_rng(3).standard_normal(400)
+    uneven = unevenly_read(time)
+    assert np.flatnonzero(uneven).tolist() == list(range(196, 205))
+    assert false_readings(motion, np.zeros(400)).tolist() == [200]
+    assert false_readings(motion, np.zeros(400), uneven).size == 0
+    assert not unevenly_read(0.005 * np.arange(400.0)).any()
 
 
 def test_rows_that_are_skipped_without_a_time_leave_no_gap_in_it(tmp_path: Path) -> None:

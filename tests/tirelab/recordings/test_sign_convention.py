@@ -239,6 +239,15 @@ def test_a_mass_is_found_by_the_force_that_falls_with_its_way(rests: float) -> N
     assert mass_alike(time, deflection, -force) == np.inf
 
 
+def test_a_rest_at_one_end_that_is_longer_than_the_motion_hides_neither_mass_nor_work() -> None:
+    """2 s at 5 Hz between 0 and 24 mm, then 5 s at 24 mm: a mass of 1.7 kg, or friction of 10 N."""
+    time = 1e-3 * np.arange(7000)
+    x = np.where(time < 2.1, 0.012 - 0.012 * np.cos(2.0 * np.pi * 5.0 * time), 0.024)
+    acceleration = np.where(time < 2.1, 0.012 * (10.0 * np.pi) ** 2 * np.cos(10.0 * np.pi * time), 0.0)
+    assert mass_alike(time, x, 1.7 * acceleration) < 10.0
+    assert work_share(x, 10.0 * np.sign(np.gradient(x))) == pytest.approx(1.0, abs=0.05)
+
+
 @pytest.mark.parametrize(("rate", "asked"), [(5.0, True), (0.05, False)])
 @pytest.mark.parametrize("part", [True, False])
 def test_a_part_that_is_driven_so_fast_that_a_mass_does_it_is_not_turned_unasked(

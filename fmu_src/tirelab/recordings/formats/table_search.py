@@ -56,15 +56,17 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run. So
     is that one where it is a cell wider or narrower and names as many.
     """
-    best: tuple[int, list[_Row], int, str] | None = None
+    best: tuple[tuple[int, bool], list[_Row], int, str] | None = None
     for candidate in separator or SEPARATORS:
         rows = list(_rows(lines[start : start + SEARCHED], candidate))
         length, first = _longest_run(rows)
-        if length and (best is None or length > best[0]):
-            best = (length, rows, first, candidate)
+        # Of two that part as many rows, one may stand within a text: it does not part the header as it parts them.
+        headed = any(not row.numeric and len(row.cells) == len(rows[first].cells) for row in rows[:first])
+        if length and (best is None or (length, headed) > best[0]):
+            best = ((length, headed), rows, first, candidate)
     if best is None:
         return None
-    length, rows, first, found = best
+    (length, _), rows, first, found = best
     width = len(rows[first].cells)
     texts = [row for row in rows[:first] if not row.numeric and any(row.cells) and not is_units(row.cells)]
     texts = [row for row in texts if _SETTING.match(row.cells[0]) is None]

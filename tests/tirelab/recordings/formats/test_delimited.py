@@ -17,6 +17,15 @@ def text_table(separator: str, comma: bool = False) -> str:
     return separator.join(HEADERS) + "\n" + (body.replace(".", ",") if comma else body) + "\n"
 
 
+def test_semicolons_within_a_text_cell_part_no_table(tmp_path: Path) -> None:
+    """A logger keeps the message of the controller, itself of numbers, behind the columns."""
+    rows = text_table(",").splitlines()
+    raw = [f"{row},DTA;0;{i};1;7" for i, row in enumerate(rows[1:])]
+    path = tmp_path / "logger.csv"
+    path.write_text("\n".join([rows[0] + ",raw", *raw]), encoding="ascii")
+    assert_the_recording(read_recording(path, radius="flat"))
+
+
 class TestText:
     @pytest.mark.parametrize(
         ("suffix", "separator", "comma", "note"),
