@@ -149,9 +149,8 @@ def _is_fair(kind: str, world: World, linear: Explanations) -> bool:
     truth = linear.loss(base)
     if kind in UNKNOWN:
         best = linear.best(base, 2)
-        share = (
-            0.0 if kind == "set" else BEYOND_SHARE
-        )  # a set is told from others by little of what it changes
+        # a set is told from others by little of what it changes
+        share = 0.0 if kind == "set" else BEYOND_SHARE
         if best <= BEYOND_CATALOGUE or best <= share * truth:
             return False
     if kind == "outside":

@@ -10,7 +10,9 @@ from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
 from radialtire.part_curve import PartCurve
 
 from ..errors import TirelabError
+from ..recordings.counting import MOST_MOVED
 from ..recordings.recording import Recording
+from ..recordings.sign_convention import mass_alike
 from ..recordings.zero import FARTHEST
 from .both_ways import common_curve
 from .part_laws import LawFit, constant_fit, reading_noise
@@ -100,9 +102,12 @@ def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> st
 def curve_advice(tire: TireModel, recordings: Sequence[Recording]) -> str:
     """Return the reason to take the curve instead of the law of `tire`, "" where there is none.
 
-    A diagnosis refits the law by a factor and ten forces, so it cannot follow what rises and falls between them.
+    A diagnosis refits the law by a factor and ten forces, so it cannot follow what rises and falls between them. What a
+    mass may do, which moves between the part and the load cell, is left to the diagnosis.
     """
     if not tire.two_sided or tire.curve is not None:
+        return ""
+    if all(r.timed and mass_alike(r.time, r.deflection, r.force) < MOST_MOVED for r in recordings):
         return ""
     common, spring = common_curve(recordings, tire)
     if not (common > spring and common > reading_noise(recordings)):

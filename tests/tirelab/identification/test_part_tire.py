@@ -295,6 +295,19 @@ def cycled(force: np.ndarray, x: np.ndarray) -> Recording:
     return Recording("cycled", np.arange(x.size) / 50.0, x, np.full(x.size, np.inf), force)
 
 
+def test_a_mass_that_moves_before_the_cell_is_not_told_to_have_detents() -> None:
+    """1.6 kg of a grip at 5 and at 4 Hz: its force falls with the deflection in and out alike, by two amounts."""
+    time = np.arange(1400) / 200.0
+    x = 0.01 * np.sin(2.0 * np.pi * np.where(time < 3.5, 5.0, 4.0) * time)
+    moved = 1.6 * np.gradient(np.gradient(x, time), time)
+    moved += np.random.default_rng(1).normal(0.0, 0.5, x.size)
+    one = Recording("grip", time, x, np.full(x.size, np.inf), moved)
+    constant = next(fit for fit in fit_laws([one]) if fit.name == "constant")
+    assert curve_advice(tire_of(constant, [one], "grip"), [one]) == ""
+    untimed = replace(one, timed=False)  # no mass is told from a spring that pushes
+    assert "detents" in curve_advice(tire_of(constant, [untimed], "grip"), [untimed])
+
+
 def test_springs_and_dampers_are_not_told_the_curve() -> None:
     phase = 2.0 * np.pi * np.arange(4000) / 1000.0
     x = 0.01 * np.sin(phase)
