@@ -55,7 +55,10 @@ def main() -> None:
         except SystemExit:  # done: as Python ends there is nothing to interrupt, only a traceback to print
             _change_to(signal.SIG_IGN)
             raise
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, RuntimeError) as error:
+        # While a class is made, Python tells an interrupt as the cause of another error.
+        if not isinstance(error, KeyboardInterrupt) and not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
         _change_to(signal.SIG_DFL)  # once more ends it at once
         sys.exit("\nAborted!")
 

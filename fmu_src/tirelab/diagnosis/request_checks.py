@@ -30,16 +30,9 @@ def check_once(files: Sequence[Path]) -> None:
 
 
 def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
-    """Raise TirelabError where two pieces of one file share samples, or two files hold the same readings: each is
-    fitted or held out, once.
-    """
+    """Raise TirelabError where two pieces of one file share samples: each sample is fitted or held out, once."""
     for i, (file, one) in enumerate(read):
         for other_file, other in read[:i]:
-            if _are_copies(one, other):
-                raise TirelabError(
-                    f"{other_file} and {file} hold the same readings of deflection and force; give each recording "
-                    "once, either to fit or to hold out"
-                )
             same = one.source is not None and other.source is not None and one.source.samefile(other.source)
             if not same or split_piece(file)[1].part != split_piece(other_file)[1].part:
                 continue
@@ -48,13 +41,6 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                 count = int(np.sum((one.time >= first) & (one.time <= last)))
                 shared = f"{first:.6g} to {last:.6g} s" if one.timed else f"{count} sample{'s' * (count > 1)}"
                 raise TirelabError(f"{other_file} and {file} share {shared}; give each part of a file once")
-
-
-def _are_copies(one: Recording, other: Recording) -> bool:
-    if one.time.size != other.time.size:
-        return False
-    alike = all(np.array_equal(getattr(one, c), getattr(other, c)) for c in ("deflection", "force"))
-    return alike and bool(np.allclose(one.time - one.time[0], other.time - other.time[0], rtol=1e-6))
 
 
 def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_sided: bool = False) -> None:

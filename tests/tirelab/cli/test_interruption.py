@@ -248,3 +248,23 @@ def test_other_errors_in_a_callback_are_told_as_ever(
     done = run(IN_CALLBACK.replace("    os.kill(os.getpid(), signal.SIGINT)\n", "    1 / 0\n"), tmp_path)
     assert "ZeroDivisionError" in done.stderr
     assert done.stdout == "never interrupted\n"
+
+
+def test_ctrl_c_while_a_class_is_made_is_no_other_error() -> None:
+    """Python 3.10 and 3.11 tell it as the cause of a RuntimeError of `__set_name__`; another one stays an error."""
+    program = """
+import sys, types, tirelab.__main__ as program
+class Cut:
+    def __set_name__(self, owner, name):
+        raise {error}
+def main():
+    type("Made", (), {{"name": Cut()}})
+sys.modules["tirelab.cli"] = types.SimpleNamespace(main=main)
+program.main()
+"""
+    for error, said in (("KeyboardInterrupt", "Aborted!"), ("ValueError", "Traceback")):
+        words = [sys.executable, "-c", program.format(error=error)]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode == 1
+        assert said in done.stderr
+        assert ("Traceback" in done.stderr) == (said == "Traceback")

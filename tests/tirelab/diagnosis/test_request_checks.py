@@ -39,16 +39,6 @@ def test_parts_of_a_file_may_touch_nothing_of_each_other(tmp_path: Path) -> None
         check_apart([(first, one), (second, other)])
 
 
-def test_a_copy_of_a_file_is_no_recording_of_its_own(tmp_path: Path) -> None:
-    file, copy = tmp_path / "press.csv", tmp_path / "copy.csv"
-    one, other = (replace(part(*ends), force=np.arange(50.0)) for ends in ((0.0, 9.0), (20.0, 29.0)))
-    with pytest.raises(
-        TirelabError, match=r"press\.csv and .*copy\.csv hold the same readings of deflection"
-    ):
-        check_apart([(file, one), (copy, other)])
-    check_apart([(file, one), (copy, replace(other, force=np.arange(50.0) + 1e-9))])
-
-
 def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
     check_depth([part(0.0, 1.0, 0.3)], [])
     with pytest.raises(TirelabError, match=r"no deflection is above 0.*--zero deflection=-10mm$"):
