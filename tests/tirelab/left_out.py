@@ -29,6 +29,7 @@ PARAMETERS: dict[str, dict[str, float]] = {
     "gas_compression": {"lost_volume": 0.12},
     "bottoming": {"stiffness": 2e5, "onset": 0.0195},
     "mullins_softening": {"share": 0.14},
+    "permanent_set": {"share": 0.05},
     "pressure_leak": {"rate": 5e-3},
     "warm_up": {"gain": 0.12, "time_constant": 12.0},
     "force_drift": {"drift": 3.0},
