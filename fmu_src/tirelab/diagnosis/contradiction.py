@@ -149,9 +149,10 @@ def contradiction_of(
         if own > max(others.error / EXPLAINED, BEYOND_NOISE * float(np.hypot(level, forms))):
             names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
             as_if = _as_if(recording, moved, others.model.tire, alike, own)
-            inflated = others.model.tire.inflated
-            one = Contradiction(tuple(names), others.model.names, others.error, own, as_if, inflated=inflated)
-            one = replace(one, one_series=_of_one_series(recordings))
+            one = Contradiction(
+                *(tuple(names), others.model.names, others.error, own, as_if, others.model.tire.inflated),
+                one_series=_of_one_series(recordings),
+            )
             found.append((others.error, one))
         if not others.remainder.unexplained:
             break
@@ -184,10 +185,8 @@ def contradiction_held_out(
             if as_if:
                 model = explanation.model
                 who = (recording.name,)
-                found = Contradiction(who, model.names, explanation.error, own, as_if)
-                return replace(
-                    found,
-                    inflated=model.tire.inflated,
+                return Contradiction(
+                    *(who, model.names, explanation.error, own, as_if, model.tire.inflated),
                     other=recordings[0].name if len(recordings) == 1 else "",
                     one_series=_of_one_series([*recordings, recording]),
                 )

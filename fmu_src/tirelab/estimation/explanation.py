@@ -99,9 +99,8 @@ class Explanation:
     @cached_property
     def error(self) -> float:
         """RMS residual [N] of the set over all compared samples."""
-        return self._rms(
-            _residuals(self.model.tire, self._samples.recordings)
-        )  # long arrays: of few sets to keep
+        # Long arrays, which are kept of the chosen set alone.
+        return self._rms(_residuals(self.model.tire, self._samples.recordings))
 
     @cached_property
     def residuals(self) -> tuple[FloatArray, ...]:
