@@ -11,7 +11,8 @@ that their own mean explains, whichever is larger.
 
 A span is reported if noise alone would hardly show it anywhere. The sum of its squares, and that of the squared means
 of its bins, are compared with the chi-squared law with as many degrees of freedom as the noise has independent samples
-in it; the probability is multiplied by the number of spans that were examined.
+in it; the probability is multiplied by the number of spans that were examined. What shows in a single sample may be a
+false reading, so the span has to show as well without its largest one.
 """
 
 from __future__ import annotations
@@ -222,6 +223,7 @@ class _Bins:
     numbers: of samples; total [N]: sum of the residual; apart [N]: sum of the residual minus the mean elsewhere
     variance [N^2]: of the noise, summed; squares: of the residual over the noise, summed; excess, usual [N^2]: squares
     minus variance, summed, and the same for as many samples elsewhere; whole [N^2]: excess of all bins
+    largest: residual [N] and noise variance [N^2] of the sample with the largest residual over its noise
     together: as in `_Samples`
     """
 
@@ -233,6 +235,7 @@ class _Bins:
     excess: FloatArray
     usual: FloatArray
     whole: float
+    largest: tuple[FloatArray, FloatArray]
     together: tuple[tuple[FloatArray, FloatArray], ...]
 
     def counted(self, number: FloatArray | float) -> FloatArray:
@@ -261,17 +264,32 @@ class _Bins:
         )
 
     def log_chance(self, a: int, b: int) -> float:
-        """Return the log probability of the bins [a, b) in noise alone: the smallest one of three tests."""
-        squares, means, total, variance = (
-            float(np.sum(v[a:b])) for v in (self.squares, self.means, self.total, self.variance)
-        )
-        number = float(np.sum(self.numbers[a:b]))
+        """Return the log probability of the bins [a, b) in noise alone, the larger one of all their samples and of all
+        but the largest.
+        """
+        own = [v[a:b] for v in (self.numbers, self.total, self.variance, self.squares)]
+        residual, variance = (v[a:b] for v in self.largest)
+        ratio = residual**2 / variance
+        lone = np.arange(b - a) == np.argmax(ratio)
+        less = [v - lone * of_one for v, of_one in zip(own, (1.0, residual, variance, ratio), strict=True)]
+        return max(self._log_chance(*own), self._log_chance(*less))
+
+    def _log_chance(
+        self, numbers: FloatArray, total: FloatArray, variance: FloatArray, squares: FloatArray
+    ) -> float:
+        """Return the log probability of bins in noise alone: the smallest one of three tests; the values as above."""
+        held = numbers > 0.5
+        if not held.any():
+            return 0.0
+        numbers, total, variance, squares = (v[held] for v in (numbers, total, variance, squares))
+        number = float(np.sum(numbers))
         together = float(self.counted(number))
-        bins_together = together / float(self.counted(number / (b - a)))
+        bins_together = together / float(self.counted(number / numbers.size))
+        means = float(np.sum(total**2 / (variance * self.counted(numbers))))
         tests = (
-            (squares / together, number / together),
-            (means / bins_together, (b - a) / bins_together),
-            (total**2 / (variance * together), 1.0),
+            (float(np.sum(squares)) / together, number / together),
+            (means / bins_together, numbers.size / bins_together),
+            (float(np.sum(total)) ** 2 / (float(np.sum(variance)) * together), 1.0),
         )
         return min(float(chi2.logsf(value, freedom)) for value, freedom in tests)
 
@@ -303,6 +321,9 @@ def _bins(axis: Axis, samples: _Samples) -> _Bins:
         return np.asarray(np.bincount(axis.bin_of, values, axis.start.size), dtype=np.float64)
 
     one = np.ones(samples.excess.size)
+    order = np.argsort(samples.residual**2 / samples.variance, kind="stable")
+    largest = np.zeros(axis.start.size, dtype=int)
+    largest[axis.bin_of[order]] = order  # the last one of a bin stays
     usual, level = (
         (samples.alike_excess, samples.alike_residual)
         if axis.slow
@@ -317,6 +338,7 @@ def _bins(axis: Axis, samples: _Samples) -> _Bins:
         summed(samples.excess),
         summed(usual),
         float(np.sum(samples.excess)),
+        (samples.residual[largest], samples.variance[largest]),
         samples.together,
     )
 

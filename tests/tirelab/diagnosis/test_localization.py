@@ -279,6 +279,20 @@ def test_single_samples_that_stand_out_are_no_place():
     assert not located(added)
 
 
+@pytest.mark.parametrize("samples", [1, 4])
+def test_what_shows_in_a_single_sample_alone_is_no_place(samples: int) -> None:
+    # 7 times the noise beside a neighbour of 2.5: no test of neighbours tells that it stands out, and noise shows none
+    # so large in 1e11 samples. In four samples it is no false reading.
+    def added(t, x, v):
+        force = np.zeros(t.size)
+        force[4000 : 4000 + samples] = 7.0 * LEVEL
+        force[3999] = force[4000 + samples] = 2.5 * LEVEL
+        return force
+
+    found = [s for s in located(added) if s.by == "time"]
+    assert bool(found) == (samples > 1)
+
+
 def test_the_size_of_a_place_is_its_error_beyond_the_noise_over_that():
     spans = located(lambda t, x, v: np.where((t > 4.0) & (t < 5.0), 4.0 * LEVEL, 0.0))
     # The error's square is 16 + 1 noises there, known to 10 % from 200 samples.
