@@ -132,14 +132,13 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
     """The same after one fit of the saturated model; white: whether the noise is known to have no memory."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(_left_by_all(equations, dataset.misfit))
+    noise_left = partial(_noise_left, dataset.experiments, equations, left)
+    noises = [noise_left(number, white=white) for number in range(len(left))]
+    series = [e for e in dataset.with_noise(noises).experiments if e.reading.memory > 1]
+    if series and not white:
+        noises = [n if n.memory > 1 else noise_left(i, series) for i, n in enumerate(noises)]
     found, states = [], []
-    for number, (e, own) in enumerate(zip(dataset.experiments, left, strict=True)):
-        x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
-        (surface,) = surface_numbers([e.surface_radius[e.counts]])
-        driven = Driven(e.interval, x, rate, acceleration, surface)
-        others = partial(_left_in_one, equations, [r.size for r in left], number)
-        noise = white_noise_of(own, driven) if white else noise_of(own, driven, others)
-        noise = replace(noise, level=e.noise * max(noise.level, LEAST_LEFT))
+    for e, own, noise in zip(dataset.experiments, left, noises, strict=True):
         level, uneven, louder = _by_state(e, own, noise)
         found.append(replace(noise, level=level))
         states.append((uneven, replace(e.floor, amplifier=louder * e.floor.amplifier)))
@@ -149,6 +148,30 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
     quiet = dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
     pairs = zip(quiet.experiments, states, strict=True)
     return replace(quiet, experiments=tuple(replace(e, uneven=own, floor=floor) for e, (own, floor) in pairs))
+
+
+def _noise_left(
+    experiments: Sequence[Experiment],
+    equations: NormalEquations,
+    left: Sequence[FloatArray],
+    number: int,
+    series: Sequence[Experiment] = (),
+    *,
+    white: bool = False,
+) -> Noise:
+    """Return the noise [N] of what the saturated model left of one experiment, with its memory in blocks.
+
+    left: of each experiment, in units of its noise; series: those whose noise has a memory; white: known to have none
+    """
+    e, own = experiments[number], left[number]
+    x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
+    (surface,) = surface_numbers([e.surface_radius[e.counts]])
+    driven = Driven(e.interval, x, rate, acceleration, surface)
+    over = [other.noise_over(e.interval) for other in series]
+    known = [replace(n, level=n.level / e.noise) for n in over]
+    others = partial(_left_in_one, equations, [r.size for r in left], number)
+    noise = white_noise_of(own, driven) if white else noise_of(own, driven, others, known)
+    return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT))
 
 
 def _by_state(

@@ -20,6 +20,9 @@ noise is at most the smallest of all: whatever is compared, all of it differs. N
 is quicker noise: a stick and slip is, though no visit repeats it.
 
 The hum of the mains is noise that oscillates: it is set apart before all this.
+
+Recordings of one series are read by one amplifier. Where the motion of one could make what looks like a noise, it is
+believed if another one has a noise of this level and memory.
 """
 
 from __future__ import annotations
@@ -102,6 +105,13 @@ class Noise:
     level: float
     memory: int
 
+    def is_like(self, other: Noise) -> bool:
+        """Whether both may be of one amplifier: their levels count as the same, and their memories, which are known to
+        a doubling.
+        """
+        levels, memories = ((self.level, other.level), (self.memory, other.memory))
+        return max(levels) <= STAYS * min(levels) and max(memories) <= 2 * min(memories)
+
 
 def resting(rate: FloatArray) -> BoolArray:
     """Return at which samples (n,) the tire rests; rate (n,) [m/s]."""
@@ -133,13 +143,16 @@ Left = Callable[[FloatArray], FloatArray]
 """Of signals (n, k) of the motion what a model leaves (n, k), fitted to them as it was to the misfit."""
 
 
-def noise_of(residual: FloatArray, driven: Driven, left: Left | None = None) -> Noise:
+def noise_of(
+    residual: FloatArray, driven: Driven, left: Left | None = None, known: Sequence[Noise] = ()
+) -> Noise:
     """Return the noise of a residual (n,), white or with a memory.
 
     left: of the model that left the residual. What is slow has gone into the model, so what is left of a kink that it
     cannot follow varies within a few lags, as a noise with a memory does; then the residual must have none of it.
+    known: noises of other recordings of the series
     """
-    return _beside_hum(residual, driven, lambda rest: _noise_beside_motion(rest, driven, left))
+    return _beside_hum(residual, driven, lambda rest: _noise_beside_motion(rest, driven, left, known))
 
 
 def _beside_hum(residual: FloatArray, driven: Driven, noise: Callable[[FloatArray], Noise]) -> Noise:
@@ -158,13 +171,15 @@ def _comes_again(line: FloatArray, driven: Driven) -> bool:
     return any(most_apart(line, 1, *pair) * STAYS < float(np.sqrt(np.mean(line**2))) for pair in pairs)
 
 
-def _noise_beside_motion(residual: FloatArray, driven: Driven, left: Left | None) -> Noise:
+def _noise_beside_motion(
+    residual: FloatArray, driven: Driven, left: Left | None, known: Sequence[Noise]
+) -> Noise:
     """Return the noise of a residual without hum."""
     levels = _levels_of(residual, driven)
     plateau = _noise_at_plateau(levels, driven)
     kinks = None
-    for found in [plateau] if plateau else _noises_at_whole_variation(levels, driven):
-        if found.memory == 1 or left is None:
+    for found in [plateau] if plateau else _noises_at_whole_variation(levels, driven, known):
+        if found.memory == 1 or left is None or any(map(found.is_like, known)):
             return found
         kinks = left(driven.kinks) if kinks is None else kinks
         visits = _seen_visits(driven, found.memory, found.memory, levels.slow)
@@ -278,11 +293,11 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     return least if least.level > STAYS * white.level else white
 
 
-def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Noise]:
+def _noises_at_whole_variation(levels: _Levels, driven: Driven, known: Sequence[Noise]) -> Iterator[Noise]:
     """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first.
 
     Where no place is visited again, or where a signal of the motion would reach its variation too, one more lag has to
-    show that the level stays; of such signals the residual must have nothing.
+    show that the level stays; of such signals the residual must have nothing, unless the noise is known.
     """
     residual, slow = levels.residual, levels.slow
     rises = rising(levels.values)
@@ -296,8 +311,13 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven) -> Iterator[Nois
         between = [level_between(residual, lag, *v) for v in visits]
         apart = [most_apart(residual, found.memory, *v[:2]) for v in visits]
         least = min([levels.values[last], *between, *apart])
+        if least * STAYS < most:
+            continue
+        if any(map(Noise(least, found.memory).is_like, known)):
+            yield Noise(least, found.memory)
+            continue
         could = any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
-        if least * STAYS < most or ((could or not visits) and rises[min(last, len(rises) - 1)]):
+        if (could or not visits) and rises[min(last, len(rises) - 1)]:
             continue
         # Apart, since of all of them together a recording of a few hundred memories could not tell.
         shapes = [driven.signals, driven.shapes(found.memory)]

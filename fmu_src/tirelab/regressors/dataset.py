@@ -183,12 +183,16 @@ def dataset_of(
     size = max(1, -(-total // BLOCKS))
     least = size * BLOCKS // MOST_BLOCKS
     known: Sequence[Noise | None] = readings or [None] * len(recordings)
-    experiments = tuple(
+    experiments = [
         experiment_in_blocks(r, tire, (least, size), n) for r, n in zip(recordings, known, strict=True)
-    )
+    ]
+    if series := [e for e in experiments if e.reading.memory > 1]:
+        for i, e in enumerate(experiments):
+            if e.reading.memory == 1 and not known[i]:
+                experiments[i] = experiment_in_blocks(recordings[i], tire, (least, size), None, series)
     gauge = float(np.median([e.gauge for e in experiments]))
     return Dataset(
-        experiments,
+        tuple(experiments),
         replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)),
         _scales(experiments, recordings, tire),
     )

@@ -11,7 +11,7 @@ all blocks become shorter.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -126,6 +126,10 @@ class Experiment:
         """Standard deviation of the noise of each block (n,) [N]."""
         return self.noise * np.where(resting(self.rate), *self.uneven)
 
+    def noise_over(self, interval: float) -> Noise:
+        """Return the noise of its readings in memories of this interval [s]."""
+        return in_blocks(self.reading, interval * self.size / self.interval)
+
     def with_noise(self, noise: Noise) -> Experiment:
         """Return the experiment with another noise [N] of its averaged misfit."""
         reading = self.reading
@@ -137,9 +141,16 @@ class Experiment:
 
 
 def experiment_in_blocks(
-    recording: Recorded, tire: TireModel, sizes: tuple[int, int], reading: Noise | None
+    recording: Recorded,
+    tire: TireModel,
+    sizes: tuple[int, int],
+    reading: Noise | None,
+    series: Sequence[Experiment] = (),
 ) -> Experiment:
-    """Return a recording in blocks; sizes: least and most samples of a block; reading: noise of a sample, if known."""
+    """Return a recording in blocks.
+
+    sizes: least and most samples of a block; reading: noise of a sample, if known; series: other recordings
+    """
     interval = float(np.median(np.diff(recording.time)))
     read, step = read_deflection(recording)
     motion = motion_of(recording.time, read, timed=is_timed([recording]))
@@ -147,7 +158,8 @@ def experiment_in_blocks(
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
     misfit = recording.force - baseline
-    reading = reading or _noise_along(moved, misfit, interval)
+    known = [e.noise_over(interval) for e in series] if reading is None else [reading]
+    reading = reading or _noise_along(moved, misfit, interval, known)
     lone = spikes(misfit)
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & are_rare(np.array([lone[begin:end].any() for begin, end in runs(turns)], dtype=bool)))
@@ -156,7 +168,8 @@ def experiment_in_blocks(
     averaged = _averaged(moved, turns, blocks)
     averaged_misfit = blocks.mean(misfit)
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
-    of_blocks = _noise_along(averaged, averaged_misfit, interval * blocks.size)
+    known = [in_blocks(noise, blocks.size) for noise in known if noise.memory > blocks.size]
+    of_blocks = _noise_along(averaged, averaged_misfit, interval * blocks.size, known)
     noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
     force_step = staircase_step(recording.force) or gauge_step(recording.force)
     least_noise, resting = _rounding(recording.force, force_step, blocks.size)
@@ -208,10 +221,19 @@ def read_anew(recording: Recorded, experiment: Experiment, tire: TireModel) -> E
     return replace(changed, baseline=simulate(tire, changed, changed))
 
 
-def _noise_along(moved: SmoothedMotion, misfit: FloatArray, interval: float) -> Noise:
-    """Return the noise of a misfit [N] (n,) along a motion; interval [s]: between its samples."""
+def _noise_along(moved: SmoothedMotion, misfit: FloatArray, interval: float, known: Sequence[Noise]) -> Noise:
+    """Return the noise of a misfit [N] (n,) along a motion.
+
+    interval [s]: between its samples; known: noises that it may have
+    """
     (surface,) = surface_numbers([moved.surface_radius])
-    return noise_of(misfit, Driven(interval, moved.deflection, moved.rate, moved.acceleration, surface))
+    driven = Driven(interval, moved.deflection, moved.rate, moved.acceleration, surface)
+    return noise_of(misfit, driven, known=known)
+
+
+def in_blocks(noise: Noise, size: float) -> Noise:
+    """Return a noise of samples as one of blocks of so many samples."""
+    return replace(noise, memory=max(round(noise.memory / size), 1))
 
 
 def _averaged(moved: SmoothedMotion, turns: BoolArray, blocks: Blocks) -> SmoothedMotion:
