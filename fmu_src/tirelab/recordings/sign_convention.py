@@ -120,10 +120,9 @@ def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> f
     if len(inwards) < 2:
         return float("nan")
     whole = slice(inwards[0], inwards[-1] + 1)
-    way, read = np.diff(deflection[whole]), force[whole]
-    middle = 0.5 * (read[1:] + read[:-1])
+    way, middle = _steps(deflection[whole], force[whole])
     with np.errstate(all="ignore"):
-        return float((middle @ way) / np.sum(np.abs(middle - middle.mean()) * np.abs(way)))
+        return float((middle @ way) / (np.abs(middle - middle.mean()) @ np.abs(way)))
 
 
 def loading_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
@@ -135,13 +134,20 @@ def loading_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -
     it. NaN where the force gains less than `CLEAR` of its largest, as friction alone, or the way is short (`PASSED`).
     """
     first = slice(0, int(np.argmax(np.abs(force))) + 1)
-    way, gained = np.diff(deflection[first]), force[first] - force[0]
+    gained = force[first] - force[0]
     short = not np.ptp(deflection[first]) > PASSED * np.ptp(deflection)
     if short or not abs(gained[-1]) > CLEAR * np.max(np.abs(force)):
         return float("nan")
-    middle = 0.5 * (gained[1:] + gained[:-1])
+    way, middle = _steps(deflection[first], gained)
     with np.errstate(all="ignore"):
         return float((middle @ way) / (np.abs(middle) @ np.abs(way)))
+
+
+def _steps(
+    deflection: NDArray[np.float64], force: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the way of each step from sample to sample and the mean force on it (n - 1,): their product is work."""
+    return np.diff(deflection), 0.5 * (force[1:] + force[:-1])
 
 
 def mass_alike(
