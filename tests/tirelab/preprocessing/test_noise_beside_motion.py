@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import chirp
 from tirelab.preprocessing.driven import Driven
-from tirelab.preprocessing.noise import noise_of
+from tirelab.preprocessing.noise import Noise, noise_of
 
 FloatArray = NDArray[np.float64]
 
@@ -179,3 +179,36 @@ def test_the_fifth_harmonic_of_a_motion_is_no_hum(rate_of_motion: float, hums: b
     line = np.sqrt(8.0) * np.sin(2.0 * np.pi * 50.0 * time + 0.3)
     found = noise_of(line + np.random.default_rng(4).normal(size=8000), driven)
     assert found.level == pytest.approx(np.sqrt(5.0) if hums else 1.0, rel=0.1)
+
+
+def random_motion(drawn: np.random.Generator, count: int = 1500) -> Driven:
+    """Return a motion of random phases up to 0.04 cycles a sample, whose products are as quick as the noise."""
+    frequencies = np.linspace(1e-3, 0.04, 60)
+    phases = drawn.uniform(0.0, 2.0 * np.pi, 60)
+    deflection = 2e-3 * np.cos(2.0 * np.pi * frequencies * np.arange(count)[:, None] + phases).sum(axis=1)
+    rate = np.gradient(deflection)
+    return Driven(1.0, deflection, rate, np.gradient(rate), np.zeros(count, dtype=np.intp))
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(("level", "memory", "believed"), [(1.0, 4, True), (3.0, 4, False), (1.0, 32, False)])
+def test_a_noise_that_the_motion_could_make_is_believed_of_another_recordings_amplifier(
+    seed: int, level: float, memory: int, believed: bool
+) -> None:
+    """A mean of six white samples: alone it may be what follows so quick a motion. Another amplifier proves nothing."""
+    drawn = np.random.default_rng(seed)
+    driven = random_motion(drawn)
+    noise = np.sqrt(6.0) * np.convolve(drawn.normal(size=1505), np.ones(6) / 6.0, mode="valid")
+    assert noise_of(noise, driven).memory == 1
+    found = noise_of(noise, driven, known=[Noise(level, memory)])
+    assert (found.memory in (4, 8)) == believed
+    assert found.level == pytest.approx(1.0, rel=0.15) if believed else found.level < 0.75
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_follows_the_motion_is_no_noise_of_another_recordings_amplifier(seed: int) -> None:
+    """A force of the rate, as large as that noise, keeps rising over longer lags."""
+    drawn = np.random.default_rng(seed)
+    driven = random_motion(drawn)
+    force = driven.rate / np.std(driven.rate) + 0.1 * drawn.normal(size=1500)
+    assert noise_of(force, driven, known=[Noise(1.0, 4)]).level < 0.2

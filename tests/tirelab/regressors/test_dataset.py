@@ -115,6 +115,30 @@ def test_what_blocks_took_out_of_a_filtered_noise_belongs_to_the_samples() -> No
     assert after.reading.level == pytest.approx(FORCE_NOISE, rel=0.1)
 
 
+def test_recordings_of_a_series_have_the_noise_of_one_amplifier() -> None:
+    """A ride as quick as the filter of the amplifier does not show its noise; a slow press beside it does, sampled
+    half as often. Alone, the ride seems to have less.
+    """
+    drawn = np.random.default_rng(7)
+    noise = lfilter(*butter(2, 0.13), drawn.normal(size=24_000))[1000:]
+    noise *= FORCE_NOISE / np.std(noise)
+    slow = triangle(8000, 2)
+    slow = replace(slow, time=0.02 * np.arange(8000.0), force=np.zeros(8000))
+    slow = replace(slow, force=simulate(TireModel(), slow) + noise[:16_000:2])
+    time = 0.01 * np.arange(2000.0)
+    frequencies, phases = np.linspace(0.1, 4.0, 60), drawn.uniform(0.0, 2.0 * np.pi, 60)
+    waves = np.cos(2.0 * np.pi * frequencies * time[:, None] + phases).sum(axis=1)
+    ride = Recording("ride", time, 0.012 + 6e-4 * waves, np.full(2000, np.inf), np.zeros(2000))
+    ride = replace(ride, force=simulate(TireModel(), ride) + noise[-2000:])
+    (alone,) = dataset_of([ride], TireModel()).experiments
+    one, other = dataset_of([slow, ride], TireModel()).experiments
+    assert alone.reading.memory == 1
+    assert alone.reading.level < 0.6 * FORCE_NOISE
+    assert one.reading.memory > 1
+    assert other.reading.memory in (one.reading.memory, 2 * one.reading.memory, 4 * one.reading.memory)
+    assert other.reading.level == pytest.approx(FORCE_NOISE, rel=0.1)
+
+
 def test_samples_beside_a_turn_are_compared_where_nothing_is_averaged() -> None:
     """What limits the force at its peak is seen there and nowhere else."""
     samples, turns = 2000, 8
