@@ -44,7 +44,7 @@ from .outcome import (
     files_read,
     sha256,
 )
-from .request_checks import check_apart, check_depth, check_folder, check_once
+from .request_checks import check_apart, check_depth, check_folder, check_once, copies_told
 from .simulation_correction import CORRECTION, Believed, believed_of, deliver, simulated_by, write_corrected
 from .verdict import Verdict
 
@@ -134,7 +134,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
         found = _Found(verdict, fitted, kept, believed)
         content, warnings = _delivered(folder, found, origin, report, asked.samples)
     _remove_outdated(asked, found)
-    notes = [*baseline_notes, *read.skipped]
+    notes = [*baseline_notes, *read.skipped, *copies_told(read.fitted, read.kept)]
     notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
     return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
 

@@ -1,7 +1,7 @@
 """What a diagnosis refuses before its work would be lost: files given twice, samples that two parts share, a motion
 that no tire can follow, a folder that cannot be written.
 
-Each check raises TirelabError with one sentence and returns nothing.
+Each check raises TirelabError with one sentence and returns nothing. Copies of a recording are told, not refused.
 """
 
 from __future__ import annotations
@@ -11,11 +11,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import TirelabError
+from ..preprocessing.data_checks import MAJORITY
+from ..preprocessing.noise import FEWEST_EVENTS
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
 from ..recordings.zero import quantity_text, refuse_too_deep
+
+HASH_FACTOR = 6364136223846793005
+"""An odd number of 64 bits that mixes them (D. E. Knuth, The Art of Computer Programming 2, 1998, 3.3.4)."""
 
 
 def check_once(files: Sequence[Path]) -> None:
@@ -41,6 +47,41 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                 count = int(np.sum((one.time >= first) & (one.time <= last)))
                 shared = f"{first:.6g} to {last:.6g} s" if one.timed else f"{count} sample{'s' * (count > 1)}"
                 raise TirelabError(f"{other_file} and {file} share {shared}; give each part of a file once")
+
+
+def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple[str, ...]:
+    """Return a sentence on each recording most of whose readings are those of one before it: a copy, or another export
+    of the same test.
+    """
+    told, read = [], (*fitted, *kept)
+    for i, one in enumerate(read):
+        other = next((r for r in read[:i] if _shared(one, r) > MAJORITY), None)
+        if other is not None:
+            what = "a correction fitted to the one is not tested on the other" if i >= len(fitted) else ""
+            told.append(
+                f"most readings of {one.name} are those of {other.name}, as in a copy or another export of one test: "
+                + (what or "they count twice")
+            )
+    return tuple(told)
+
+
+def _shared(one: Recording, other: Recording) -> float:
+    """Return the part of the runs of readings of one recording that another one has too, to the digits that all units
+    leave. Single readings of coarse gauges are alike by chance.
+    """
+    return float(np.isin(_runs(one), _runs(other)).mean())
+
+
+def _runs(recording: Recording) -> NDArray[np.uint64]:
+    """Return a number for each FEWEST_EVENTS readings in a row: other readings have another one (polynomial hash)."""
+    readings = (
+        np.column_stack([recording.deflection, recording.force]).astype(np.float32).view(np.uint64).ravel()
+    )
+    last = readings.size - FEWEST_EVENTS + 1
+    runs = np.zeros(last, dtype=np.uint64)
+    for k in range(FEWEST_EVENTS):
+        runs = runs * np.uint64(HASH_FACTOR) + readings[k : last + k]
+    return runs
 
 
 def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_sided: bool = False) -> None:
