@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
@@ -19,9 +20,6 @@ from ..preprocessing.noise import FEWEST_EVENTS
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
 from ..recordings.zero import quantity_text, refuse_too_deep
-
-HASH_FACTOR = 6364136223846793005
-"""An odd number of 64 bits that mixes them (D. E. Knuth, The Art of Computer Programming 2, 1998, 3.3.4)."""
 
 
 def check_once(files: Sequence[Path]) -> None:
@@ -73,15 +71,12 @@ def _shared(one: Recording, other: Recording) -> float:
 
 
 def _runs(recording: Recording) -> NDArray[np.uint64]:
-    """Return a number for each FEWEST_EVENTS readings in a row: other readings have another one (polynomial hash)."""
+    """Return a hash of each FEWEST_EVENTS readings in a row."""
     readings = (
         np.column_stack([recording.deflection, recording.force]).astype(np.float32).view(np.uint64).ravel()
     )
     last = readings.size - FEWEST_EVENTS + 1
-    runs = np.zeros(last, dtype=np.uint64)
-    for k in range(FEWEST_EVENTS):
-        runs = runs * np.uint64(HASH_FACTOR) + readings[k : last + k]
-    return runs
+    return pl.DataFrame([readings[k : last + k] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()
 
 
 def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_sided: bool = False) -> None:
