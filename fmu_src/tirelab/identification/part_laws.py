@@ -37,6 +37,8 @@ from .surfaces import CM_PER_M
 
 Array = NDArray[np.float64]
 
+MM_PER_CM = 10.0
+
 SAMPLES_MOST = 20_000
 """Most samples that are fitted, evenly spaced."""
 
@@ -88,13 +90,17 @@ class LawFit:
 
 @dataclass(frozen=True)
 class _Samples:
-    """Deflection [cm] and force [N] of all recordings together, pressure [Pa] or None.
+    """Deflection and force of all recordings together, over `length` [cm] and `load` [N], their largest, so that parts
+    of any size are fitted alike; pressure [Pa] or None.
 
-    each [cm]: deflection of each recording; both_ways: whether most places are passed in and out
+    begins: deflection where the force is seen to begin; each: deflection of each recording; both_ways: whether most
+    places are passed in and out
     """
 
     x: Array
     force: Array
+    length: float
+    load: float
     pressure: Array | None
     begins: float
     each: tuple[Array, ...]
@@ -147,18 +153,24 @@ def _samples(recordings: Sequence[Recording]) -> _Samples:
             f"the recordings were made on {radii.size} surfaces; the laws are compared on one surface at a time"
         )
     step = max(1, sum(len(r) for r in recordings) // SAMPLES_MOST)
-    each = tuple(CM_PER_M * r.deflection[::step] for r in recordings)
-    x = np.concatenate(each)
+    x = np.concatenate([r.deflection[::step] for r in recordings])
     force = np.concatenate([r.force[::step] for r in recordings])
+    far, load = (float(np.abs(values).max()) or 1.0 for values in (x, force))
     pressures = [r.pressure[::step] for r in recordings if r.pressure is not None]
     pressure = np.concatenate(pressures) if len(pressures) == len(recordings) else None
-    zero = force_begins(x / CM_PER_M, force, np.zeros_like(x))
-    begins = 0.0 if zero is None else CM_PER_M * zero.begins
-    return _Samples(x, force, pressure, begins, each, passed_both_ways(recordings))
+    zero = force_begins(x, force, np.zeros_like(x))
+    begins = 0.0 if zero is None else zero.begins / far
+    each = tuple(r.deflection[::step] / far for r in recordings)
+    both_ways = passed_both_ways(recordings)
+    return _Samples(x / far, force / load, CM_PER_M * far, load, pressure, begins, each, both_ways)
 
 
-def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fitted: _Fitted) -> LawFit:
-    """Return a law from its values in the units of the fit; symbols: name, factor to the shown unit, unit."""
+_Symbols = Sequence[tuple[str, float, str]]
+"""Name of each constant, factor from the units of the fit to the shown unit, and that."""
+
+
+def _fit(name: str, symbols: _Symbols, values: Array, fitted: _Fitted, load: float) -> LawFit:
+    """Return a law from its values in the units of the fit; load [N]: that of the force."""
     residual, derivatives = fitted
     n, k = residual.size, values.size
     squares = float(residual @ residual)
@@ -173,7 +185,7 @@ def _fit(name: str, symbols: Sequence[tuple[str, float, str]], values: Array, fi
         (symbol, float(value * factor), float(abs(factor) * deviation), unit)
         for (symbol, factor, unit), value, deviation in zip(symbols, values, spread, strict=True)
     )
-    return LawFit(name, constants, *_left(residual, k))
+    return LawFit(name, constants, *_left(load * residual, k))
 
 
 def _left(residual: Array, count: int) -> tuple[float, float]:
@@ -194,18 +206,23 @@ def _lstsq(columns: Sequence[Array], samples: _Samples) -> tuple[Array, _Fitted]
 
 def _constant(s: _Samples) -> LawFit:
     values, fitted = _lstsq([np.ones_like(s.x)], s)
-    return _fit("constant", (("F0", 1.0, "N"),), values, fitted)
+    return _fit("constant", (("F0", s.load, "N"),), values, fitted, s.load)
 
 
 def _linear(s: _Samples) -> LawFit:
     values, fitted = _lstsq([np.ones_like(s.x), s.x], s)
-    return _fit("linear", (("F0", 1.0, "N"), ("k", 0.1, "N/mm")), values, fitted)
+    return _fit("linear", _powers(s, ("F0", "k")), values, fitted, s.load)
 
 
 def _polynomial(s: _Samples) -> LawFit:
     values, fitted = _lstsq([s.x**i for i in range(4)], s)
-    units = [("F0", 1.0, "N"), *((f"k{i}", 0.1**i, f"N/mm^{i}" if i > 1 else "N/mm") for i in (1, 2, 3))]
-    return _fit("polynomial", units, values, fitted)
+    return _fit("polynomial", _powers(s, ("F0", "k1", "k2", "k3")), values, fitted, s.load)
+
+
+def _powers(s: _Samples, names: Sequence[str], first: int = 0) -> _Symbols:
+    """Return constants of successive powers of the deflection, from the one of the order `first` on."""
+    units = ("N", "N/mm", "N/mm^2", "N/mm^3")
+    return [(n, s.load / (MM_PER_CM * s.length) ** i, units[i]) for i, n in enumerate(names, first)]
 
 
 def _piecewise(s: _Samples) -> LawFit:
@@ -248,11 +265,12 @@ def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]
         values, (residual, matrix) = _lstsq([*in_proportion, u, u * (lines @ values[:n])], s)
         share += float(values[-1])
     digits = 3 if count == LINES[0] else 9  # so that near ones have different symbols
-    units = [(f"F({10.0 * knot:.{digits}g} mm)", 1.0, "N") for knot in knots]
-    at = tuple(float(knot) / CM_PER_M for knot in knots)
-    loop = (("a", 1.0, "N"), ("b", 1.0, "1"))[: values.size - n]
-    fit = _fit("piecewise", [*units, *loop], values, (residual, matrix))
-    left, criterion = _left(s.force - lines @ values[:n], n)
+    places = s.length * knots
+    units = [(f"F({MM_PER_CM * place:.{digits}g} mm)", s.load, "N") for place in places]
+    at = tuple((places / CM_PER_M).tolist())
+    loop = (("a", s.load, "N"), ("b", 1.0, "1"))[: values.size - n]
+    fit = _fit("piecewise", [*units, *loop], values, (residual, matrix), s.load)
+    left, criterion = _left(s.load * (s.force - lines @ values[:n]), n)
     return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at)
 
 
@@ -282,10 +300,10 @@ def _knots(s: _Samples, count: int) -> Array:
 
 def _mf_tyre(s: _Samples) -> LawFit:
     plain = [s.x, s.x**2]
-    units = (("q1", 0.1, "N/mm"), ("q2", 0.01, "N/mm^2"))
+    units = _powers(s, ("q1", "q2"), 1)
     if s.pressure is None or np.ptp(s.pressure) <= 0.0:
         values, fitted = _lstsq(plain, s)
-        return _fit("mf_tyre", units, values, fitted)
+        return _fit("mf_tyre", units, values, fitted, s.load)
     relative = s.pressure / float(s.pressure.mean()) - 1.0
 
     def law(v: Array) -> Array:
@@ -293,7 +311,7 @@ def _mf_tyre(s: _Samples) -> LawFit:
 
     start = np.append(_lstsq(plain, s)[0], 0.5)
     values, fitted = _searched(law, start, s)
-    return _fit("mf_tyre", (*units, ("p", 1.0, "1")), values, fitted)
+    return _fit("mf_tyre", (*units, ("p", 1.0, "1")), values, fitted, s.load)
 
 
 def _power(s: _Samples) -> LawFit:
@@ -302,8 +320,8 @@ def _power(s: _Samples) -> LawFit:
     def law(v: Array) -> Array:
         return np.asarray(v[0] * np.sign(s.x) * size ** v[1])
 
-    values, fitted = _searched(law, _power_start(s, 0.0), s)
-    return _fit("power", (("A", 1.0, "N/cm^B"), ("B", 1.0, "1")), values, fitted)
+    values, fitted = _over_centimetres(s, *_searched(law, _power_start(s, 0.0), s))
+    return _fit("power", _power_symbols(s), values, fitted, s.load)
 
 
 def _power_preload(s: _Samples) -> LawFit:
@@ -313,9 +331,23 @@ def _power_preload(s: _Samples) -> LawFit:
         return np.asarray(v[2] + v[0] * sign * size ** v[1])
 
     (preload, stiffness), _ = _lstsq([np.ones_like(s.x), s.x], s)
-    values, fitted = _searched(law, np.array([stiffness, 1.0, preload]), s)
-    symbols = (("A", 1.0, "N/cm^B"), ("B", 1.0, "1"), ("F0", 1.0, "N"))
-    return _fit("power_preload", symbols, values, fitted)
+    values, fitted = _over_centimetres(s, *_searched(law, np.array([stiffness, 1.0, preload]), s))
+    return _fit("power_preload", [*_power_symbols(s), ("F0", s.load, "N")], values, fitted, s.load)
+
+
+def _power_symbols(s: _Samples) -> _Symbols:
+    return [("A", s.load, "N/cm^B"), ("B", 1.0, "1")]
+
+
+def _over_centimetres(s: _Samples, values: Array, fitted: _Fitted) -> tuple[Array, _Fitted]:
+    """Return the values A, B, ... of a law A (x / length)^B, and its derivatives by them, as those of a law of x."""
+    residual, derivatives = fitted
+    by_factor, factor = derivatives[:, 0], float(values[0])
+    to_centimetres = s.length ** -float(values[1])
+    derivatives = derivatives.copy()
+    derivatives[:, 0] = by_factor / to_centimetres
+    derivatives[:, 1] += factor * np.log(s.length) * by_factor
+    return np.array([factor * to_centimetres, *values[1:]]), (residual, derivatives)
 
 
 def _shifted(s: _Samples, name: str) -> LawFit:
@@ -334,17 +366,17 @@ def _shifted(s: _Samples, name: str) -> LawFit:
         starts.append([stiffness, crossing] if linear else [stiffness, 1.0, crossing])
     found = [_searched(law, np.array(start), s) for start in starts]
     values, fitted = min(found, key=lambda f: float(f[1][0] @ f[1][0]))
-    gap = ("x0", 10.0, "mm")
-    symbols = (("k", 0.1, "N/mm"), gap) if linear else (("A", 1.0, "N/cm^B"), ("B", 1.0, "1"), gap)
-    fit = _fit(name, symbols, values, fitted)
+    values, fitted = (values, fitted) if linear else _over_centimetres(s, values, fitted)
+    to_mm = MM_PER_CM * s.length
+    symbols = [*(_powers(s, ("k",), 1) if linear else _power_symbols(s)), ("x0", to_mm, "mm")]
+    fit = _fit(name, symbols, values, fitted, s.load)
     *others, (symbol, begins, deviation, unit) = fit.constants
-    far = deviation > 10.0 * float(np.ptp(s.x))  # in mm: it lies anywhere
+    far = deviation > to_mm * float(np.ptp(s.x))  # it lies anywhere
     return replace(fit, constants=(*others, (symbol, begins, np.inf if far else deviation, unit)))
 
 
 def _power_start(s: _Samples, begins: float) -> Array:
-    """Return A and B through the largest force and that at half its deflection; where one of these was not recorded,
-    as of a part that is only pulled, a straight line as steep as the samples are."""
+    """Return A and B through the largest force and that at half its deflection, or a line where one is missing."""
     beyond = np.maximum(s.x - begins, 0.0)
     top = float(beyond.max()) or 1.0
     far, half_way = s.force[beyond > 0.9 * top], s.force[np.abs(beyond - 0.5 * top) < 0.1 * top]

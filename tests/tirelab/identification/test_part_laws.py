@@ -120,6 +120,34 @@ def test_the_uncertainties_of_a_stiff_short_part_are_those_of_its_noise() -> Non
     np.testing.assert_allclose(stated, bound, rtol=0.2)
 
 
+@pytest.mark.parametrize(("length", "load"), [(1e-6, 1e-9), (1e-3, 1e4), (50.0, 1e-3)])
+@pytest.mark.parametrize("name", MADE)
+def test_parts_of_any_size_are_fitted_alike(name: str, length: float, load: float) -> None:
+    """A nanometre and a piconewton, or metres: what a law leaves grows with the load, the order of the laws stays."""
+    x, force, _ = MADE[name]
+    read = recording(x, force)
+    usual, other = fit_laws([read]), fit_laws([recording(length * x, load * read.force, noise=0.0)])
+    left = {fit.name: fit.rmse for fit in usual}
+    for fit in other:
+        assert fit.rmse == pytest.approx(load * left[fit.name], rel=1e-4), fit.name
+    first, same = usual[0], {fit.name: fit for fit in other}[usual[0].name]
+    assert other[0].bic == pytest.approx(same.bic, abs=1.0)
+    for symbol, value, deviation, unit in first.constants if first.name != "piecewise" else ():
+        _, changed, spread, _ = next(c for c in same.constants if c[0] == symbol)
+        power = {"N/cm^B": -same.value("B") if unit == "N/cm^B" else 0.0, "N": 0, "N/mm": -1, "N/mm^2": -2}
+        factor = (
+            length
+            if unit == "mm"
+            else 1.0
+            if unit == "1"
+            else load * length ** ({"N/mm^3": -3} | power)[unit]
+        )
+        # a difference of 1e-3 of the uncertainty is no other constant
+        assert changed == pytest.approx(factor * value, rel=1e-6, abs=1e-3 * spread), symbol
+        if unit != "N/cm^B":
+            assert spread == pytest.approx(factor * deviation, rel=1e-2), symbol
+
+
 def test_preload_is_a_gap_below_zero() -> None:
     force = 80e3 * (X + 0.002)
     fits = {fit.name: fit for fit in fit_laws([recording(X, force)])}

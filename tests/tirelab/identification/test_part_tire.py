@@ -334,17 +334,16 @@ def test_springs_and_dampers_are_not_told_the_curve() -> None:
 
 
 def test_a_pad_whose_gauge_counts_from_elsewhere_is_asked_for_its_zero() -> None:
-    """Pressed in the last 4 % of the stroke, and let go as far, with 2 N of noise on 13 N before it: a straight line
-    from 5.8 mm on is found, and a power law from where its own beginning cannot be seen is none of a gap.
+    """Pressed in the last 4 % of the stroke, and let go as far, with 2 N of noise on 13 N: a straight line and a power
+    law from 5.8 mm on are found. What falls has no beginning.
     """
     way = np.linspace(-0.025, -0.0056, 400)
     pad = recording(
         np.concatenate([way, way[::-1]]), 13.0 * np.exp((np.concatenate([way, way[::-1]]) + 0.0056) / 1e-4)
     )
     fits = {fit.name: fit for fit in fit_laws([pad])}
-    assert tire_of(fits["linear_gap"], [pad], "").effects[0][1] == pytest.approx((0.0058,), abs=2e-4)
-    with pytest.raises(TirelabError, match=r"begins at .* mm, .* --zero deflection="):
-        tire_of(fits["power_gap"], [pad], "")
+    for name in ("linear_gap", "power_gap"):
+        assert tire_of(fits[name], [pad], "").effects[0][1] == pytest.approx((0.0058,), abs=2e-4)
     falling = recording(way, 200.0 - 13.0 * (way - way[0]))
     no_force = {fit.name: fit for fit in fit_laws([falling])}["power_gap"]
     with pytest.raises(TirelabError, match=r"-25 to -5\.6 mm, .* --zero deflection="):
