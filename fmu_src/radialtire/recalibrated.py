@@ -49,10 +49,10 @@ class Recalibrated:
         if not bends or len(set(bends)) < len(bends):
             raise ParameterError("a recalibrated law needs one entry for each of one or more surfaces")
         for radius, change, exponent in self.surfaces:
-            if not (abs(change) <= 5.0 and abs(exponent) <= 5.0):
+            if not (abs(change) <= 100.0 and abs(exponent) <= 5.0):
                 raise ParameterError(
                     f"the change of the law at the radius {radius:g} m, {change:g} and {exponent:g}, is not allowed; "
-                    "both must lie between -5 and 5"
+                    "they must lie between -100 and 100, and between -5 and 5"
                 )
         ordered = tuple(sorted(self.surfaces, key=lambda s: _curvature(s[0])))
         object.__setattr__(self, "surfaces", ordered)
@@ -76,6 +76,11 @@ def changed(A: float, B: float, by: tuple[float, float]) -> tuple[float, float]:
     """Return A exp(a) and B + b, but no exponent below 0.05."""
     a, b = by
     return A * math.exp(a), max(B + b, 0.05)
+
+
+def changed_at(deflection: float, factor: float, exponent: float) -> tuple[float, float]:
+    """Return a and b of a law whose force at a `deflection` [m] is multiplied by exp(factor), and B changed by b."""
+    return factor - exponent * math.log(100.0 * deflection), exponent
 
 
 def changes(q: Sequence[float], at: int, count: int, surface_radius: float) -> tuple[float, float]:

@@ -4,6 +4,7 @@ import math
 
 import pytest
 from radialtire import FLAT_RADIUS, Hull1996, ParameterError, Recalibrated, TireFileError, TireModel
+from radialtire.recalibrated import changed_at
 from radialtire.tirefile import from_text, to_text
 
 BASE = Hull1996()
@@ -52,5 +53,17 @@ def test_a_broken_entry_is_refused(old, new, said):
 def test_surfaces_are_distinct_and_changes_bounded():
     with pytest.raises(ParameterError, match="one entry for each"):
         Recalibrated(BASE, ((math.inf, 0.0, 0.0), (-math.inf, 0.1, 0.0)))
-    with pytest.raises(ParameterError, match="between -5 and 5"):
-        Recalibrated(BASE, ((0.2, 9.0, 0.0),))
+    with pytest.raises(ParameterError, match="between -100 and 100, and between -5 and 5"):
+        Recalibrated(BASE, ((0.2, 109.0, 0.0),))
+    with pytest.raises(ParameterError, match="between -100 and 100, and between -5 and 5"):
+        Recalibrated(BASE, ((0.2, 0.0, 9.0),))
+
+
+@pytest.mark.parametrize("deflection", [2e-9, 1e-3, 0.01, 0.7])
+def test_an_exponent_changed_about_a_deflection_leaves_the_force_there(deflection: float) -> None:
+    """By the definition, A exp(a) x^(B + b) with x in centimetres."""
+    x = 100.0 * deflection
+    A0, B0 = BASE.coefficients(math.inf)
+    A, B = Recalibrated(BASE, ((math.inf, *changed_at(deflection, 0.3, 0.5)),)).coefficients(math.inf)
+    assert pytest.approx(B0 + 0.5, rel=1e-12) == B
+    assert pytest.approx(A0 * x**B0 * math.exp(0.3), rel=1e-9) == A * x**B

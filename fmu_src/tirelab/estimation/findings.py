@@ -13,10 +13,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
+from radialtire.recalibrated import changed_at
 
 from ..preprocessing.data_checks import spikes
 from ..regressors.dataset import Dataset
-from ..regressors.signature import LAW, form_error, size_of
+from ..regressors.signature import LAW, form_error, reference_of, size_of
 from ..selection.search import LIKE_NOISE
 from ..simulation.channels import Sampled
 from ..simulation.simulate import simulate
@@ -98,22 +99,30 @@ def _of_surfaces(fit: Fit) -> range:
 
 
 def _on_surfaces(fit: Fit, covariance: NDArray[np.float64]) -> list[FittedParameter]:
-    """Return the changes of A and B on each surface, each the sum of the common change and that of the surface."""
+    """Return the changes of A and B on each surface, each the sum of the common change and that of the surface.
+
+    The fit changes them about the reference deflection, the law's coefficients are those at 1 cm (see `changed_at`).
+    """
     at = {p.index: i for i, p in enumerate(fit.problem.parameters) if p.owner == LAW}
     if not at:
         return []
     dataset = fit.problem.dataset
     surfaces = law_surfaces(dataset)
+    covariance = covariance[: fit.positions.size, : fit.positions.size]
+    of_exponent = changed_at(reference_of(dataset), 0.0, 1.0)[0]
     found = []
     for number, radius in enumerate(dataset.radii[:surfaces]):
         where = "flat" if np.isinf(radius) else f"{100.0 * radius:.4g} cm"
         where = where if surfaces == len(dataset.radii) else "all surfaces"
-        for first, name in ((0, "log factor on A"), (1, "change of B")):
-            own = COMMON + 2 * number + first
-            parts = [at[i] for i in (first, own) if i in at and (i == first or i in _of_surfaces(fit))]
-            weights = np.array([fit.problem.parameters[i].spread for i in parts])
-            value = float(weights @ fit.positions[parts])
-            deviation = float(np.sqrt(weights @ covariance[np.ix_(parts, parts)] @ weights))
+        factor, exponent = (
+            [at[i] for i in (first, own) if i in at and (i == first or i in _of_surfaces(fit))]
+            for first, own in ((0, COMMON + 2 * number), (1, COMMON + 2 * number + 1))
+        )
+        weights = np.zeros((2, fit.positions.size))
+        for row, parts, unit in ((0, factor, 1.0), (0, exponent, of_exponent), (1, exponent, 1.0)):
+            weights[row, parts] = [unit * fit.problem.parameters[i].spread for i in parts]
+        for name, own in zip(("log factor on A", "change of B"), weights, strict=True):
+            value, deviation = float(own @ fit.positions), float(np.sqrt(own @ covariance @ own))
             found.append(FittedParameter(LAW, f"{name}, {where}", "1", value, deviation, determined=True))
     return found
 

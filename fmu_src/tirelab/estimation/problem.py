@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, Parameter, Recalibrated, TireModel
+from radialtire.recalibrated import changed_at
 
 from ..preprocessing.motion import branches
 from ..preprocessing.samples import MOST_SURFACES
@@ -39,7 +40,6 @@ from ..regressors.signature import (
     LAW,
     PRELOAD,
     RAMPS,
-    REFERENCE,
     SHAPE,
     TWIST,
     form_error,
@@ -47,6 +47,7 @@ from ..regressors.signature import (
     gap_spread,
     kink_spread,
     preload_spread,
+    reference_of,
     size_of,
     span_of,
 )
@@ -298,7 +299,8 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
         own = own[:-1]
     radii = dataset.radii[: law_surfaces(dataset)]
     pairs = [(own[2 * i], own[2 * i + 1]) if own else (0.0, 0.0) for i in range(len(radii))]
-    rows = tuple((r, factor + a, exponent + b) for r, (a, b) in zip(radii, pairs, strict=True))
+    at = reference_of(dataset)
+    rows = [(r, *changed_at(at, factor + a, exponent + b)) for r, (a, b) in zip(radii, pairs, strict=True)]
     if any(shape):
         bend, twist, *kinks = shape
         twist = min(max(twist, -1.0), 1.0)
@@ -306,9 +308,8 @@ def tire_of(dataset: Dataset, values: Values) -> TireModel:
             effects.append((CURVE, (*span_of(dataset), *_heights(CURVE, kinks))))
             kinks = [0.0] * KINKS
         if bend or twist or any(kinks):
-            reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
-            effects.append((SHAPE, (bend, twist, reference, *_heights(SHAPE, kinks))))
-    return arranged(tire, effects, law=Recalibrated(tire.law, rows), preload=preload)
+            effects.append((SHAPE, (bend, twist, at, *_heights(SHAPE, kinks))))
+    return arranged(tire, effects, law=Recalibrated(tire.law, tuple(rows)), preload=preload)
 
 
 def _heights(shape: str, kinks: Sequence[float]) -> list[float]:

@@ -44,6 +44,11 @@ _COMMON = {
 }
 # Words such as min, in and h may be part of a name.
 _USUAL = frozenset(unit for units in _COMMON.values() for unit in units) - {"min", "in", "h"}
+# Instron's own exports write the ring above for a degree.
+_LOOKALIKES = str.maketrans(
+    {"\N{GREEK SMALL LETTER MU}": "\N{MICRO SIGN}"}
+    | dict.fromkeys("\N{RING ABOVE}\N{MASCULINE ORDINAL INDICATOR}", "\N{DEGREE SIGN}")
+)
 # Spellings that mean one thing only where the quantity is known; pint reads "C" as coulomb.
 _SPELLINGS = {
     ("K", "C"): "degC",
@@ -165,7 +170,7 @@ def conversion(unit: str, si: str) -> Conversion:
     Errors: UnitError with the likely spelling when pint does not know the unit or it measures something else.
     Source: pint's default registry (definitions of NIST SP 811).
     """
-    text = " ".join(unit.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").split()).removesuffix(".")
+    text = " ".join(unit.translate(_LOOKALIKES).split()).removesuffix(".")
     quantity = QUANTITIES[si]
     gauge = _GAUGE.match(text) if si == "Pa" else None
     absolute = gauge is not None and gauge["kind"].startswith("a")

@@ -55,9 +55,6 @@ HEIGHTS = sum(p.name.startswith("height") for p in CATALOGUE[SHAPE].parameters)
 RAMPS = np.clip(np.subtract.outer(np.arange(HEIGHTS), np.arange(HEIGHTS - 1)), 0, None) / (HEIGHTS - 1.0)
 """The heights (rows) that follow from a kink of size 1 at each height but the last (columns); of a part the forces."""
 
-REFERENCE = [p.name for p in CATALOGUE[SHAPE].parameters].index("reference")
-"""Index of the reference deflection among the parameters of the shape."""
-
 LEAST_RATIO = 0.01
 """The least x / x_ref, as in the effect SHAPE."""
 
@@ -123,14 +120,17 @@ def _beside_law(tire: TireModel, experiment: Experiment) -> FloatArray:
     return pretension + beyond_zero(tire.curve, own_deflection(tire, experiment))
 
 
+def reference_of(dataset: Dataset) -> float:
+    """Return the deflection [m] about which a law is refitted, where a change of B alone leaves its force."""
+    return at_reading(next(p for p in CATALOGUE[SHAPE].parameters if p.name == "reference"), dataset.scales)
+
+
 def law_signature(dataset: Dataset) -> Signature:
-    """Return the law's signature; its size 1 is that of a change of A by FACTOR, or of a part's preload or gap where
-    that is more.
-    """
+    """Return the law's signature, of size 1 where A changes by FACTOR, or a part's preload or gap, if that is more."""
     x, radius = dataset.deflection, dataset.gathered([e.surface_radius for e in dataset.experiments])
     tire = dataset.tire  # what it is without a deflection, and its curve, are no factor's
     force = dataset.stacked([e.baseline - _beside_law(tire, e) for e in dataset.experiments])
-    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales)
+    reference = reference_of(dataset)
     way = np.log(np.maximum((np.abs(x) if tire.two_sided else x) / reference, LEAST_RATIO))
     changes = [FACTOR + 0.0 * way, EXPONENT * way]
     columns = [force * part for part in (*changes, BEND * way**2, TWIST * way**3)]

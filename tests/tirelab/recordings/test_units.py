@@ -233,3 +233,8 @@ def test_what_is_no_calibration_is_refused(text: str, si: str) -> None:
 )
 def test_a_line_may_state_the_sampling(line: str, rate: str) -> None:
     assert sampling_said(("Operator: A", line)) == rate
+
+
+@pytest.mark.parametrize("degree", ["°", "\N{RING ABOVE}", "\N{MASCULINE ORDINAL INDICATOR}"])
+def test_a_degree_is_one_however_an_export_writes_it(degree: str) -> None:
+    assert conversion(f"{degree}C", "K").to_si(np.array([20.0])) == pytest.approx([293.15])

@@ -11,19 +11,18 @@ from tirelab.estimation.problem import EstimationProblem, law_start, problem_of
 from tirelab.preprocessing.noise import Noise
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, arranged, dataset_of
-from tirelab.regressors.draws import at_reading, quantile
+from tirelab.regressors.draws import quantile
 from tirelab.regressors.signature import (
-    EXPONENT,
     FACTOR,
     LAW,
     PARTS,
-    REFERENCE,
     SHAPE,
     Beside,
     candidates,
     drawn_beside,
     in_other_noise,
     law_signature,
+    reference_of,
     signature_of,
     signatures_of,
     single_valued,
@@ -91,18 +90,12 @@ def test_a_change_of_a_and_b_lies_in_the_span_of_the_laws_signature(dataset: Dat
 
 
 def slopes_of(problem: EstimationProblem) -> list[np.ndarray]:
-    """The derivatives of a refitted law by its parameters, on the axes of their priors.
-
-    The change of B acts on ln(x / 1 cm) there and on ln(x / x_ref) in the signature: the rest is a change of A.
-    """
+    """The derivatives of a refitted law by its parameters, on the axes of their priors."""
     origin, step = np.zeros(len(problem.parameters)), 1e-4
-    slopes = [
+    return [
         (problem.residual(origin) - problem.residual(origin + step * row)) / step
         for row in np.eye(origin.size)
     ]
-    reference = at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], problem.dataset.scales)
-    slopes[1] = slopes[1] - EXPONENT * np.log(reference / 0.01) / FACTOR * slopes[0]
-    return slopes
 
 
 def test_the_laws_signature_is_what_a_refitted_law_can_do(dataset: Dataset) -> None:
@@ -190,7 +183,7 @@ def test_a_law_that_is_steeper_beyond_a_depth_lies_in_the_span_beyond_a_gap() ->
 
 def test_a_law_that_waves_lies_in_the_span_of_its_signature(dataset: Dataset) -> None:
     """What no change of A and B follows: heights of opposite signs."""
-    shape = (0.0, 0.0, at_reading(CATALOGUE[SHAPE].parameters[REFERENCE], dataset.scales))
+    shape = (0.0, 0.0, reference_of(dataset))
     waves = arranged(dataset.tire, [(SHAPE, (*shape, *[0.02, -0.02] * 5))])
     assert left_by(law_signature(dataset).columns, dataset.response(waves)) < 0.01
 
