@@ -136,7 +136,7 @@ def _errors(corrected: bool, unexplained: bool, fit: FitErrors) -> list[str]:
     if fit.held_out_after > AMPLIFIED * fit.held_out_noise_free:
         found.append(
             f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the rest "
-            "comes of rates that are tracked from a noisy deflection: the noise that is left in them, and their delay."
+            "comes of rates that are tracked as the readings come: their delay, and the noise that is left in them."
         )
     return found
 
