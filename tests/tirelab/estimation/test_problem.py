@@ -203,3 +203,30 @@ def test_a_law_with_every_kink_at_its_bound_is_one_that_a_tire_file_holds() -> N
         ((_, values),) = moved.effects
         assert values[-1] == bound
         assert values[3] == 0.0
+
+
+def pressed(length: float, load: float, inflated: bool) -> Dataset:
+    """A part of 40 N/cm^1.3, pressed by 20 mm and read with 0.2 N of noise, with lengths and loads times these."""
+    time = np.arange(0.0, 10.0, 0.01)
+    way = 0.01 * (1.0 - np.cos(2.0 * np.pi * 0.3 * time))
+    read = 40.0 * (100.0 * way) ** 1.3 + 0.2 * np.random.default_rng(2).normal(size=time.size)
+    believed = PowerLaw(50.0 * load * length**-1.2, 1.2)
+    part = TireModel(believed, two_sided=not inflated, inflated=inflated, tested_range=None)
+    recording = Recording("press", time, length * way, np.full(time.size, np.inf), load * read)
+    return dataset_of([recording], part)
+
+
+@pytest.mark.parametrize("inflated", [True, False])
+@pytest.mark.parametrize(("length", "load"), [(1e-4, 1e-6), (10.0, 1e3)])
+def test_a_law_is_refitted_alike_in_any_unit_of_length_and_force(
+    length: float, load: float, inflated: bool
+) -> None:
+    """Micrometres, or metres and kilonewtons: the same changes leave the same, to a hundredth of the noise."""
+    usual, other = (
+        problem_of(data, {REFITTED_LAW: law_start(data)}, plain=False)
+        for data in (pressed(1.0, 1.0, inflated), pressed(length, load, inflated))
+    )
+    assert [p.label for p in usual.parameters] == [p.label for p in other.parameters]
+    moved = np.random.default_rng(3).normal(size=len(usual.parameters))
+    for positions in (0.0 * moved, 0.3 * moved, moved):
+        np.testing.assert_allclose(other.residual(positions), usual.residual(positions), rtol=1e-5, atol=0.01)
