@@ -27,7 +27,7 @@ from radialtire import (
 )
 from radialtire.effect import NOT_MEASURED, State
 from radialtire.flat_step import TIME
-from radialtire.model import DEFLECTION_HIGHEST, DEFLECTION_LOWEST
+from radialtire.model import DEFLECTION_LOWEST
 from radialtire.tirefile import to_text
 
 MODEL = "BicycleTire"
@@ -53,7 +53,6 @@ TRAITS: dict[int, dict[str, str]] = {
         "unit": "m",
         "displayUnit": "mm",
         "min": f"{DEFLECTION_LOWEST:g}",
-        "max": f"{DEFLECTION_HIGHEST:g}",
         "nominal": "0.01",
     },
     SURFACE_RADIUS: {"unit": "m", "displayUnit": "cm", "nominal": "0.3"},
@@ -79,6 +78,7 @@ class BicycleTire(Fmi2Slave):
         self.modelName = MODEL
         self.default_experiment = DefaultExperiment(start_time=0.0, stop_time=STOP_TIME, step_size=STEP_SIZE)
         self._tire = read_tire(Path(self.resources) / "tire.json")
+        self._highest = self._tire.deflection_highest
         self._parameters = {name: value for name, (_, value) in parameters_of(self._tire).items()}
         self._pending: dict[str, float] = {}
         self._channels = self._tire.channels
@@ -222,7 +222,7 @@ class BicycleTire(Fmi2Slave):
                 self._parameters.update(self._pending)
                 self._pending.clear()
             x, R = self._inputs
-            check_inputs(x, R)
+            check_inputs(x, R, self._highest)
             self._force, state = self._tire.step(x, R, time, self._state, self._measured())
             if math.isfinite(self._force):
                 return state, ""
@@ -265,7 +265,7 @@ class BicycleTire(Fmi2Slave):
         x, R = self._inputs
         if (
             self._surface == R
-            and DEFLECTION_LOWEST <= x <= DEFLECTION_HIGHEST
+            and DEFLECTION_LOWEST <= x <= self._highest
             and current_time == self._reached
             and 0.0 <= step_size < math.inf
             and current_time + step_size <= self._stop
@@ -340,6 +340,7 @@ class BicycleTire(Fmi2Slave):
         )
         root.set("version", hashlib.sha256(to_text(self._tire).encode()).hexdigest()[:12])
         traits = dict(TRAITS)
+        traits[DEFLECTION] = {**traits[DEFLECTION], "max": f"{self._highest:g}"}
         for vr, (parameter, _) in enumerate(parameters_of(self._tire).values(), FIRST_PARAMETER):
             bounds = {"min": parameter.minimum, "max": parameter.maximum}
             finite = {key: repr(float(bound)) for key, bound in bounds.items() if math.isfinite(bound)}

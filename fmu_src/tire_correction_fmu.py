@@ -102,7 +102,7 @@ class TireCorrection(Fmi2Slave):
         x, radius, simulated = self._inputs
         radius = self._start if radius == 0.0 else radius
         try:
-            check_inputs(x, radius)
+            check_inputs(x, radius, self._tire.deflection_highest)
             force, state = self._tire.step(x, radius, time, self._state)
             inside = self._tire.tire_deflection(x, radius, time, self._state) if self._moves else x
             additional = force - self._law_force(inside, radius)

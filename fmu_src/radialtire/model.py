@@ -34,7 +34,9 @@ DEFLECTION_LOWEST = -1e3
 """Lowest deflection accepted [m]: a wheel this high above the ground is a mistake."""
 
 DEFLECTION_HIGHEST = hull1996.WHEEL_RADIUS
-"""Highest deflection accepted [m]: with more than the wheel's radius the axle would be below the ground."""
+"""Highest deflection of a tire accepted [m]: beyond the wheel's radius the axle would be below the ground. A part has
+no wheel: it is accepted as far as the other way.
+"""
 
 READING_NOISE = Parameter(
     "reading_noise",
@@ -93,12 +95,17 @@ class TestedRange:
         )
 
 
-def check_inputs(deflection: float, surface_radius: float) -> None:
-    """Raise InputError unless `deflection` [m] and `surface_radius` [m] are numbers that a wheel can meet."""
-    if not DEFLECTION_LOWEST <= deflection <= DEFLECTION_HIGHEST:
+def check_inputs(deflection: float, surface_radius: float, highest: float = DEFLECTION_HIGHEST) -> None:
+    """Raise InputError unless `deflection` [m] and `surface_radius` [m] are numbers that a wheel can meet.
+
+    highest [m]: deflection of the tire or part (`TireModel.deflection_highest`)
+    """
+    if not DEFLECTION_LOWEST <= deflection <= highest:
+        of_tire = highest == DEFLECTION_HIGHEST
+        air, radius = (" (wheel in the air)", " (the wheel's radius)") if of_tire else ("", "")
         raise InputError(
-            f"deflection = {deflection:.17g} m is not allowed; it must lie between {DEFLECTION_LOWEST:g} m (wheel "
-            f"in the air) and {DEFLECTION_HIGHEST:g} m (the wheel's radius)"
+            f"deflection = {deflection:.17g} m is not allowed; it must lie between {DEFLECTION_LOWEST:g} m{air} "
+            f"and {highest:g} m{radius}"
         )
     if not (surface_radius > 0.0 or surface_radius < 0.0):
         raise InputError(
@@ -182,6 +189,11 @@ class TireModel:
         """
         law = getattr(self.law, "base", self.law)  # a refitted law knows no more of the ground than its base
         return self.two_sided or (not self.inflated and isinstance(law, power_law.PowerLaw))
+
+    @property
+    def deflection_highest(self) -> float:
+        """Highest deflection accepted [m]: of a part as far as the other way, of a tire the wheel's radius."""
+        return -DEFLECTION_LOWEST if self.two_sided or not self.inflated else DEFLECTION_HIGHEST
 
     @property
     def bare(self) -> bool:

@@ -176,6 +176,16 @@ def test_a_deflection_that_no_wheel_has_is_refused(x: float) -> None:
         check_inputs(x, 0.3)
 
 
+@pytest.mark.parametrize(("held", "air"), [(True, False), (False, False), (True, True)])
+def test_a_part_has_no_wheel_that_it_could_reach_beyond(held: bool, air: bool) -> None:
+    highest = TireModel(PowerLaw(), two_sided=held, inflated=air).deflection_highest
+    check_inputs(0.6, math.inf, highest)
+    with pytest.raises(
+        InputError, match=r"^deflection = 1001 m is not allowed; it must lie between -1000 m and 1000 m$"
+    ):
+        check_inputs(1001.0, math.inf, highest)
+
+
 @pytest.mark.parametrize("radius", [0.0, -0.0, math.nan])
 def test_a_radius_that_no_surface_has_is_refused(radius: float) -> None:
     with pytest.raises(InputError, match=r"^surface_radius = .* m is not allowed; it must be positive"):

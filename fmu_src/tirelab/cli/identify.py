@@ -114,7 +114,8 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
             show("reading", number, len(files))
             read.append(reading(path))
         show("reading", len(files), len(files))
-        refuse_too_deep(read)
+        if not part:
+            refuse_too_deep(read)
         found = None if part else identify(read, law=options["law"], name=options["name"], progress=show)
     for recording in read:
         for note in recording.notes:

@@ -119,7 +119,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     limits = None if asked.rig is None else read_rig(asked.rig, {}).test_limits
     baseline, model, baseline_notes = _baseline(asked.tire)
     asked = replace(asked, reading=asked.reading.of_part()) if baseline.is_part else asked
-    read = _read_all(asked, report, two_sided=baseline.two_sided)
+    read = _read_all(asked, report, baseline)
     origin = _origin(asked, read.files)
     fitted, kept = read.fitted, read.kept
     believed = _simulation(asked, model, fitted, [alone(r) for r in kept], report)
@@ -149,7 +149,7 @@ class _Read:
     skipped: tuple[str, ...]
 
 
-def _read_all(asked: Request, report: Progress, *, two_sided: bool) -> _Read:
+def _read_all(asked: Request, report: Progress, baseline: TireModel) -> _Read:
     """Read the recordings; raises TirelabError for a request that would fail after the work (see `request_checks`)."""
     files, skipped = recording_files(asked.recordings, asked.reading.columns)
     kept_files, more_skipped = recording_files(asked.held_out, asked.reading.columns)
@@ -159,7 +159,7 @@ def _read_all(asked: Request, report: Progress, *, two_sided: bool) -> _Read:
     fitted = tuple(alone(_read(file, asked.reading, report)) for file in files)
     kept = tuple(_read(file, asked.reading, report) for file in kept_files)
     check_apart(list(zip(every, (*fitted, *kept), strict=True)))
-    check_depth(fitted, kept, two_sided=two_sided)
+    check_depth(fitted, kept, baseline)
     return _Read(fitted, kept, every, tuple(map(str, (*skipped, *more_skipped))))
 
 

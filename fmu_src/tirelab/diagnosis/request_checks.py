@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from radialtire import TireModel
+from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
 from ..preprocessing.data_checks import MAJORITY
@@ -79,13 +81,11 @@ def _runs(recording: Recording) -> NDArray[np.uint64]:
     return pl.DataFrame([readings[k : last + k] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()
 
 
-def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_sided: bool = False) -> None:
-    """Raise TirelabError for deflections that would fail when all is done: none above 0, or one beyond the wheel's
-    radius.
-
-    two_sided: whether the part is held at both ends: a deflection below 0 loads it too
+def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], baseline: TireModel) -> None:
+    """Raise TirelabError for deflections that would fail when all is done: none above 0, unless the baseline is a part
+    held at both ends, or one beyond the wheel's radius, unless it has no wheel.
     """
-    if not two_sided and max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
+    if not baseline.two_sided and max(float(recording.deflection.max()) for recording in fitted) <= 0.0:
         least = float(f"{min(float(recording.deflection.min()) for recording in fitted):.3g}")
         zero = f", such as --zero deflection={quantity_text('deflection', least)}" if least < 0.0 else ""
         raise TirelabError(
@@ -93,7 +93,8 @@ def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], *, two_s
             "diagnosed; for a part that is pulled turn both signs, --columns deflection=-NAME,force=-NAME, or give "
             f"what the gauge reads when nothing is loaded{zero}"
         )
-    refuse_too_deep(r.whole for r in (*fitted, *kept))
+    if baseline.deflection_highest == DEFLECTION_HIGHEST:
+        refuse_too_deep(r.whole for r in (*fitted, *kept))
 
 
 def check_folder(out: Path) -> None:

@@ -163,7 +163,7 @@ def refuse_far_zeros(recordings: Iterable[_Named]) -> None:
 
 
 def refuse_too_deep(recordings: Iterable[_Driven]) -> None:
-    """Raise RecordingError where a deflection is beyond the wheel's radius, which no tire and no FMU takes."""
+    """Raise RecordingError where a deflection is beyond the wheel's radius, which no tire and no FMU of one takes."""
     for recording in recordings:
         deepest = int(np.argmax(recording.deflection))
         if recording.deflection[deepest] <= DEFLECTION_HIGHEST:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.request_checks import check_apart, check_depth, check_folder, check_once, copies_told
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import Recording
@@ -63,14 +64,16 @@ def test_copies_and_exports_of_one_test_are_told() -> None:
 
 
 def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
-    check_depth([part(0.0, 1.0, 0.3)], [])
+    tire, held = TireModel(), TireModel(PowerLaw(), two_sided=True, inflated=False)
+    check_depth([part(0.0, 1.0, 0.3)], [], tire)
     with pytest.raises(TirelabError, match=r"no deflection is above 0.*--zero deflection=-10mm$"):
-        check_depth([part(0.0, 1.0, -0.01)], [])
-    check_depth([part(0.0, 1.0, -0.01)], [], two_sided=True)
+        check_depth([part(0.0, 1.0, -0.01)], [], tire)
+    check_depth([part(0.0, 1.0, -0.01)], [], held)
     with pytest.raises(
         TirelabError, match=r"the deflection is 0\.4 m at 1 s, and a tire takes 0\.33 m at most"
     ):
-        check_depth([part(0.0, 1.0)], [part(0.0, 1.0, 0.4)])
+        check_depth([part(0.0, 1.0)], [part(0.0, 1.0, 0.4)], tire)
+    check_depth([part(0.0, 1.0)], [part(0.0, 1.0, 0.4)], held)
 
 
 def test_a_gauge_that_stands_far_from_zero_is_asked_for_its_zero() -> None:
@@ -78,9 +81,9 @@ def test_a_gauge_that_stands_far_from_zero_is_asked_for_its_zero() -> None:
     far = part(0.0, 1.0, 0.372)
     far = replace(far, deflection=np.maximum(far.deflection, 0.357))
     with pytest.raises(TirelabError, match=r"nothing is loaded, such as --zero deflection=357mm, or choose"):
-        check_depth([far], [])
+        check_depth([far], [], TireModel())
     with pytest.raises(TirelabError, match=r"nothing is loaded, or choose a range"):
-        check_depth([part(0.0, 1.0, 0.372)], [])
+        check_depth([part(0.0, 1.0, 0.372)], [], TireModel())
 
 
 def test_a_folder_may_be_new_but_not_within_a_file(tmp_path: Path) -> None:

@@ -21,9 +21,9 @@ FloatArray = NDArray[np.float64]
 KINDS = pytest.mark.parametrize("native", [False, True], ids=["python", "native"])
 
 
-def motion(low: float = -0.002, **measured: FloatArray) -> Motion:
+def motion(low: float = -0.002, high: float = 0.025, **measured: FloatArray) -> Motion:
     time = 2.0 + 0.01 * np.arange(300)
-    x = low + (0.025 - low) * 0.5 * (1.0 - np.cos(5.0 * time))
+    x = low + (high - low) * 0.5 * (1.0 - np.cos(5.0 * time))
     return Motion(time, x, np.full(time.size, np.inf), measured)
 
 
@@ -91,6 +91,17 @@ def test_a_part_that_is_held_at_both_ends_pulls(tmp_path: Path, native: bool) ->
     expected = 200.0 * np.sign(both.deflection) * np.abs(100.0 * both.deflection) ** 1.3
     fmu = built(part, tmp_path, native=native)
     assert replay(fmu, both) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@KINDS
+def test_a_part_has_no_wheel_beyond_whose_radius_it_could_not_go(tmp_path: Path, native: bool) -> None:
+    """An isolator of half a metre to either side; of a tire 0.33 m is the most."""
+    part = TireModel(PowerLaw(40.0, 1.0), two_sided=True, inflated=False, tested_range=None)
+    both = motion(low=-0.5, high=0.5)
+    fmu = built(part, tmp_path, native=native)
+    assert replay(fmu, both) == pytest.approx(4e3 * both.deflection, rel=1e-12, abs=1e-12)
+    variables = {v.name: v for v in fmpy.read_model_description(fmu).modelVariables}
+    assert float(variables["deflection"].max) == 1000.0
 
 
 @KINDS

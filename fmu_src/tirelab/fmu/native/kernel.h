@@ -9,6 +9,7 @@ enum {
     S_TIME = 0,
     S_STARTED = 4,
     P_TRACKED = 0, /* p: rate and acceleration follow from the readings */
+    P_TWO_SIDED = 4, P_INFLATED = 6,
     P_CONTINUOUS = 3, /* p: effects that are differential equations are a solver's */
     CHANNELS = 2, /* quantities after the first five of a motion */
     LAW_TABLES = 19 /* q: number of tables after the law's parameters */

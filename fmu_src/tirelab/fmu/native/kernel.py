@@ -116,6 +116,7 @@ def sources() -> dict[str, str]:
         f"    S_TIME = {flat_step.TIME},",
         f"    S_STARTED = {flat_step.STARTED},",
         f"    P_TRACKED = {TRACKED}, /* p: rate and acceleration follow from the readings */",
+        f"    P_TWO_SIDED = {TWO_SIDED}, P_INFLATED = {INFLATED},",
         f"    P_CONTINUOUS = {CONTINUOUS}, /* p: effects that are differential equations are a solver's */",
         f"    CHANNELS = {len(CHANNELS)}, /* quantities after the first five of a motion */",
         f"    LAW_TABLES = {flat_law.TABLES} /* q: number of tables after the law's parameters */",

@@ -234,6 +234,8 @@ static bool parse(Tire *tire, char *at)
         one->number = (int)index;
     }
     tire->moves = tire->p[P_TRACKED] != 0;
+    tire->deflection_max =
+        tire->p[P_TWO_SIDED] != 0 || tire->p[P_INFLATED] == 0 ? -DEFLECTION_MIN : DEFLECTION_MAX;
     if (*word(&at) || !(tire->start = malloc(sizeof(double) * (tire->law + PARAMETERS))))
         return false;
     memcpy(tire->start, tire->q, sizeof(double) * tire->law);
@@ -401,9 +403,11 @@ bool tire_try(Tire *tire, double time, char trouble[TROUBLE])
     const Inputs *const u = &tire->m.inputs; /* a copy would wait for both inputs to be written */
     tire->current = true;
     tire->force = NAN;
-    if (!(DEFLECTION_MIN <= u->deflection && u->deflection <= DEFLECTION_MAX)) {
-        snprintf(trouble, TROUBLE, "deflection = %.17g m is not allowed; it must lie between %g m (wheel in the air) and "
-                 "%g m (the wheel's radius)", u->deflection, DEFLECTION_MIN, DEFLECTION_MAX);
+    if (!(DEFLECTION_MIN <= u->deflection && u->deflection <= tire->deflection_max)) {
+        const bool of_tire = tire->deflection_max == DEFLECTION_MAX;
+        snprintf(trouble, TROUBLE, "deflection = %.17g m is not allowed; it must lie between %g m%s and %g m%s",
+                 u->deflection, DEFLECTION_MIN, of_tire ? " (wheel in the air)" : "", tire->deflection_max,
+                 of_tire ? " (the wheel's radius)" : "");
         return false;
     }
     if (!(u->radius > 0 || u->radius < 0)) {

@@ -27,7 +27,7 @@ enum { DEFLECTION_RATE, DEFLECTION_ACCELERATION, MOTION_GIVEN, MOTION_VARIABLES 
 enum { MOST_CONTINUOUS = 8 };
 
 #define DEFLECTION_MIN (-1e3) /* deflections accepted [m], as radialtire.model */
-#define DEFLECTION_MAX 0.33
+#define DEFLECTION_MAX 0.33   /* of a tire; a part has -DEFLECTION_MIN */
 
 typedef struct {
     double deflection, radius, rate, acceleration;
@@ -64,6 +64,7 @@ typedef struct {
     size_t law;          /* how many of the law */
     bool bare;           /* no effect */
     bool moves;          /* an effect uses rate or acceleration */
+    double deflection_max; /* accepted [m] */
     double range[4];     /* curvature from and to [1/m], deflection [m], force [N] */
     bool tested;
     int continuous[MOST_CONTINUOUS], continuous_count; /* indices in s that are a solver's */
@@ -123,7 +124,7 @@ static inline bool tire_glides(Tire *tire, double time, double step)
     const Inputs *const u = &tire->m.inputs;
     const double end = time + step;
     if (!tire->bare || u->radius != tire->surface || time != tire->m.reached || !(step >= 0 && end <= tire->m.stop)
-        || !(DEFLECTION_MIN <= u->deflection && u->deflection <= DEFLECTION_MAX))
+        || !(DEFLECTION_MIN <= u->deflection && u->deflection <= tire->deflection_max))
         return false;
     const double force = tire_elastic(u->deflection, tire->coefficients.v[0], tire->coefficients.v[1]);
     if (!isfinite(force) || !isfinite(end))
