@@ -167,7 +167,7 @@ def _noise_left(
     x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
     (surface,) = surface_numbers([e.surface_radius[e.counts]])
     driven = Driven(e.interval, x, rate, acceleration, surface)
-    over = [other.noise_over(e.interval) for other in series]
+    over = [noise for other in series for noise in other.noises_over(e.interval, e.size)]
     known = [replace(n, level=n.level / e.noise) for n in over]
     others = partial(_left_in_one, equations, [r.size for r in left], number)
     noise = white_noise_of(own, driven) if white else noise_of(own, driven, others, known)

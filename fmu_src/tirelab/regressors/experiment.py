@@ -126,9 +126,11 @@ class Experiment:
         """Standard deviation of the noise of each block (n,) [N]."""
         return self.noise * np.where(resting(self.rate), *self.uneven)
 
-    def noise_over(self, interval: float) -> Noise:
-        """Return the noise of its readings in memories of this interval [s]."""
-        return in_blocks(self.reading, interval * self.size / self.interval)
+    def noises_over(self, interval: float, size: int = 1) -> tuple[Noise, Noise]:
+        """Return the noise of its readings as that of another recording may be in blocks of so many samples, an
+        interval [s] apart: a filter of an amplifier has its time, or follows the sampling.
+        """
+        return in_blocks(self.reading, interval * self.size / self.interval), in_blocks(self.reading, size)
 
     def with_noise(self, noise: Noise) -> Experiment:
         """Return the experiment with another noise [N] of its averaged misfit."""
@@ -158,9 +160,11 @@ def experiment_in_blocks(
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
     misfit = recording.force - baseline
-    known = [e.noise_over(interval) for e in series] if reading is None else [reading]
-    reading = reading or _noise_along(moved, misfit, interval, known)
     lone = spikes(misfit)
+    known = [n for e in series for n in e.noises_over(interval)] if reading is None else [reading]
+    if reading is None:
+        quiet = np.interp(recording.time, recording.time[~lone], misfit[~lone])  # false readings are no noise
+        reading = _noise_along(moved, quiet, interval, known)
     turns = followed_turns(misfit, motion.resolved, reading.level)
     turns &= ~(lone & are_rare(np.array([lone[begin:end].any() for begin, end in runs(turns)], dtype=bool)))
     resolved = motion.resolved & ~lone
