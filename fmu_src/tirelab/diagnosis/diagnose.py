@@ -42,7 +42,7 @@ from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_ou
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .residual_model import residual_models, unexplained_by
-from .summary import not_seen, other_law, summarise
+from .summary import not_seen, other_law, slow_noise, summarise
 from .verdict import FitErrors, NotNamed, Verdict
 
 MOST_TESTED = 3
@@ -122,6 +122,8 @@ def diagnose(
     sentences = [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(effects, alternatives, models, confidence, fit, test))
     sentences += not_seen(remainder.uncompared, models) if unexplained else []
+    noises = [e.reading for e in explanation.model.fit.problem.dataset.experiments]
+    sentences += slow_noise(fitted, explanation.noise_free, noises)
     sentences += other_law(fit.after, models) if baseline.is_part and baseline.curve is None else []
     return Verdict(
         effects=effects,

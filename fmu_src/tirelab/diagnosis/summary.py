@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
 from ..names import REFITTED_LAW, UNKNOWN
 from ..preprocessing.data_checks import MAJORITY
+from ..preprocessing.levels import white_level
+from ..preprocessing.noise import Noise
+from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import (
     DECIDED,
@@ -24,6 +29,8 @@ from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
 from .verdict import FitErrors
+
+FloatArray = NDArray[np.float64]
 
 MOST_NAMED = 3
 """Alternatives that are named in the sentences; all stand in `alternative_details` of diagnosis.json."""
@@ -92,6 +99,30 @@ def not_seen(uncompared: float, regressions: Sequence[ResidualModel]) -> list[st
     """
     repeats = any(c.r2 > MAJORITY for c in regressions)
     return [QUICK] if uncompared > MAJORITY and not repeats else []
+
+
+def slow_noise(
+    recordings: Sequence[Recorded], left: Sequence[FloatArray], noises: Sequence[Noise]
+) -> list[str]:
+    """Return a sentence on each recording most of whose noise does not change from one reading to the next, as behind a
+    filter: what a motion that was not recorded makes looks alike.
+
+    left [N]: of each recording; noises: of its samples
+    """
+    told = []
+    for recording, own, noise in zip(recordings, left, noises, strict=True):
+        quick = white_level(own)
+        if noise.memory == 1 or quick**2 > (1.0 - MAJORITY) * noise.level**2:
+            continue
+        lasts = f"{noise.memory} samples"
+        if is_timed([recording]):
+            lasts = f"{noise.memory * float(np.median(np.diff(recording.time))):.2g} s"
+        told.append(
+            f"Of the noise of {newtons(noise.level)} in {recording.name} only {newtons(quick)} change from one reading "
+            f"to the next; the rest lasts for {lasts} and follows no motion: record at rest. If the force is quieter "
+            "there, something acts that was not recorded."
+        )
+    return told
 
 
 def other_law(left: float, regressions: Sequence[ResidualModel]) -> list[str]:

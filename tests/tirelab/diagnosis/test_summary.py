@@ -7,9 +7,11 @@ import pytest
 from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
-from tirelab.diagnosis.summary import QUICK, not_seen, other_law, summarise
+from tirelab.diagnosis.summary import QUICK, not_seen, other_law, slow_noise, summarise
 from tirelab.diagnosis.verdict import FitErrors, NotNamed
 from tirelab.estimation.findings import NamedEffect
+from tirelab.preprocessing.noise import Noise
+from tirelab.recordings.recording import Recording
 
 NAN = float("nan")
 FELL = FitErrors(6.0, 26.4, 6.1, 26.5, 6.2, "recordings given")
@@ -239,3 +241,29 @@ def test_that_no_motion_separates_the_alternatives_is_said():
     telling = DiscriminatingTest(motion, between, gain=30.0, separation=99.0, typical=1.0, missed=0.0)
     assert telling.sentence.startswith("Drive sweep ")
     assert "Drive sweep" not in summarise((), alternatives, (), 0.4, STAYED, telling)
+
+
+def noisy(white: float, slow: float) -> tuple[Recording, np.ndarray]:
+    """A hold of 20 s with white noise and a mean of 40 white samples [N]."""
+    drawn = np.random.default_rng(4)
+    mean = np.convolve(drawn.normal(size=2039), np.ones(40) / np.sqrt(40.0), mode="valid")
+    noise = white * drawn.normal(size=2000) + slow * mean
+    time = 0.01 * np.arange(2000.0)
+    return Recording("hold", time, np.full(2000, 0.01), np.full(2000, np.inf), 500.0 + noise), noise
+
+
+def test_a_noise_that_hardly_changes_from_reading_to_reading_is_told() -> None:
+    recording, noise = noisy(2.0, 10.0)
+    (told,) = slow_noise([recording], [noise], [Noise(10.2, 32)])
+    assert told.startswith("Of the noise of 10.2 N in hold only ")
+    # third differences over one sample have 2 N of white noise, and next to nothing of the mean
+    assert 1.8 < float(told.split("only ")[1].split(" N")[0]) < 2.8
+    assert "lasts for 0.32 s and follows no motion: record at rest" in told
+    untimed = slow_noise([replace(recording, timed=False)], [noise], [Noise(10.2, 32)])
+    assert "lasts for 32 samples" in untimed[0]
+
+
+@pytest.mark.parametrize(("white", "slow", "noise"), [(5.0, 0.0, Noise(5.0, 1)), (8.0, 6.0, Noise(10.0, 32))])
+def test_white_noise_and_a_slow_part_of_it_are_not(white: float, slow: float, noise: Noise) -> None:
+    recording, left = noisy(white, slow)
+    assert not slow_noise([recording], [left], [noise])
