@@ -32,9 +32,6 @@ SCALES = {
 }
 """Factors on the forces, the deflections and the times; a gauge reads a wheel's radius at most."""
 
-MOST_CHANGE = 4.9
-"""Change of ln A that one table of a recalibrated law holds; more tables together hold more."""
-
 
 def scaled(recording: Recording, force: float, length: float, time: float) -> Recording:
     """Return a recording of another size, on the same surface."""
@@ -46,12 +43,8 @@ def scaled_tire(tire: TireModel, radii: Sequence[float], force: float, length: f
     """Return the tire whose force at a deflection times `length` is the old one times `force`."""
     laws = [tire.law.coefficients(radius) for radius in radii]
     changes = [math.log(force) - exponent * math.log(length) for _, exponent in laws]
-    tables = max(1, math.ceil(max(map(abs, changes)) / MOST_CHANGE))
-    law = tire.law
-    for _ in range(tables):
-        rows = ((radius, change / tables, 0.0) for radius, change in zip(radii, changes, strict=True))
-        law = Recalibrated(law, tuple(rows))
-    return replace(tire, law=law, tested_range=None)
+    rows = tuple((radius, change, 0.0) for radius, change in zip(radii, changes, strict=True))
+    return replace(tire, law=Recalibrated(tire.law, rows), tested_range=None)
 
 
 def variants(
