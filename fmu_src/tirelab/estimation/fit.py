@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel
 
+from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
 from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
-from .minimise import Iterate, Objective, initial_iterate, minimise
+from .minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
 from .problem import EstimationProblem, Values, form_errors, law_start, problem_of, smooth_functions
 
 FloatArray = NDArray[np.float64]
@@ -183,6 +184,10 @@ LAW_LOOSE = 3.0
 REWEIGHTINGS = 4
 """Number of times that a fit is repeated with the V and the scales of the law found by the last one."""
 
+BARE_MENTION = 1.0
+"""Log odds that are worth no more (R. E. Kass, A. E. Raftery, JASA 90 (1995) 773): of two optima of one set nearer than
+that, one is taken that leaves less than half."""
+
 OPTIONAL_GAIN = 60.0
 """Largest gain in log likelihood expected from optional parameters."""
 
@@ -313,10 +318,13 @@ def fitted(
     has_optional = len(whole.parameters) > len(best.problem.parameters)
     if has_optional and best.log_likelihood >= wanted - OPTIONAL_GAIN:
         tried.append(_optimise(whole, best.values, discrepancy, best.variance))
+        best = max((best, tried[-1]), key=lambda f: f.log_likelihood)
         if LAW in best.values and dataset.tire.two_sided:
             anew = {**best.values, LAW: law_start(dataset)}
             tried.append(_optimise(whole, anew, discrepancy, discrepancy.of_forms))
-        best = max((best, *tried[len(starts) :]), key=lambda f: f.log_likelihood)
+            likely, less = sorted((best, tried[-1]), key=lambda f: -f.log_likelihood)
+            near = likely.log_likelihood - less.log_likelihood < BARE_MENTION
+            best = less if near and less.power < MAJORITY * likely.power else likely
     return replace(best, evaluations=sum(f.evaluations for f in tried))
 
 
@@ -351,7 +359,7 @@ def _scales(problem: EstimationProblem, found: Mapping[int, float], other: float
 def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Discrepancy) -> Fit:
     curves = problem.curves(found.positions)
     forms = form_errors(curves, problem.dataset, smooth_functions(problem.dataset))
-    held = _held(problem, found)
+    held = held_at_bounds(found, problem.low, problem.high)
     near = Linearised(
         found.residual,
         found.jacobian[:, ~held] if held.any() else found.jacobian,
@@ -378,13 +386,6 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         beyond=_beyond(problem, held, found.positions),
     )
     return fit.with_discrepancy(discrepancy)
-
-
-def _held(problem: EstimationProblem, found: Iterate) -> NDArray[np.bool_]:
-    """Return which parameters (k,) stand at a bound beyond which the residual would fall."""
-    uphill = found.jacobian.T @ found.residual
-    at_low, at_high = found.positions <= problem.low, found.positions >= problem.high
-    return np.asarray((at_low & (uphill > 0.0)) | (at_high & (uphill < 0.0)))
 
 
 def _beyond(problem: EstimationProblem, held: NDArray[np.bool_], positions: FloatArray) -> tuple[str, ...]:

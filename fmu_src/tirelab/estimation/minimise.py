@@ -133,3 +133,10 @@ def _step(
     step[free] = -np.linalg.solve(curvature, gradient[free])
     longest = float(np.max(np.abs(step)))
     return step * min(1.0, LONGEST / longest) if longest > 0.0 else step
+
+
+def held_at_bounds(found: Iterate, low: FloatArray, high: FloatArray) -> NDArray[np.bool_]:
+    """Return which parameters (k,) stand at a bound, `low` or `high` (k,), beyond which the residual would fall."""
+    uphill = found.jacobian.T @ found.residual
+    at_low, at_high = found.positions <= low, found.positions >= high
+    return np.asarray((at_low & (uphill > 0.0)) | (at_high & (uphill < 0.0)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.estimation.minimise import Objective, initial_iterate, minimise
+from tirelab.estimation.minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
 
 ROWS = 40
 RNG = np.random.default_rng(3)
@@ -31,3 +31,18 @@ def test_minimum_respects_a_bound_and_fits_the_rest() -> None:
     rest = COLUMNS[:, 1]
     left = DATA - 0.1 * COLUMNS[:, 0] - found.positions[2] * COLUMNS[:, 2]
     assert found.positions[1] == pytest.approx(rest @ left / (rest @ rest + 0.09), abs=1e-5)
+
+
+def test_what_stands_at_a_bound_is_held_where_the_residual_falls_beyond_it() -> None:
+    """r = (2, 0.5, -1) - x at x = (1, 0.5, 0) between 0 and 1: the first is held up, the last down, the second lies
+    within; at (1, 1, 1) only the first one is.
+    """
+    low, high, wanted = np.zeros(3), np.ones(3), np.array([2.0, 0.5, -1.0])
+
+    def held(*at: float) -> list[bool]:
+        positions = np.array(at)
+        found = Iterate(positions, wanted - positions, -np.eye(3), True, 0)
+        return held_at_bounds(found, low, high).tolist()
+
+    assert held(1.0, 0.5, 0.0) == [True, False, True]
+    assert held(1.0, 1.0, 1.0) == [True, False, False]
