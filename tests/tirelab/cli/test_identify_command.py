@@ -12,6 +12,7 @@ from presses import triangle
 from radialtire import Hull1996, read_tire
 from tirelab.article import press as rig
 from tirelab.cli.identify import command
+from tirelab.recordings.recording import Recording
 from tirelab.recordings.writing import write_recording
 
 
@@ -44,7 +45,6 @@ def test_the_command_closes_the_loop_through_files(tmp_path: Path) -> None:
         (["absent.csv"], "absent.csv"),
         (["flat.csv", "--out", "."], "cannot be written"),
         (["flat.csv", "--zero", "deflection=-400mm"], "a tire takes 0.33 m at most"),
-        (["flat.csv", "--zero", "deflection=-400mm", "--part", "compare"], "such as --zero deflection=400mm"),
         (["flat.csv", "--law", "spline"], "'spline' is not one of"),
         ([], "Missing argument"),
     ],
@@ -58,6 +58,21 @@ def test_the_command_tells_bad_input_in_a_sentence(
     assert done.exit_code == 2
     assert sentence in done.output
     assert not Path("tire.json").exists()
+
+
+def test_a_part_may_be_deflected_further_than_a_wheel(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0.0, 20.0, 0.02)
+    x = 0.5 * np.sin(np.pi * time / 5.0)
+    force = 4e3 * x + np.random.default_rng(6).normal(size=time.size)
+    write_recording(Recording("isolator", time, x, np.full(time.size, np.inf), force), "isolator.csv")
+    done = CliRunner().invoke(command, ["isolator.csv", "--part", "linear", "--out", "isolator.json"])
+    assert done.exit_code == 0, done.output
+    # of 1000 samples of 1 N over 0.35 m the slope is known to 0.09 N/m
+    law = read_tire("isolator.json").law
+    assert law.coefficients(np.inf) == pytest.approx((40.0, 1.0), abs=0.005)
 
 
 def test_a_folder_is_read_by_the_order_of_names_and_a_stray_text_file_is_skipped(tmp_path: Path) -> None:
