@@ -57,10 +57,10 @@ def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple
     for i, one in enumerate(read):
         other = next((r for r in read[:i] if _shared(one, r) > MAJORITY), None)
         if other is not None:
-            what = "a correction fitted to the one is not tested on the other" if i >= len(fitted) else ""
+            tested = "a correction fitted to the one is not tested on the other"
             told.append(
                 f"most readings of {one.name} are those of {other.name}, as in a copy or another export of one test: "
-                + (what or "they count twice")
+                + ("they count twice" if i < len(fitted) else tested)
             )
     return tuple(told)
 

@@ -56,6 +56,9 @@ REACHES, REACH_KNOWN = (0.001, 0.003, 0.01, 0.03, 0.1), 0.02
 """Parts of the range of the deflection over which a loop may go half from one way to the other after a turn, of which
 the best is looked for further, to so much of itself."""
 
+FARTHEST_LOG = 600.0
+"""Logarithm of a factor at most: beyond it, and of what is multiplied by it, doubles have no number."""
+
 UNSEEN = 1e-9
 """Part of what a law leaves by which a constant moves its force at most where the recordings do not determine it."""
 
@@ -343,7 +346,7 @@ def _over_centimetres(s: _Samples, values: Array, fitted: _Fitted) -> tuple[Arra
     """Return the values A, B, ... of a law A (x / length)^B, and its derivatives by them, as those of a law of x."""
     residual, derivatives = fitted
     by_factor, factor = derivatives[:, 0], float(values[0])
-    to_centimetres = s.length ** -float(values[1])
+    to_centimetres = float(np.exp(np.clip(-values[1] * np.log(s.length), -FARTHEST_LOG, FARTHEST_LOG)))
     derivatives = derivatives.copy()
     derivatives[:, 0] = by_factor / to_centimetres
     derivatives[:, 1] += factor * np.log(s.length) * by_factor

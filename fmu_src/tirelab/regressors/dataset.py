@@ -188,7 +188,7 @@ def dataset_of(
     ]
     if series := [e for e in experiments if e.reading.memory > 1]:
         for i, e in enumerate(experiments):
-            if e.reading.memory == 1 and not known[i]:
+            if e.reading.memory == 1 and known[i] is None:
                 experiments[i] = experiment_in_blocks(recordings[i], tire, (least, size), None, series)
     gauge = float(np.median([e.gauge for e in experiments]))
     return Dataset(

@@ -148,6 +148,14 @@ def test_parts_of_any_size_are_fitted_alike(name: str, length: float, load: floa
             assert spread == pytest.approx(factor * deviation, rel=1e-2), symbol
 
 
+def test_a_law_as_steep_as_a_wall_has_finite_constants_in_any_unit() -> None:
+    """An exponent of hundreds, of nanometres: its A in N/cm^B is beyond all numbers."""
+    x = np.linspace(0.9e-9, 1e-9, 400)
+    wall = recording(x, 1e-6 * (x / 1e-9) ** 400.0, noise=1e-9)
+    for fit in fit_laws([wall]):
+        assert all(np.isfinite(value) for _, value, _, _ in fit.constants), fit.name
+
+
 def test_preload_is_a_gap_below_zero() -> None:
     force = 80e3 * (X + 0.002)
     fits = {fit.name: fit for fit in fit_laws([recording(X, force)])}
