@@ -192,7 +192,9 @@ class TireModel:
 
     @property
     def deflection_highest(self) -> float:
-        """Highest deflection accepted [m]: of a part as far as the other way, of a tire the wheel's radius."""
+        """Highest deflection accepted [m]: of what is held or has no air as far as the other way, of a tire the wheel's
+        radius.
+        """
         return -DEFLECTION_LOWEST if self.two_sided or not self.inflated else DEFLECTION_HIGHEST
 
     @property

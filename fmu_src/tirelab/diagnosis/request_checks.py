@@ -54,8 +54,10 @@ def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple
     of the same test.
     """
     told, read = [], (*fitted, *kept)
-    for i, one in enumerate(read):
-        other = next((r for r in read[:i] if _shared(one, r) > MAJORITY), None)
+    runs = [_runs(recording) for recording in read] if len(read) > 1 else []
+    for i, (one, own) in enumerate(zip(read, runs, strict=False)):
+        pairs = zip(read[:i], runs, strict=False)
+        other = next((r for r, others in pairs if np.isin(own, others).mean() > MAJORITY), None)
         if other is not None:
             tested = "a correction fitted to the one is not tested on the other"
             told.append(
@@ -65,15 +67,10 @@ def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple
     return tuple(told)
 
 
-def _shared(one: Recording, other: Recording) -> float:
-    """Return the part of the runs of readings of one recording that another one has too, to the digits that all units
-    leave. Single readings of coarse gauges are alike by chance.
-    """
-    return float(np.isin(_runs(one), _runs(other)).mean())
-
-
 def _runs(recording: Recording) -> NDArray[np.uint64]:
-    """Return a hash of each FEWEST_EVENTS readings in a row."""
+    """Return a hash of each FEWEST_EVENTS readings in a row, to the digits that all units leave: single readings of
+    coarse gauges are alike by chance.
+    """
     readings = (
         np.column_stack([recording.deflection, recording.force]).astype(np.float32).view(np.uint64).ravel()
     )

@@ -57,7 +57,7 @@ REACHES, REACH_KNOWN = (0.001, 0.003, 0.01, 0.03, 0.1), 0.02
 the best is looked for further, to so much of itself."""
 
 FARTHEST_LOG = 600.0
-"""Logarithm of a factor at most: beyond it, and of what is multiplied by it, doubles have no number."""
+"""Logarithm of a factor at most: doubles end at 709."""
 
 UNSEEN = 1e-9
 """Part of what a law leaves by which a constant moves its force at most where the recordings do not determine it."""
@@ -323,8 +323,8 @@ def _power(s: _Samples) -> LawFit:
     def law(v: Array) -> Array:
         return np.asarray(v[0] * np.sign(s.x) * size ** v[1])
 
-    values, fitted = _over_centimetres(s, *_searched(law, _power_start(s, 0.0), s))
-    return _fit("power", _power_symbols(s), values, fitted, s.load)
+    symbols, values, fitted = _over_centimetres(s, *_searched(law, _power_start(s, 0.0), s))
+    return _fit("power", symbols, values, fitted, s.load)
 
 
 def _power_preload(s: _Samples) -> LawFit:
@@ -334,23 +334,20 @@ def _power_preload(s: _Samples) -> LawFit:
         return np.asarray(v[2] + v[0] * sign * size ** v[1])
 
     (preload, stiffness), _ = _lstsq([np.ones_like(s.x), s.x], s)
-    values, fitted = _over_centimetres(s, *_searched(law, np.array([stiffness, 1.0, preload]), s))
-    return _fit("power_preload", [*_power_symbols(s), ("F0", s.load, "N")], values, fitted, s.load)
+    symbols, values, fitted = _over_centimetres(s, *_searched(law, np.array([stiffness, 1.0, preload]), s))
+    return _fit("power_preload", [*symbols, ("F0", s.load, "N")], values, fitted, s.load)
 
 
-def _power_symbols(s: _Samples) -> _Symbols:
-    return [("A", s.load, "N/cm^B"), ("B", 1.0, "1")]
-
-
-def _over_centimetres(s: _Samples, values: Array, fitted: _Fitted) -> tuple[Array, _Fitted]:
-    """Return the values A, B, ... of a law A (x / length)^B, and its derivatives by them, as those of a law of x."""
-    residual, derivatives = fitted
-    by_factor, factor = derivatives[:, 0], float(values[0])
-    to_centimetres = float(np.exp(np.clip(-values[1] * np.log(s.length), -FARTHEST_LOG, FARTHEST_LOG)))
-    derivatives = derivatives.copy()
-    derivatives[:, 0] = by_factor / to_centimetres
-    derivatives[:, 1] += factor * np.log(s.length) * by_factor
-    return np.array([factor * to_centimetres, *values[1:]]), (residual, derivatives)
+def _over_centimetres(s: _Samples, values: Array, fitted: _Fitted) -> tuple[_Symbols, Array, _Fitted]:
+    """Return A and B of a law A (x / length)^B as those of a law of x, and its values with A in units of itself: the
+    square of an A in N/cm^B may be beyond all numbers.
+    """
+    (scaled, exponent, *others), (residual, slopes) = values.tolist(), fitted
+    shift = float(np.clip(-exponent * np.log(s.length), -FARTHEST_LOG, FARTHEST_LOG))
+    by_factor = scaled * slopes[:, 0]
+    slopes = np.column_stack([by_factor, slopes[:, 1] + np.log(s.length) * by_factor, slopes[:, 2:]])
+    symbols = [("A", s.load * scaled * float(np.exp(shift)), "N/cm^B"), ("B", 1.0, "1")]
+    return symbols, np.array([1.0, exponent, *others]), (residual, slopes)
 
 
 def _shifted(s: _Samples, name: str) -> LawFit:
@@ -369,10 +366,11 @@ def _shifted(s: _Samples, name: str) -> LawFit:
         starts.append([stiffness, crossing] if linear else [stiffness, 1.0, crossing])
     found = [_searched(law, np.array(start), s) for start in starts]
     values, fitted = min(found, key=lambda f: float(f[1][0] @ f[1][0]))
-    values, fitted = (values, fitted) if linear else _over_centimetres(s, values, fitted)
+    symbols = _powers(s, ("k",), 1)
+    if not linear:
+        symbols, values, fitted = _over_centimetres(s, values, fitted)
     to_mm = MM_PER_CM * s.length
-    symbols = [*(_powers(s, ("k",), 1) if linear else _power_symbols(s)), ("x0", to_mm, "mm")]
-    fit = _fit(name, symbols, values, fitted, s.load)
+    fit = _fit(name, [*symbols, ("x0", to_mm, "mm")], values, fitted, s.load)
     *others, (symbol, begins, deviation, unit) = fit.constants
     far = deviation > to_mm * float(np.ptp(s.x))  # it lies anywhere
     return replace(fit, constants=(*others, (symbol, begins, np.inf if far else deviation, unit)))

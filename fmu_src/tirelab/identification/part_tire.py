@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from radialtire import CATALOGUE, FLAT_RADIUS, PowerLaw, TestedRange, TireModel
+from radialtire import CATALOGUE, FLAT_RADIUS, ParameterError, PowerLaw, TestedRange, TireModel
 from radialtire.part_curve import PartCurve
 
 from ..errors import TirelabError
@@ -71,12 +71,11 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
             "there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
         )
     symbol, scale = ("k", 10.0) if fit.name == "linear_gap" else ("A", 1.0)  # N/mm to N/cm
-    exponent = _exponent(fit, recordings)
-    if scale * fit.value(symbol) <= LEAST_SPRING:
+    law = _power_law(fit, max(scale * fit.value(symbol), LEAST_SPRING), recordings)
+    if law.coefficient == LEAST_SPRING:
         raise TirelabError(
             f"the law {fit.name} has {symbol} = {fit.value(symbol):.3g}; {_other_laws(recordings)}"
         )
-    law = PowerLaw(scale * fit.value(symbol), exponent)
     gap = next(effect for effect in CATALOGUE.values() if effect.holds_gap)
     effects = ((gap, (-x0,)),)
     return _described(TireModel(law=law, effects=effects), recordings, name)
@@ -130,9 +129,18 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
         )
     if scale * value <= LEAST_SPRING:
         return _without_spring(constant_fit(recordings).value("F0"))
-    exponent = _exponent(fit, recordings)
+    law = _power_law(fit, scale * value, recordings)
     preload = 0.0 if fit.name == "power" else fit.value("F0")
-    return TireModel(law=PowerLaw(scale * value, exponent), two_sided=True, preload=preload)
+    return TireModel(law=law, two_sided=True, preload=preload)
+
+
+def _power_law(fit: LawFit, coefficient: float, recordings: Sequence[Recording]) -> PowerLaw:
+    """Return the law of a coefficient [N/cm^B]; raises TirelabError where a tire file holds none like it."""
+    exponent = _exponent(fit, recordings)
+    try:
+        return PowerLaw(coefficient, exponent)
+    except ParameterError as error:
+        raise TirelabError(f"the law {fit.name}: {error}; take another one, as --part piecewise") from None
 
 
 def _exponent(fit: LawFit, recordings: Sequence[Recording]) -> float:

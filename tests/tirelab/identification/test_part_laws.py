@@ -132,28 +132,30 @@ def test_parts_of_any_size_are_fitted_alike(name: str, length: float, load: floa
         assert fit.rmse == pytest.approx(load * left[fit.name], rel=1e-4), fit.name
     first, same = usual[0], {fit.name: fit for fit in other}[usual[0].name]
     assert other[0].bic == pytest.approx(same.bic, abs=1.0)
+    powers = {"N": 0, "N/mm": -1, "N/mm^2": -2, "N/mm^3": -3}
     for symbol, value, deviation, unit in first.constants if first.name != "piecewise" else ():
         _, changed, spread, _ = next(c for c in same.constants if c[0] == symbol)
-        power = {"N/cm^B": -same.value("B") if unit == "N/cm^B" else 0.0, "N": 0, "N/mm": -1, "N/mm^2": -2}
-        factor = (
-            length
-            if unit == "mm"
-            else 1.0
-            if unit == "1"
-            else load * length ** ({"N/mm^3": -3} | power)[unit]
-        )
+        factor = {"mm": length, "1": 1.0}.get(unit, load)
+        factor *= length ** (-same.value("B") if unit == "N/cm^B" else powers.get(unit, 0))
         # a difference of 1e-3 of the uncertainty is no other constant
         assert changed == pytest.approx(factor * value, rel=1e-6, abs=1e-3 * spread), symbol
         if unit != "N/cm^B":
             assert spread == pytest.approx(factor * deviation, rel=1e-2), symbol
 
 
-def test_a_law_as_steep_as_a_wall_has_finite_constants_in_any_unit() -> None:
-    """An exponent of hundreds, of nanometres: its A in N/cm^B is beyond all numbers."""
-    x = np.linspace(0.9e-9, 1e-9, 400)
-    wall = recording(x, 1e-6 * (x / 1e-9) ** 400.0, noise=1e-9)
-    for fit in fit_laws([wall]):
-        assert all(np.isfinite(value) for _, value, _, _ in fit.constants), fit.name
+@pytest.mark.parametrize("length", [1e-9, 1.0])
+def test_a_law_as_steep_as_a_wall_has_its_exponent_in_any_unit(length: float) -> None:
+    """An exponent of hundreds: of nanometres, its A in N/cm^B is beyond all numbers."""
+    x = np.linspace(0.9, 1.0, 400)
+    wall = recording(length * x, 1e3 * x**400.0, noise=1.0)
+    fits = {fit.name: fit for fit in fit_laws([wall])}
+    assert all(np.isfinite(value) for fit in fits.values() for _, value, _, _ in fit.constants)
+    _, exponent, deviation, _ = fits["power"].constants[1]
+    # dF/dA = x^400 and dF/dB = 1000 x^400 ln x: (J^T J)^-1 for 1 N of noise
+    slopes = np.stack([x**400.0, 1e3 * x**400.0 * np.log(x)], axis=1)
+    expected = float(np.sqrt(np.linalg.inv(slopes.T @ slopes)[1, 1]))
+    assert exponent == pytest.approx(400.0, abs=4.0 * expected)
+    assert deviation == pytest.approx(expected, rel=0.1)
 
 
 def test_preload_is_a_gap_below_zero() -> None:

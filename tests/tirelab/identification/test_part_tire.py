@@ -382,3 +382,15 @@ def test_what_is_said_of_a_law_is_of_the_one_that_is_proposed(tmp_path: Path) ->
     done = CliRunner().invoke(main, shlex.split(curve.split("`")[1])[1:])
     assert done.exit_code == 0, done.output
     assert read_tire(out).curve is not None
+
+
+def test_a_law_whose_coefficient_no_tire_file_holds_is_refused_in_a_sentence() -> None:
+    """A wall of nanometres: the force at 1 cm would be 1e50 N and more."""
+    x = np.linspace(0.5e-9, 1e-9, 400)
+    wall = recording(x, 1e-6 * (x / 1e-9) ** 8.0, noise=1e-9)
+    fits = fit_laws([wall])
+    with pytest.raises(
+        TirelabError, match=r"law power: coefficient = .* is not allowed; .* --part piecewise"
+    ):
+        tire_of({fit.name: fit for fit in fits}["power"], [wall], "")
+    assert best_writable(fits, [wall]) not in ("power", "")
