@@ -186,6 +186,25 @@ def bare_name(header: Header, unit: str) -> str:
     return (parts[0] if parts is not None and measures(parts[1], unit) else header.name).lower()
 
 
+_STATED = re.compile(
+    r"\b(?:units?|einheit(?:en)?|unit\N{LATIN SMALL LETTER E WITH ACUTE}s?|unidad(?:es)?)\s*[:=]\s*(?P<unit>\S.*)",
+    re.I,
+)
+
+
+def units_stated(lines: Iterable[str]) -> dict[str, str]:
+    """Return the unit of each channel by its name that lines above a table state: `Units: N`, `Travel Unit: mm`.
+
+    Of a quantity for which two units are stated none is returned, and none of the radius: a deflection's unit is not
+    that of a surface.
+    """
+    stated = [found["unit"].strip() for line in lines if (found := _STATED.search(line))]
+    found = {
+        c.name: {unit for unit in stated if measures(unit, c.unit)} for c in CHANNELS if c.name != "radius"
+    }
+    return {name: units.pop() for name, units in found.items() if len(units) == 1}
+
+
 def says_absolute(header: Header) -> bool:
     """Whether the name of a pressure column says that it is absolute."""
     return bool({"abs", "absolute"} & set(_words(header.name).split()))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .asking import Lacking, asked, may_count_time, rises, stating_time
-from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column
+from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column, units_stated
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import SomeColumns, listed, quoted
 from .matching import Match, match_channels, option_name, recognised
@@ -72,7 +72,12 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     if radius is not None:
         matches.pop("radius", None)
     headers = {name: table.headers[match.index] for name, match in matches.items()}
+    above: tuple[str, ...] = getattr(table, "provenance", ())
     conversions, without_unit, wrong = _conversions(origin, headers, settings.units)
+    stated = {name: unit for name, unit in units_stated(above).items() if name in without_unit}
+    conversions |= {name: conversion(unit, UNIT_OF[name]) for name, unit in stated.items()}
+    without_unit = tuple(name for name in without_unit if name not in stated)
+    notes += [f"{name} in {unit}, as the lines above the table say" for name, unit in stated.items()]
     lacking = tuple(name for name in found.missing if name != "time")
     no_time = "time" not in matches and interval is None
     looked_at: Table = table
@@ -89,7 +94,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         raise asked(origin, looked_at, of_test, wanted, settings)
     if no_time:
         interval = 1.0
-        rate = sampling_said(getattr(table, "provenance", ()))
+        rate = sampling_said(above)
         known = "the lines above the table state the sampling" if rate else "if the sampling is known"
         notes.append(
             "time was not measured: one second from sample to sample is made up, and nothing of rate, time or "

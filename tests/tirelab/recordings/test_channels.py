@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from house_form import edited, loading, refusal, write_rows
-from tirelab.recordings.channels import assignments_text, parse_columns, parse_units
+from tirelab.recordings.channels import assignments_text, parse_columns, parse_units, units_stated
 from tirelab.recordings.recording import RecordingError, read_recording
 
 
@@ -130,3 +130,26 @@ class TestRadius:
     def test_a_radius_that_cannot_be_is_refused(self, tmp_path: Path, given: str) -> None:
         path = write_rows(tmp_path / "a.csv", "time [s],deflection [cm],force [N]", *loading())
         refusal(path, radius=given)
+
+
+class TestUnitsAboveTheTable:
+    def test_a_unit_belongs_to_the_channel_that_it_measures(self) -> None:
+        lines = ("3/5/2025  10:16 AM", "Units: N", "X-Axis: Travel", "Travel Unit: mm", "Einheit = bar")
+        assert units_stated(lines) == {"deflection": "mm", "force": "N", "pressure": "bar"} | {
+            "believed_force": "N"
+        }
+
+    def test_of_two_units_of_one_quantity_none_is_believed(self) -> None:
+        assert units_stated(("Units: N", "Peak Units: kN", "Unit test: passed", "Community: mm")) == {}
+
+    def test_a_file_is_read_with_them_and_says_so(self, tmp_path: Path) -> None:
+        """The export of a stand for force gauges: units above the table, none in its header."""
+        time, deflection, force = loading()
+        path = write_rows(tmp_path / "a.csv", "Time,Travel,Load", time, 10.0 * deflection, force)
+        path.write_text("Units: N\nX-Axis: Travel\nTravel Unit: mm\n" + path.read_text())
+        recording = read_recording(path, radius="flat", units={"time": "s"})
+        np.testing.assert_allclose(recording.force, force, rtol=1e-5, atol=1e-3)
+        np.testing.assert_allclose(recording.deflection, 0.01 * deflection, rtol=1e-4, atol=1e-7)
+        assert "force in N, as the lines above the table say" in recording.notes
+        other = read_recording(path, radius="flat", units={"time": "s", "force": "kN"})
+        np.testing.assert_allclose(other.force, 1000.0 * force, rtol=1e-5, atol=1.0)
