@@ -177,6 +177,8 @@ def experiment_in_blocks(
     noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
     force_step = staircase_step(recording.force) or gauge_step(recording.force)
     least_noise, resting = _rounding(recording.force, force_step, blocks.size)
+    # The recorded one: where the believed law is stiffer, it would make noise of what the part does.
+    stiffness = _stiffness(motion.deflection, recording.force)
     return Experiment(
         name=recording.name,
         time=averaged.time,
@@ -190,7 +192,7 @@ def experiment_in_blocks(
         noise=max(noise, least_noise, 1e-6 * float(np.ptp(recording.force)), 1e-300),
         least_noise=least_noise,
         resting=resting,
-        floor=noise_floor(reading.level, _stiffness(motion.deflection, baseline), gauge, step, force_step),
+        floor=noise_floor(reading.level, stiffness, gauge, step, force_step),
         gauge=gauge,
         blocks=blocks,
         interval=interval * blocks.size,
@@ -318,7 +320,7 @@ def _rounding(force: FloatArray, step: float, size: int) -> tuple[float, float]:
 
 
 def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
-    """Return the tangent [N/m] of the baseline force over the deflection, from its means on an even grid."""
+    """Return the tangent [N/m] of a force over the deflection, from its means on an even grid."""
     low, span = float(deflection.min()), float(np.ptp(deflection))
     which = np.minimum(((deflection - low) / max(span, 1e-300) * SECANTS).astype(int), SECANTS - 1)
     count = np.bincount(which, minlength=SECANTS)
