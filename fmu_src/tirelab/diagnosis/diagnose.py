@@ -104,7 +104,8 @@ def diagnose(
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:
         fit = replace(fit, not_named=_not_named(candidates, validate))
-    located = law_corrected(fitted, data.before, explanation.model.baseline, explanation.model.tire)
+    model = explanation.model
+    located = law_corrected(fitted, data.before, model.baseline, model.tire, model.names)
     noise = None if unexplained else explanation.residuals
     where = data.shown(localize(fitted, data.samples, located, explanation.noises, noise))
 

@@ -25,9 +25,11 @@ import numpy as np
 from radialtire import TireModel
 from scipy.stats import chi2
 
+from ..names import REFITTED_LAW
 from ..preprocessing.data_checks import compared, spikes
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
+from ..regressors.dataset import arranged
 from ..simulation.simulate import simulate
 from .binning import Axis, axes_of
 
@@ -124,16 +126,23 @@ def localize(
 
 
 def law_corrected(
-    recordings: Sequence[Recorded], before: Sequence[FloatArray], baseline: TireModel, corrected: TireModel
+    recordings: Sequence[Recorded],
+    before: Sequence[FloatArray],
+    baseline: TireModel,
+    corrected: TireModel,
+    named: Sequence[str],
 ) -> list[FloatArray]:
-    """Return the residuals [N] of the baseline with the corrected elastic law, in which the other effects are
-    localized.
+    """Return the residuals [N] of the baseline with the corrected law, in which the other effects are localized.
 
-    before [N]: residuals of the baseline, returned where its law was not corrected, or nothing but the law was
+    named: effects by which the corrected tire differs; before [N]: residuals of the baseline, returned where its law
+    was not corrected, or nothing but the law was
     """
-    if corrected.law == baseline.law or corrected.effects == baseline.effects:
+    others = set(named) - {REFITTED_LAW}
+    if REFITTED_LAW not in named or not others:
         return list(before)
-    law = replace(baseline, law=corrected.law, preload=corrected.preload)
+    # The shape, the preload and the gap of a refitted law are effects of the tire that no verdict names.
+    law = replace(corrected, effects=tuple(pair for pair in corrected.effects if pair[0].name not in others))
+    law = arranged(law, [(effect.name, v) for effect, v in baseline.effects if effect.name in others])
     return [r.force - simulate(law, r) for r in recordings]
 
 

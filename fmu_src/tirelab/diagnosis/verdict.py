@@ -247,7 +247,8 @@ class Verdict:
     def _located(self) -> list[FloatArray]:
         """Return the residuals [N] in which the places of `where` lie, one array for each recording."""
         before = [r.force - simulate(self.baseline, r) for r in self.recordings]
-        return law_corrected(self.recordings, before, self.baseline, self.tire)
+        named = [e.name for e in self.effects]
+        return law_corrected(self.recordings, before, self.baseline, self.tire, named)
 
     def report(self, path: Path | str) -> None:
         """Write the page that `tirelab diagnose` writes, with the forces of the simulated corrected tire, to `path`.

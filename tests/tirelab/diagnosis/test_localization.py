@@ -1,11 +1,12 @@
 """The residual is located where it is dense, wherever that is; noise is not located at all."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from drives import Drive, flat_force, read, ride
-from radialtire import CATALOGUE, Recalibrated, TireModel
+from radialtire import CATALOGUE, PowerLaw, Recalibrated, TireModel
 from scipy.signal import lfilter
 from tirelab.diagnosis.localization import law_corrected, localize
 from tirelab.preprocessing.samples import raw_dataset_of
@@ -235,10 +236,29 @@ def test_places_are_those_of_the_physics_where_the_law_is_wrong_too():
     drive = read("ride", time, deflection, recorded, 4, noise=0.0)
     before = [recorded - flat_force(deflection)]
     # exp(0.1) on A is not 500 N.s/m: what the law leaves is the dashpot's force alone.
-    (left,) = law_corrected([drive], before, believed, corrected)
+    both = ("recalibration", "viscous_damping")
+    (left,) = law_corrected([drive], before, believed, corrected, both)
     assert np.max(np.abs(left - 500.0 * rate)) < 10.0
-    assert law_corrected([drive], before, believed, TireModel(law=law))[0] is before[0]
-    assert law_corrected([drive], before, believed, TireModel(effects=damped))[0] is before[0]
+    assert law_corrected([drive], before, believed, TireModel(law=law), both[:1])[0] is before[0]
+    assert law_corrected([drive], before, believed, TireModel(effects=damped), both[1:])[0] is before[0]
+
+
+def test_the_shape_of_a_refitted_law_belongs_to_the_law() -> None:
+    """A part's law is corrected by another shape beside its factor: what is left is the dashpot's force alone."""
+    time, deflection, rate = ride(3)
+    believed = TireModel(PowerLaw(1e3, 1.0), tested_range=None, two_sided=True, inflated=False)
+    shape = CATALOGUE["elastic_shape"]
+    bent = (shape, (0.3, 0.0, 0.01, *[0.0] * (len(shape.parameters) - 3)))
+    damped = (CATALOGUE["viscous_damping"], (500.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+    recorded = (
+        simulate(replace(believed, effects=(bent,)), read("x", time, deflection, rate, 4)) + 500.0 * rate
+    )
+    drive = read("ride", time, deflection, recorded, 4, noise=0.0)
+    before = [recorded - simulate(believed, drive)]
+    corrected = replace(believed, effects=(bent, damped))
+    (left,) = law_corrected([drive], before, believed, corrected, ("recalibration", "viscous_damping"))
+    assert np.max(np.abs(before[0])) > 100.0
+    assert np.max(np.abs(left - 500.0 * rate)) < 10.0
 
 
 def test_noise_that_is_louder_in_motion_is_no_place() -> None:
