@@ -36,6 +36,9 @@ USUAL_SPEED = 0.1
 """Least top speed [m/s] assumed of a rig whose limits are not given; it is at least twice the fastest recorded
 speed."""
 
+SAME = "their forces are the same in this motion"
+"""Why two sets are not told apart that leave the same; whether another motion decides is what the next test says."""
+
 LAW_TRAITS = ("static",)
 """Traits of a refitted law: it depends on deflection and surface only."""
 
@@ -46,12 +49,14 @@ class Alternative:
 
     log_odds: of the verdict against it, not tempered; reason: what the recordings lack to decide, and what to record
     probability: of the set, not a number where the recordings cannot show it
+    same: whether it leaves the same of the recordings as the verdict (see `indistinct.leaving_the_same`)
     """
 
     names: tuple[str, ...]
     log_odds: float
     reason: str
     probability: float
+    same: bool = False
 
 
 def alternatives_of(
@@ -60,32 +65,34 @@ def alternatives_of(
     """Return the sets that the recordings cannot rule out; confidence: probability of the verdict; limits: of the rig,
     where they are known.
 
-    First come the sets that this motion cannot distinguish from the verdict's: each has the same part of the
-    probability that the verdict gave up to them (`sharing_odds`). Then the likeliest others follow, until all together
-    have the probability CREDIBLE; they share the rest of the probability by their evidence. No set gets more than its
-    evidence relative to the verdict's allows; what then remains belongs to sets that were not compared.
+    First come the sets that leave the same as the verdict's, as likely beside it as their evidence says. Then come
+    those that this motion cannot distinguish from it: each has the same part of the probability that the verdict gave
+    up to them (`sharing_odds`). Then the likeliest others follow, until all together have the probability CREDIBLE;
+    they share the rest of the probability by their evidence. No set gets more than its evidence relative to the
+    verdict's allows; what then remains belongs to sets that were not compared.
 
     Effects that the excitation cannot show, and those that the verdict's refitted law can imitate, are listed last, in
     addition to the verdict's own, with the reason.
     """
-    best = explanation.model.names
+    best, same = explanation.model.names, explanation.same
     own = next(e for e in explanation.evidence if set(e.names) == set(best))
     others = [e for e in explanation.evidence if set(e.names) != set(best)]
-    whole = max(sum(e.probability for e in others), 1e-300)
-    count = len(explanation.confounded)
-    with_confounded = of_confounded(confidence, count)
+    whole = max(sum(e.probability for e in others if e.names not in same), 1e-300)
+    count, with_same = len(explanation.confounded), confidence / explanation.share
+    with_confounded = of_confounded(with_same, count)
     covered, found = confidence, []
     for e in others:
-        confounded = e.names in explanation.confounded
-        if covered >= CREDIBLE and not confounded:
+        alike = e.names in explanation.confounded
+        if covered >= CREDIBLE and not alike:
             continue
-        equal = (with_confounded - confidence) / count if confounded else 0.0
+        beside = confidence * e.probability / max(own.probability, 1e-300)
+        equal = (with_confounded - with_same) / count if alike else 0.0
         left = (1.0 - with_confounded) * e.probability / whole
-        covered += equal + left
-        stated = equal + min(left, confidence * e.probability / max(own.probability, 1e-300))
+        covered += beside if e.names in same else equal + left
+        stated = beside if e.names in same else equal + min(left, beside)
         reason = reason_of(best, e.names, explanation, dataset, limits)
-        found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, stated))
-    found.sort(key=lambda a: a.names not in explanation.confounded)
+        found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, stated, e.names in same))
+    found.sort(key=lambda a: (not a.same, a.names not in explanation.confounded))
     listed = found[:MOST_LISTED]
     listed_sets = {frozenset(a.names) for a in listed}
     beside_law = {n: (*best, n) for n in explanation.within_law if frozenset((*best, n)) not in listed_sets}
@@ -133,6 +140,8 @@ def reason_of(
         return (
             "they depend on the deflection only in this motion: load and unload to two depths, at two speeds"
         )
+    if tuple(other) in explanation.same:
+        return SAME
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):

@@ -194,9 +194,14 @@ def no_surer_than_effects(probability: float, named: Sequence[float], doubted: S
     return min((probability, *named, *(1.0 - p for p in doubted)))
 
 
-def confidence_of(grounds: Grounds, named: Sequence[float], doubted: Sequence[float]) -> float:
+def confidence_of(
+    grounds: Grounds, named: Sequence[float], doubted: Sequence[float], share: float = 1.0
+) -> float:
     """Return the confidence of a verdict with these grounds; named, doubted: probabilities of its effects and of those
     left out (see `no_surer_than_effects`).
+
+    share: of the verdict's set among those that leave the same of the recordings. In the trials of the calibration each
+    of these counted as right, so what it states is the probability of all of them together.
 
     The verdict that something unknown acts and no known effect contradicts all other sets. So it is at most as probable
     as its posterior odds against them say, and at most 50 % where held-out data refuted likelier sets. Calibration
@@ -207,7 +212,7 @@ def confidence_of(grounds: Grounds, named: Sequence[float], doubted: Sequence[fl
     own = sharing_odds(probability("verdict", grounds), alike)
     if grounds["nothing"] and grounds["unknown"]:
         own = min(own, 1.0 / (1.0 + math.exp(-max(grounds["odds"], 0.0))))
-    return no_surer_than_effects(own, named, doubted)
+    return share * no_surer_than_effects(own, named, doubted)
 
 
 def of_confounded(probability: float, alike: int) -> float:

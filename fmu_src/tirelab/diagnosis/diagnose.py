@@ -97,9 +97,8 @@ def diagnose(
     models = residual_models(unexplained, data.samples, explanation.residuals, validation)
 
     grounds = grounds_of_verdict(explanation, validation, remainder, unexplained=bool(unexplained))
-    confidence = confidence_of(
-        grounds, [e.probability for e in accepted.effects], [e.probability for e in accepted.doubted]
-    )
+    named, doubted = ([e.probability for e in own] for own in (accepted.effects, accepted.doubted))
+    confidence = confidence_of(grounds, named, doubted, explanation.share)
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:

@@ -162,6 +162,7 @@ def alternative_detail(names: Sequence[str], alternative: Alternative) -> dict[s
     return {
         "difference": difference(names, alternative.names),
         "probability": alternative.probability,
+        "same": alternative.same,
         "reason": lacks,
         "action": action,
     }

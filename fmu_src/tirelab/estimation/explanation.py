@@ -19,17 +19,8 @@ from ..preprocessing.noise import NoiseFloor
 from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
 from ..regressors.excitation import Excitation, excitation_of, misread
-from ..regressors.signature import (
-    AS_GOOD,
-    LAW,
-    Signature,
-    candidates,
-    constant,
-    gap_of,
-    single_valued,
-    size_of,
-)
-from ..selection.search import LOST, PRIOR_ODDS, discrepancy_of
+from ..regressors.signature import LAW, candidates, constant, gap_of, single_valued
+from ..selection.search import discrepancy_of
 from ..simulation.simulate import simulate
 from .findings import (
     Estimate,
@@ -44,6 +35,7 @@ from .findings import (
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .held_out import held_out_of
+from .indistinct import alike_in, confounded, followed_by_law, leaving_the_same
 from .ranking import MOST_WORK, Ranking, corrected, ranked, with_parts
 
 FloatArray = NDArray[np.float64]
@@ -74,7 +66,9 @@ class Explanation:
     effects: of the set, the largest share first; probability: of the set
     evidence: all sets within the effects' valid ranges, this one first, then the likeliest
     confounded: sets that can still win and differ from this one by an effect that this motion cannot distinguish from
-    the one it replaces, or by the refitted law in place of the effects that a law of another shape can imitate
+    the one it replaces, or by the refitted law in place of the effects that a law of another shape can imitate, and
+    that do not leave the same
+    same: sets with no more effects that leave the same of the recordings (see `indistinct.leaving_the_same`)
     hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
     within_law: names of effects that the refitted law of the set follows entirely
     model: the set, fitted; floors: noise floor of each recording
@@ -85,6 +79,7 @@ class Explanation:
     probability: float
     evidence: tuple[Evidence, ...]
     confounded: tuple[tuple[str, ...], ...]
+    same: tuple[tuple[str, ...], ...]
     hidden: tuple[tuple[str, str], ...]
     within_law: tuple[str, ...]
     remainder: Remainder
@@ -133,6 +128,12 @@ class Explanation:
     def _rms(self, residuals: Sequence[FloatArray]) -> float:
         own = [r[c] for r, c in zip(residuals, self.compared, strict=True)]
         return float(np.sqrt(np.mean(np.concatenate(own) ** 2)))
+
+    @property
+    def share(self) -> float:
+        """Probability of the set over that of itself and of all that leave the same, which no recording changes."""
+        others = sum(e.probability for e in self.evidence if e.names in self.same)
+        return self.probability / (self.probability + others) if others else 1.0
 
     def was_fitted(self, names: Sequence[str]) -> bool:
         """Whether a set was fitted, its effects within their valid ranges."""
@@ -240,7 +241,7 @@ def explain_misfit(
     progress("fitting the sets that can win")
     samples, others = samples_of(recordings, baseline), held_out_of(held_out, baseline)
     blocks = FirstSets(dataset, raw, samples, others, FIRST_PART * most_work)
-    alike = partial(_alike, excitation)
+    alike = partial(alike_in, excitation)
     sets = blocks.begun(quiet)
     sets = blocks.less_distorted(sets, sets.best_fit.tire)
     ranking = ranked(sets, alike)
@@ -256,7 +257,7 @@ def explain_misfit(
     signatures, misfit = tuple(sets.signatures.values()), sets.dataset.misfit
     del raw, quiet, blocks, again, sets  # they are large, and needed no more
     ranking = _read_best(corrected(ranking, samples), samples.recordings)
-    like_law = _like_law(signatures, misfit, ranking.best.variance)
+    like_law = followed_by_law(signatures, misfit, ranking.best.variance)
     return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
 
 
@@ -291,6 +292,7 @@ def _explanation(
     like_law: tuple[str, ...],
 ) -> Explanation:
     order = sorted(range(len(ranking.fits)), key=lambda i: ranking.fits[i] is not chosen)
+    same = leaving_the_same(chosen, ranking.fits)
     weights = ranking.weights().tolist()
     pairs = [(ranking.fits[i], weights[i]) for i in order]
     own = ranking.posteriors[order[0]]
@@ -324,7 +326,8 @@ def _explanation(
             for (fit, weight), i in zip(pairs, order, strict=True)
             if fit is chosen or not fit.out_of_range
         ),
-        _confounded(chosen, ranking, excitation),
+        tuple(n for n in confounded(chosen, ranking, excitation) if n not in same),
+        same,
         hidden,
         tuple(n for n in like_law if LAW in chosen.names and n not in chosen.names),
         remainder_of(chosen),
@@ -336,52 +339,6 @@ def _explanation(
         samples,
         like_law,
     )
-
-
-def _like_law(signatures: Sequence[Signature], misfit: FloatArray, variance: float) -> tuple[str, ...]:
-    """Return the effects that a refitted law follows: even as large as the whole misfit, none would be found.
-
-    With the sum of squares s^2 outside the law's columns, such an effect gains s^2 / 2V in log likelihood, less than
-    PRIOR_ODDS.
-    """
-    law = next((s for s in signatures if s.name == LAW), None)
-    if law is None:
-        return ()
-    vectors, values, _ = np.linalg.svd(law.columns, full_matrices=False)
-    vectors = vectors[:, values > 1e-9 * values[0]]
-    found = []
-    for other in (s for s in signatures if s.name != LAW and not s.silent):
-        curve = other.mean * size_of(misfit) / max(size_of(other.mean), 1e-300)
-        beyond = curve - vectors @ (vectors.T @ curve)
-        if 0.5 * float(beyond @ beyond) / variance < PRIOR_ODDS:
-            found.append(other.name)
-    return tuple(found)
-
-
-def _alike(excitation: Excitation, name: str) -> tuple[str, ...]:
-    return excitation.alike(name) if name != LAW else ()
-
-
-def _confounded(chosen: Fit, ranking: Ranking, excitation: Excitation) -> tuple[tuple[str, ...], ...]:
-    """Return the sets that the motion cannot distinguish from the chosen one: with another effect in place of one of
-    its own, or with the refitted law in place of all effects that a law of another shape can imitate.
-
-    Only sets count that can still win or leave no more than the chosen one: that it has fewer parameters is no proof.
-    """
-    found = []
-    for name in chosen.names:
-        less = ranking.of(frozenset(chosen.names) - {name})
-        for other in _alike(excitation, name):
-            fit = ranking.of(frozenset(chosen.names) - {name} | {other})
-            if fit is None or less is None or other in chosen.names:
-                continue
-            if less.power - fit.power > AS_GOOD * (less.power - chosen.power):
-                found.append(fit)
-    shape = frozenset(n for n in chosen.names if n == LAW or not excitation.within_law(n))
-    if LAW in shape and len(shape) < len(chosen.names) and (law_alone := ranking.of(shape)) is not None:
-        found.append(law_alone)
-    lost = ranking.behind(chosen) + LOST
-    return tuple(f.names for f in found if f.power <= chosen.power or ranking.behind(f) < lost)
 
 
 def _share(ranking: Ranking, chosen: Fit, name: str) -> float:

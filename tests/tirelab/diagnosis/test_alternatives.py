@@ -34,6 +34,8 @@ def explained_by_sets(*sets: tuple[str, float, float], **more: Any) -> Any:
         probability=next(e.probability for e in evidence if e.names == names),
         model=SimpleNamespace(names=names, baseline=more.get("baseline", TireModel())),
         confounded=more.get("confounded", ()),
+        same=more.get("same", ()),
+        share=more.get("share", 1.0),
         hidden=more.get("hidden", ()),
         within_law=more.get("within_law", ()),
         excitation=SimpleNamespace(
@@ -71,6 +73,21 @@ def test_no_set_is_told_as_likelier_beside_the_verdict_than_its_evidence_is() ->
     """The next set has half of the verdict's evidence; what is left of a doubted verdict belongs to none of them."""
     found = alternatives_of(explained_by_sets(*SETS), RIDE, 0.2)
     assert [a.probability for a in found] == pytest.approx([0.1, 0.2 * 0.08 / 0.6, 0.2 * 0.02 / 0.6])
+
+
+def test_a_set_that_leaves_the_same_is_as_likely_beside_the_verdict_as_its_evidence_says() -> None:
+    """Of 0.9 for both, two thirds and one third; the others share what is left of one."""
+    sets = (
+        ("deflection_lag", 0.0, 0.6),
+        ("inertia", -0.5, 0.06),
+        ("viscous_damping", -1.4, 0.3),
+        ("", -9.0, 0.04),
+    )
+    explanation = explained_by_sets(*sets, same=(("viscous_damping",),), share=2.0 / 3.0)
+    first, second = alternatives_of(explanation, RIDE, 0.6)[:2]
+    assert (first.names, first.same, first.probability) == (("viscous_damping",), True, pytest.approx(0.3))
+    assert first.reason == "their forces are the same in this motion"
+    assert (second.names, second.same, second.probability) == (("inertia",), False, pytest.approx(0.06))
 
 
 def test_an_effect_is_no_surer_than_the_alternatives_without_it_leave() -> None:

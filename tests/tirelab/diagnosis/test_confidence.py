@@ -208,6 +208,13 @@ def test_sets_that_are_alike_share_the_odds_of_a_verdict() -> None:
     assert of_confounded(4.0 / 6.0, 1) == pytest.approx(0.8)
 
 
+def test_sets_that_leave_the_same_share_the_probability_of_a_verdict() -> None:
+    """Calibrated is the probability of all of them together, so of two that are as likely each has a half of it."""
+    grounds = {**ZERO["verdict"], "odds": 15.0}
+    alone = confidence_of(grounds, [0.9], [])
+    assert confidence_of(grounds, [0.9], [], share=0.5) == pytest.approx(0.5 * alone)
+
+
 @pytest.mark.parametrize("of", ["verdict", "effect"])
 def test_a_remainder_a_worse_held_out_error_and_a_poor_motion_never_raise_a_probability(of: str) -> None:
     usual = probability(of, ZERO[of])
