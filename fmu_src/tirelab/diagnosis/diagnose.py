@@ -102,7 +102,7 @@ def diagnose(
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:
-        fit = replace(fit, not_named=_not_named(candidates, validate))
+        fit = replace(fit, not_named=_not_named(candidates, validate, fit.before))
     model = explanation.model
     located = law_corrected(fitted, data.before, model.baseline, model.tire, model.names)
     noise = None if unexplained else explanation.residuals
@@ -192,12 +192,14 @@ def _accepted(candidates: Explanation, validate: Validate) -> _Accepted:
     return _Accepted(explanation, validation, effects, doubted)
 
 
-def _not_named(candidates: Explanation, validate: Validate) -> NotNamed | None:
-    """Return the set that is likeliest by the fitted recordings of those that reduce their error, None without any."""
+def _not_named(candidates: Explanation, validate: Validate, before: float) -> NotNamed | None:
+    """Return the set that is likeliest by the fitted recordings of those that reduce their error, None without any.
+
+    before [N]: that error; the written tire of a set may leave more of the readings than its fit leaves of the motion
+    """
     names = candidates.likeliest_reducing(NO_WORSE)
-    if not names:
+    if not names or (chosen := candidates.of(names)).error > NO_WORSE * before:
         return None
-    chosen = candidates.of(names)
     validation = validate(chosen)
     return NotNamed(names, chosen.error, validation.after, validation.before, is_worse(validation))
 

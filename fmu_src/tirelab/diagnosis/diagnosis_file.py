@@ -55,6 +55,7 @@ class Stated:
     tire, corrected_fmu, report: the files, None where there is none
     probabilities: of every named effect, that it is there; the confidence where the file states none (schema 1)
     remainder: size of what stays unexplained in units of the noise, None where the file does not state it
+    same: probability of the alternatives that leave the same of the recordings, together
     """
 
     names: Names
@@ -70,6 +71,7 @@ class Stated:
     report: Path | None
     probabilities: Mapping[str, float]
     remainder: float | None
+    same: float = 0.0
 
 
 def read_stated(folder: Path) -> Stated:
@@ -173,6 +175,7 @@ def _stated(content: Mapping[str, Any], folder: Path) -> Stated:
             for effect in verdict["effects"]
         },
         remainder=_remainder(verdict.get("remainder")),
+        same=sum(_probability(d["probability"]) for d in verdict.get("alternative_details", []) if d.get("same")),
     )
 
 

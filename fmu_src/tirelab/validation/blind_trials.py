@@ -240,6 +240,7 @@ def score_trial(folders: Folders, key: str, commitment: str, derived_commitment:
         probabilities={} if verdict is None else verdict.probabilities,
         remainder=None if verdict is None else verdict.remainder,
         fitted=fitted,
+        same=0.0 if verdict is None else verdict.same,
     )
     write_json(folders.score(key), score.to_json())
 

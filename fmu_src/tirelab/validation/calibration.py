@@ -17,8 +17,16 @@ Pair = tuple[float, bool]
 
 
 def confidence_pairs(scores: Sequence[Score]) -> list[list[Pair]]:
-    """The confidence of every verdict, and whether all that it names held (`wide_kinds.holds`)."""
-    return [[(s.confidence, holds(s))] for s in scores if s.confidence is not None]
+    """The confidence of every verdict, and whether all that it names held (`wide_kinds.holds`).
+
+    Where several sets count as right, since the recordings cannot tell them apart, the probability of the alternatives
+    that leave the same belongs to it.
+    """
+    return [
+        [(s.confidence + (s.same if several_answers(s) else 0.0), holds(s))]
+        for s in scores
+        if s.confidence is not None
+    ]
 
 
 def effect_pairs(scores: Sequence[Score]) -> list[list[Pair]]:

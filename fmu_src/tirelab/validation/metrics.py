@@ -132,10 +132,14 @@ def near_floor(scores: Sequence[Score], within: float, *, alike: bool, noise_fre
 def brier(scores: Sequence[Score]) -> Mean:
     """Brier score of the stated confidence: mean of (confidence - exact)^2 over all verdicts.
 
-    Failed diagnoses state no confidence and are left out.
+    Where several sets count as right, the alternatives that leave the same belong to the confidence. Failed diagnoses state no confidence and are left out.
     Source: Brier, Monthly Weather Review 78, 1 (1950).
     """
-    return Mean.of((s.confidence - float(s.exact)) ** 2 for s in scores if s.confidence is not None)
+    return Mean.of(
+        (s.confidence + (0.0 if s.single_answer else s.same) - float(s.exact)) ** 2
+        for s in scores
+        if s.confidence is not None
+    )
 
 
 def naming(scores: Sequence[Score]) -> dict[str, list[Point]]:

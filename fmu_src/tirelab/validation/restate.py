@@ -29,7 +29,9 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 def restated(verdict: Mapping[str, Any]) -> float:
     """Return the confidence of a `verdict` of diagnosis.json by the present weights."""
     named, doubted = ([_of_effect(e) for e in verdict[own]] for own in ("effects", "doubted"))
-    return confidence_of(verdict["grounds"], named, doubted)
+    same = sum(d["probability"] for d in verdict.get("alternative_details", []) if d.get("same"))
+    share = verdict["confidence"] / (verdict["confidence"] + same) if same else 1.0
+    return confidence_of(verdict["grounds"], named, doubted, share)
 
 
 def _of_effect(effect: Mapping[str, Any]) -> float:

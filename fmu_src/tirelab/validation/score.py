@@ -47,6 +47,7 @@ class Score:
     derived: the sets that count as right by the rig's own fits (`concealed.derived_right`), empty where as in `right`
     probabilities: of every named effect, as stated; remainder: its size over the noise, as stated
     fitted: errors on the recordings that were diagnosed, None where there is no verdict
+    same: probability of the alternatives that leave the same of the recordings as the verdict, as stated, together
     """
 
     trial: str
@@ -65,6 +66,7 @@ class Score:
     probabilities: Mapping[str, float] = field(default_factory=dict)
     remainder: float | None = None
     fitted: Errors | None = None
+    same: float = 0.0
 
     @property
     def exact(self) -> bool:
@@ -150,6 +152,7 @@ class Score:
             "probabilities": dict(self.probabilities),
             "remainder": self.remainder,
             "fitted": None if self.fitted is None else asdict(self.fitted),
+            "same": self.same,
             "exact": self.exact,
             "among": self.among,
         }
@@ -176,6 +179,7 @@ class Score:
             probabilities=content["probabilities"],
             remainder=content["remainder"],
             fitted=None if content["fitted"] is None else Errors(**content["fitted"]),
+            same=content.get("same", 0.0),
         )
 
 

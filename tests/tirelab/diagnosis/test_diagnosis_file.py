@@ -80,6 +80,13 @@ def test_probabilities_and_the_remainder_are_read_back(tmp_path: Path) -> None:
     assert stated.remainder == 0.4
 
 
+def test_the_probability_of_the_alternatives_that_leave_the_same_is_read_back(tmp_path: Path) -> None:
+    details = [{"probability": p, "same": same} for p, same in ((0.3, True), (0.1, True), (0.05, False))]
+    found = read_stated(written(tmp_path, schema=2, verdict_alternative_details=[*details, {"probability": None}]))
+    assert found.same == pytest.approx(0.4)
+    assert read_stated(written(tmp_path)).same == 0.0
+
+
 def test_nothing_and_something_unknown_have_names(tmp_path: Path) -> None:
     assert read_stated(written(tmp_path, verdict_effects=[])).names == NOTHING
     assert read_stated(written(tmp_path, verdict_unexplained=True)).names == {"inertia", "unknown"}

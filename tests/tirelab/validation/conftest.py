@@ -93,6 +93,7 @@ def score() -> Callable[..., Score]:
             probabilities=more.get("probabilities", {}),
             remainder=more.get("remainder"),
             fitted=more.get("fitted"),
+            same=more.get("same", 0.0),
         )
 
     return make

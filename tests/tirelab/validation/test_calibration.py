@@ -15,7 +15,7 @@ from tirelab.validation.calibration import (
     skill,
     skills,
 )
-from tirelab.validation.metrics import Rate
+from tirelab.validation.metrics import Rate, brier
 from tirelab.validation.page import Proof, numbers
 from tirelab.validation.score import Score
 from tirelab.validation.terminal import lines
@@ -47,6 +47,15 @@ def test_an_effect_is_there_where_it_was_hidden_not_where_it_is_arguable(score: 
     arguable = score("pair", "friction", "friction lag", also_right=["lag"], **stated)
     assert effect_pairs([arguable]) == [[(0.6, True), (0.3, False)]]
     assert confidence_pairs([score("single", "friction", "lag", also_right=["lag"])]) == [[(0.9, True)]]
+
+
+def test_where_several_sets_are_right_those_that_leave_the_same_belong_to_the_confidence(score: Make) -> None:
+    """A lag and a damper beside a linear spring are one force: either is right, and 0.5 and 0.4 are stated."""
+    stated = {"confidence": 0.5, "same": 0.4}
+    either = score("single", "friction", "lag", also_right=["lag"], **stated)
+    one = score("single", "friction", "friction", **stated)
+    assert confidence_pairs([either, one]) == [[(0.9, True)], [(0.5, True)]]
+    assert brier([either, one]).value == pytest.approx((0.1**2 + 0.5**2) / 2.0)
 
 
 def test_reliability_has_every_verdict_in_one_class(score: Make) -> None:

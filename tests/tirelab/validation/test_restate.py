@@ -35,6 +35,13 @@ def test_it_is_the_present_probability_shared_and_no_surer_than_an_effect() -> N
     assert restated(verdict(1.0, alike=2)) == pytest.approx(alone / (alone + 3.0 * (1.0 - alone)))
 
 
+def test_the_sets_that_leave_the_same_keep_their_share() -> None:
+    """Two to one were stated; the sets are alike as before, whatever their probability together is now."""
+    details = [{"probability": 0.3, "same": True}, {"probability": None, "same": False}]
+    found = restated({**verdict(1.0), "confidence": 0.6, "alternative_details": details})
+    assert found == pytest.approx(2.0 / 3.0 * probability("verdict", GROUNDS))
+
+
 def test_what_an_effect_is_given_by_its_grounds_counts_where_they_are_kept() -> None:
     """A bottoming beside a refitted law: what was stated then, 0.99, is not asked."""
     grounds = {**dict.fromkeys(OF_EFFECT, 0.0), "odds": 1.0, "beside_law": 1.0}
