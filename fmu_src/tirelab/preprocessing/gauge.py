@@ -111,9 +111,9 @@ def _common_step(gaps: FloatArray, finest: float) -> float:
 
 
 STEPPING, LEVELS = 0.3, 5
-"""What a gauge that reads in steps shows at least: STEPPING is the part of neighbouring readings that are equal, and
-the part of the changes with no change before or after; LEVELS is the number of different jumps that may replace the
-latter."""
+"""What a gauge that reads in steps shows at least: STEPPING is the part of neighbouring readings that are equal, the
+part of the changes with no change before or after, and the part of them that stand in no ramp; LEVELS is the number of
+different jumps that may replace the latter two."""
 
 CANDIDATES = (0.02, 0.1, 0.25, 0.5)
 """Quantiles of the changes of the reading that are tried as its step: the smallest ones are often parts of it."""
@@ -126,15 +126,43 @@ def staircase_step(deflection: FloatArray) -> float:
     # A reading that changes now and then only is that of a motion which is driven in steps and held.
     if moved.size < FEWEST_EVENTS or moved.size > (1.0 - STEPPING) * changes.size:
         return 0.0
-    # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
     changing = changes > 1e-12
     rests = float(np.mean(~(changing[:-1] & changing[1:])[changing[:-1] | changing[1:]]))
+    between_holds = _in_ramps(changing) > 1.0 - STEPPING
     # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
-    for step in sorted(np.quantile(moved, CANDIDATES), reverse=True):
+    for step in sorted(np.quantile(moved, CANDIDATES, method="lower"), reverse=True):
         multiples = np.round(moved / step)
         if float(np.quantile(np.abs(moved / step - multiples), 0.9)) < GRID_TOLERANCE:
-            return float(step) if rests >= STEPPING or np.unique(multiples).size >= LEVELS else 0.0
+            # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
+            stays = rests >= STEPPING and not between_holds
+            kept = (stays or np.unique(multiples).size >= LEVELS) and _on_grid(deflection, step)
+            return float(step) if kept else 0.0
     return 0.0
+
+
+def _in_ramps(changing: NDArray[np.bool_]) -> float:
+    """Return the part of the changes of a reading that stand in ramps: several in a row, and longer stays around them.
+
+    changing (n - 1,): whether the reading changes from each sample to the next
+    """
+    edges = np.flatnonzero(np.diff(changing)) + 1
+    lengths = np.diff(np.concatenate([[0], edges, [changing.size]]))
+    moves = np.arange(lengths.size) % 2 == (0 if changing[0] else 1)
+    around = np.minimum(np.append(np.inf, lengths[:-1]), np.append(lengths[1:], np.inf))
+    ramps = moves & (lengths > 1) & (around > lengths)
+    return float(lengths[ramps].sum() / max(lengths[moves].sum(), 1))
+
+
+def _on_grid(deflection: FloatArray, step: float) -> bool:
+    """Return whether readings lie on levels that are a step [m] apart, from the first one to the last.
+
+    Each change may be near a step where a motion is told every third sample; their sum is not.
+    """
+    level = np.cumsum(np.round(np.diff(deflection, prepend=deflection[0]) / step))
+    level -= level.mean()
+    spacing = float(level @ deflection) / max(float(level @ level), 1e-300)
+    apart = deflection / spacing - level if spacing > 0.0 else np.full(level.size, np.inf)
+    return float(np.quantile(np.abs(apart - np.median(apart)), 0.9)) < GRID_TOLERANCE
 
 
 def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArray:

@@ -5,6 +5,8 @@ A gauge that steps, and the motion behind it: straight lines between the middles
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from tirelab.preprocessing.gauge import (
@@ -180,6 +182,30 @@ def test_tire_at_rest_is_no_step() -> None:
 def test_ramps_between_holds_are_no_steps() -> None:
     level = np.clip(TIME % 4.0, 0.0, 1.0) + np.floor(TIME / 4.0)
     assert staircase_step(5e-3 * level) == 0.0
+
+
+@pytest.mark.parametrize("samples", [2, 3, 5])
+def test_short_ramps_between_holds_are_no_steps(samples: int) -> None:
+    """A step and hold test whose steps take a few samples: what a ramp moves per sample is no step of the gauge."""
+    ramp = np.append(np.arange(1, samples + 1) / samples, np.ones(100))
+    level = np.concatenate([k + ramp for k in range(8)])
+    assert staircase_step(5e-3 * level) == 0.0
+    assert staircase_step(5e-3 * np.append(level, level[::-1])) == 0.0
+
+
+def test_a_gauge_whose_motion_is_driven_in_steps_keeps_its_step() -> None:
+    """Ramps of uneven height between holds, read in steps of which each ramp passes several per sample."""
+    heights = 1e-3 * np.cumsum(np.random.default_rng(4).uniform(0.6, 3.0, 12))
+    ramps = [np.append(np.linspace(a, b, 6), np.full(60, b)) for a, b in pairwise(np.append(0.0, heights))]
+    read = 1e-4 * np.round(np.concatenate(ramps) / 1e-4)
+    assert staircase_step(read) == pytest.approx(1e-4)
+
+
+def test_a_reading_that_is_renewed_every_third_sample_is_no_step() -> None:
+    """Its changes are nearly alike, but what they add up to lies on no grid."""
+    speed = 2e-3 * (1.0 + 0.1 * np.random.default_rng(5).standard_normal(TIME.size))
+    moved = np.cumsum(speed) * (TIME[1] - TIME[0])
+    assert staircase_step(np.repeat(moved[::3], 3)) == 0.0
 
 
 def test_motion_behind_the_steps_is_nearer_than_the_reading() -> None:
