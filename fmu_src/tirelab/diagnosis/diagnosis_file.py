@@ -175,7 +175,9 @@ def _stated(content: Mapping[str, Any], folder: Path) -> Stated:
             for effect in verdict["effects"]
         },
         remainder=_remainder(verdict.get("remainder")),
-        same=sum(_probability(d["probability"]) for d in verdict.get("alternative_details", []) if d.get("same")),
+        same=sum(
+            _probability(d["probability"]) for d in verdict.get("alternative_details", []) if d.get("same")
+        ),
     )
 
 

@@ -169,10 +169,14 @@ def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArr
     """Return the deflection [m] with straight lines between the middles of the stays on each level.
 
     A line is followed for half a step at most: a tire at rest between two levels does not move slowly from one to the
-    other.
+    other. Where the reading goes to and fro between two levels more than once, the tire rests between them.
     """
     edges = np.flatnonzero(np.abs(np.diff(deflection)) > 0.25 * step) + 1
     begin, end = np.append(0, edges), np.append(edges, deflection.size)
-    middle = 0.5 * (time[begin] + time[end - 1])
-    line = np.interp(time, middle, deflection[begin])
+    middle, level = 0.5 * (time[begin] + time[end - 1]), deflection[begin].copy()
+    back = np.zeros(level.size, dtype=bool)
+    back[1:-1] = np.abs(level[2:] - level[:-2]) < 0.5 * step
+    to_and_fro = back & (np.append(back[1:], False) | np.append(False, back[:-1]))
+    level[1:][to_and_fro[1:]] = 0.5 * (level[:-1] + level[1:])[to_and_fro[1:]]
+    line = np.interp(time, middle, level)
     return np.asarray(np.clip(line, deflection - 0.5 * step, deflection + 0.5 * step))

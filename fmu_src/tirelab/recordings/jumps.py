@@ -87,13 +87,14 @@ RARE = 0.02
 
 
 def lost_readings(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the samples at which a gauge lost its reading, which is there again in the next one; arrays (n,).
+    """Return the samples at which a gauge lost its reading, which is there again soon after; arrays (n,).
 
-    No motion goes so far and comes back within one sample, unless the force follows it.
+    No motion goes so far and comes back within AROUND samples, unless the force follows it.
     """
     with np.errstate(all="ignore"):  # a damaged number may be any
         found = _alone(deflection)
-        return np.setdiff1d(found, _alone(force)) if found.size else found
+        along = _alone(force) if found.size else found
+    return np.setdiff1d(found, (along[:, None] + np.arange(1 - AROUND, AROUND)).ravel())
 
 
 BY_CHANCE = 0.01
@@ -194,18 +195,21 @@ def _of_steps(values: NDArray[np.float64], off: NDArray[np.float64]) -> float:
 
 
 def _alone(values: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the samples (k,) that stand alone, in rising order; none where more than RARE would."""
+    """Return the samples (k,) that stand alone, or AROUND of them at most, in rising order; none where more than RARE
+    would.
+    """
     nothing = np.empty(0, dtype=np.intp)
     steps = np.diff(values)
     if steps.size < FEWEST:
         return nothing
     sizes, most = np.abs(steps), int(RARE * values.size)
-    back = np.where(steps[:-1] * steps[1:] < 0.0, np.minimum(sizes[:-1], sizes[1:]), 0.0)
     usual = float(np.partition(sizes, -1 - 2 * most)[-1 - 2 * most])
-    likely = 1 + np.flatnonzero(back > LOST * usual)
-    # Between two lost readings a good one stands as far from both: the median of five tells them apart.
-    around = values[np.clip(likely[:, None] + np.arange(-2, 3), 0, values.size - 1)]
-    far = np.minimum(np.abs(values[likely] - np.median(around, axis=1)), back[likely - 1])
+    edges = np.flatnonzero(sizes > LOST * usual)
+    near = np.unique(np.clip(edges[:, None] + np.arange(1 - AROUND, AROUND + 1), 0, values.size - 1))
+    # Where several are lost one after the other, or a good one stands between them, the median is of those around.
+    around = values[np.clip(near[:, None] + np.arange(-AROUND, AROUND + 1), 0, values.size - 1)]
+    far = np.abs(values[near] - np.median(around, axis=1))
+    likely, far = near[far > LOST * usual], far[far > LOST * usual]
     order = np.argsort(-far, kind="stable")[:most]
     # Each step goes with the first sample beside it that is left out; what stays then are the steps of higher rank.
     rank = np.full(sizes.size, order.size)

@@ -82,7 +82,9 @@ def test_probabilities_and_the_remainder_are_read_back(tmp_path: Path) -> None:
 
 def test_the_probability_of_the_alternatives_that_leave_the_same_is_read_back(tmp_path: Path) -> None:
     details = [{"probability": p, "same": same} for p, same in ((0.3, True), (0.1, True), (0.05, False))]
-    found = read_stated(written(tmp_path, schema=2, verdict_alternative_details=[*details, {"probability": None}]))
+    found = read_stated(
+        written(tmp_path, schema=2, verdict_alternative_details=[*details, {"probability": None}])
+    )
     assert found.same == pytest.approx(0.4)
     assert read_stated(written(tmp_path)).same == 0.0
 

@@ -261,3 +261,24 @@ def test_steps_that_are_held_for_minutes_are_the_rigs() -> None:
     """Three samples of a rise and 3000 of a hold, as in a relaxation test: no gauge is seen in so few changes."""
     rise = np.array([0.0, 0.0, 0.0, 9.3865e-3, 9.8332e-3])
     assert staircase_step(np.concatenate([rise, np.full(3000, 10e-3)])) == 0.0
+
+
+def test_a_tire_at_rest_between_two_levels_does_not_move() -> None:
+    """Noise turns the reading from one level to the next and back: it says where the tire is, and no way that it goes.
+
+    On both sides the motion goes on in steps, and comes to the level between the two.
+    """
+    moving = STEP * np.floor(np.linspace(0.0, 9.4, 95))
+    trembling = STEP * (9.0 + (np.random.default_rng(2).random(200) < 0.5))
+    read = np.concatenate([moving, trembling, moving[::-1] + STEP])
+    found = destepped(np.arange(read.size, dtype=float), read, STEP)
+    rests = found[97 : 95 + 198]
+    assert np.ptp(rests) < 1e-12
+    assert rests[0] == pytest.approx(9.5 * STEP)
+    assert np.ptp(found[:95]) > 8.0 * STEP
+
+
+def test_one_reversal_between_two_levels_is_a_motion() -> None:
+    read = STEP * np.repeat([0.0, 1.0, 2.0, 1.0, 0.0], 21)
+    found = destepped(np.arange(105.0), read, STEP)
+    assert found[52] == pytest.approx(2.0 * STEP)

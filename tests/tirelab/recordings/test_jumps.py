@@ -130,10 +130,18 @@ def test_readings_that_are_there_again_in_the_next_sample_were_lost() -> None:
     assert lost_readings(lost_at(222, value=-0.02), force).tolist() == [222]
 
 
+def test_a_camera_that_follows_something_else_for_a_few_samples_lost_its_reading() -> None:
+    """Of a run of four, and of one that encloses a good reading, the good one stays."""
+    force = 100.0 * CYCLES
+    assert lost_readings(lost_at(222, 223, 224, 225, value=0.15), force).tolist() == [222, 223, 224, 225]
+    run = [222, 223, 224, 226, 525]
+    assert lost_readings(lost_at(*run, value=0.15), force).tolist() == run
+
+
 def test_what_the_force_follows_or_stays_or_is_frequent_was_not_lost() -> None:
     tapped = lost_at(222, 525)
     assert lost_readings(tapped, 100.0 * tapped).size == 0
-    assert lost_readings(lost_at(222, 223, 224), CYCLES).size == 0
+    assert lost_readings(lost_at(*range(222, 227)), CYCLES).size == 0
     often = lost_at(*range(20, 1980, 12))
     assert lost_readings(often, CYCLES).size == 0
     stepped = np.where(TIME % 2.0 < 1.0, 0.0, 5e-3)
