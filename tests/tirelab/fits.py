@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from drives import flat_force, read, ride
 from radialtire import CATALOGUE, TireModel
+from tirelab.estimation.evidence import Linearised
 from tirelab.estimation.findings import FittedModel
-from tirelab.estimation.fit import Fit, Linearised
+from tirelab.estimation.fit import Fit
 from tirelab.estimation.problem import law_start, problem_of
 from tirelab.regressors.dataset import dataset_of
 from tirelab.regressors.signature import LAW

@@ -1,195 +1,29 @@
 """The fit of one set of effects with the effects' own equations, and its evidence.
 
-The fit is one of penalised least squares (`minimise`). The evidence is Laplace's approximation, with form errors,
-discrepancy and the law's scales.
+The fit is one of penalised least squares (`minimise`); its evidence follows from the optimum (`evidence`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CATALOGUE, TireModel
+from radialtire import TireModel
 
 from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
 from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
+from .evidence import Linearised, laplace_evidence
 from .minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
 from .problem import EstimationProblem, Values, form_errors, law_start, problem_of, smooth_functions
+from .valid_ranges import beyond_range
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]
-
-
-LAW_SCALES = (1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)
-"""Scales of a group of the law's parameters that are tried (type II)."""
-
-PASSES = 2
-"""Number of rounds in which the scales of the groups are found one after the other."""
-
-FORM_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
-"""Scales of the form errors that are tried (type II); the form error of an effect is at most the whole effect."""
-
-
-@dataclass(frozen=True)
-class Linearised:
-    """A fitted set near its optimum, in units of the noise.
-
-    residual (m,); slopes (m, k); positions (k,) on the axes of the priors
-    forms: for each effect the columns (m, f) of its form errors; errors: for each effect its form error, as declared
-    groups (k,): number of the group of a parameter whose prior's scale is to be found; 0: the prior is as declared
-    widths (k,): standard deviations of the priors; more than 1 for a parameter with a scale of its own
-    """
-
-    residual: FloatArray
-    slopes: FloatArray
-    positions: FloatArray
-    forms: tuple[NDArray[np.floating], ...]
-    errors: tuple[float, ...]
-    groups: IntArray
-    widths: FloatArray
-
-
-@dataclass(frozen=True)
-class LaplaceEvidence:
-    """log_likelihood: marginal; variance: V of the discrepancy; scales: of the form errors of each effect
-    law_scales: those of the groups of the law's parameters, by their numbers
-    beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them
-    freedom: number of parameters and form errors that the data determine, sum of c / (c + V) over the curvatures c
-    """
-
-    log_likelihood: float
-    variance: float
-    scales: FloatArray
-    beyond_forms: FloatArray
-    freedom: float
-    law_scales: Mapping[int, float]
-
-
-def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEvidence:
-    """Return the evidence of a fit."""
-    gram = fit.slopes.T @ fit.slopes
-    width, law_scales = fit.widths, dict[int, float]()
-    evidence_at = _parameter_evidence(fit, gram, discrepancy)
-    best = evidence_at(width)
-    for _ in range(PASSES if fit.groups.any() else 0):
-        for group in np.unique(fit.groups[fit.groups > 0]):
-            for scale in LAW_SCALES:
-                trial = np.where(fit.groups == group, scale, width)
-                value = evidence_at(trial)
-                if value[0] > best[0]:
-                    best, width = value, trial
-                    law_scales[int(group)] = scale
-    cost = _cost_of_scales(fit.widths)
-    if not fit.forms:
-        freedom = _freedom(gram * np.outer(width, width), best[1])
-        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual, freedom, law_scales)
-    found = _evidence_with_forms(fit, width, discrepancy)
-    return replace(found, log_likelihood=found.log_likelihood - cost, law_scales=law_scales)
-
-
-def _cost_of_scales(scales: FloatArray) -> float:
-    """Return the cost of all scales: the log of the half-Cauchy prior density at 1 over that at the scale.
-
-    Below 1 the density is taken as constant, so that a form as good as s or better has the probability s.
-    """
-    return float(np.sum(np.where(scales < 1.0, -np.log(scales), np.log1p(scales**2) - math.log(2.0))))
-
-
-def _parameter_evidence(
-    fit: Linearised, gram: FloatArray, discrepancy: Discrepancy
-) -> Callable[[FloatArray], tuple[float, float]]:
-    """Return the function from standard deviations of the prior to the evidence without form errors, and its best V.
-
-    The parameters follow a narrower or a wider prior linearly: a group whose scale vanishes is not there.
-    """
-    variances, moment = discrepancy.grid, fit.slopes.T @ fit.residual
-    power = float(fit.residual @ fit.residual)
-
-    def gained(width: FloatArray) -> tuple[FloatArray, FloatArray]:
-        pull = -fit.positions / width
-        gain, determinant, _ = _linear_gain(gram * np.outer(width, width), moment * width, pull, variances)
-        return gain - float(pull @ pull), determinant
-
-    # What a fit that stopped early could still gain is not counted: see `_evidence_with_forms`.
-    alone = gained(fit.widths)[0] + float(np.sum((fit.positions / fit.widths) ** 2))
-
-    def of(width: FloatArray) -> tuple[float, float]:
-        gain, determinant = gained(width)
-        values = 0.5 * (gain - alone - power / variances - determinant) + discrepancy.terms
-        best = int(np.argmax(values))
-        return float(values[best]), float(variances[best])
-
-    return of
-
-
-def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:
-    """Return the evidence with form errors: linear coefficients beside the parameters, which are refitted with them.
-
-    One scale for all effects is found first, then those of the effects one after the other.
-    """
-    variances = discrepancy.grid
-    k, counts = width.size, [f.shape[1] for f in fit.forms]
-    columns = np.concatenate([fit.slopes, *fit.forms], axis=1)
-    gram, moment = columns.T @ columns, columns.T @ fit.residual
-    # The slopes are those of the residual: a step along them takes the positions the other way.
-    pull = np.concatenate([-fit.positions / width, np.zeros(sum(counts))])
-    power = float(fit.residual @ fit.residual)
-    fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.terms
-    # The gain that the parameters alone could still make is not counted: a fit that stopped early must not win by it.
-    alone, _, _ = _linear_gain(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
-    most = 1.0 / np.array(fit.errors)
-
-    def of(scales: FloatArray) -> tuple[float, FloatArray, int, FloatArray]:
-        wide = np.concatenate([width, np.repeat(scales, counts)])
-        gained, determinant, given_way = _linear_gain(
-            gram * np.outer(wide, wide), moment * wide, pull, variances
-        )
-        values = fixed + 0.5 * (gained - alone - determinant)
-        best = int(np.argmax(values))
-        return float(values[best]) - _cost_of_scales(scales), scales, best, given_way(best) * wide
-
-    best = max((of(np.minimum(scale, most)) for scale in FORM_SCALES), key=lambda f: f[0])
-    for i in range(len(counts)) if len(counts) > 1 else ():
-        own = [np.where(np.arange(len(counts)) == i, scale, best[1]) for scale in FORM_SCALES]
-        best = max(
-            (best, *(of(s) for s in own if s[i] <= most[i] and s[i] != best[1][i])), key=lambda f: f[0]
-        )
-    likelihood, scales, index, coefficients = best
-    beyond_forms, variance = fit.residual - columns @ coefficients, float(variances[index])
-    wide = np.concatenate([width, np.repeat(scales, counts)])
-    freedom = _freedom(gram * np.outer(wide, wide), variance)
-    return LaplaceEvidence(likelihood, variance, scales, beyond_forms, freedom, {})
-
-
-def _freedom(gram: FloatArray, variance: float) -> float:
-    curvatures = np.maximum(np.linalg.eigvalsh(gram), 0.0)
-    return float(np.sum(curvatures / (curvatures + variance)))
-
-
-def _linear_gain(
-    gram: FloatArray, moment: FloatArray, pull: FloatArray, variances: FloatArray
-) -> tuple[FloatArray, FloatArray, Callable[[int], FloatArray]]:
-    """Return for each V the gain of linear coefficients (twice a log likelihood), the log determinant of their
-    curvature, and a function from the index of V to the coefficients.
-
-    gram (k, k), moment (k,): normal equations; pull (k,): distance of each coefficient from the centre of its prior, in
-    standard deviations
-    """
-    if not moment.size:
-        none = np.zeros(variances.size)
-        return none, none, lambda index: moment
-    values, vectors = np.linalg.eigh(gram)
-    values = np.maximum(values, 0.0)
-    stretched = values[:, None] + variances
-    turned = (vectors.T @ moment)[:, None] - (vectors.T @ pull)[:, None] * variances
-    gained = (turned**2 / stretched).sum(axis=0) / variances
-    determinant = np.log(stretched / variances).sum(axis=0)
-    return gained, determinant, lambda index: np.asarray(vectors @ (turned / stretched)[:, index])
 
 
 LAW_LOOSE = 3.0
@@ -200,7 +34,7 @@ REWEIGHTINGS = 4
 
 BARE_MENTION = 1.0
 """Log odds that are worth no more (R. E. Kass, A. E. Raftery, JASA 90 (1995) 773): of two optima of one set nearer than
-that, one is taken that leaves less than half."""
+that, one is taken that leaves less than half; two sets that are told apart by no more leave the same."""
 
 OPTIONAL_GAIN = 60.0
 """Largest gain in log likelihood expected from optional parameters."""
@@ -397,18 +231,6 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         1.0,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
-        beyond=_beyond(problem, held, found.positions),
+        beyond=beyond_range(problem, held, found.positions),
     )
     return fit.with_discrepancy(discrepancy)
-
-
-def _beyond(problem: EstimationProblem, held: NDArray[np.bool_], positions: FloatArray) -> tuple[str, ...]:
-    """Return the effects with a strength held (k,) at a limit of its valid range, other than where they vanish."""
-    found = []
-    for i in (i for i in np.flatnonzero(held) if problem.parameters[i].owner != LAW):
-        free = problem.parameters[i]
-        parameter = CATALOGUE[free.owner].parameters[free.index]
-        limit = parameter.minimum if positions[i] <= free.low else parameter.maximum
-        if parameter.role == "strength" and parameter.neutral != limit:
-            found.append(free.owner)
-    return tuple(dict.fromkeys(found))

@@ -198,7 +198,7 @@ def units_stated(lines: Iterable[str]) -> dict[str, str]:
     Of a quantity for which two units are stated none is returned, and none of the radius: a deflection's unit is not
     that of a surface.
     """
-    stated = [found["unit"].strip() for line in lines if (found := _STATED.search(line))]
+    stated = [told["unit"].strip() for line in lines if (told := _STATED.search(line))]
     found = {
         c.name: {unit for unit in stated if measures(unit, c.unit)} for c in CHANNELS if c.name != "radius"
     }

@@ -132,7 +132,8 @@ def near_floor(scores: Sequence[Score], within: float, *, alike: bool, noise_fre
 def brier(scores: Sequence[Score]) -> Mean:
     """Brier score of the stated confidence: mean of (confidence - exact)^2 over all verdicts.
 
-    Where several sets count as right, the alternatives that leave the same belong to the confidence. Failed diagnoses state no confidence and are left out.
+    Where several sets count as right, the alternatives that leave the same belong to the confidence.
+    Failed diagnoses state no confidence and are left out.
     Source: Brier, Monthly Weather Review 78, 1 (1950).
     """
     return Mean.of(
