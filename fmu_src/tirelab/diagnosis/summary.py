@@ -129,8 +129,9 @@ def other_law(left: float, regressions: Sequence[ResidualModel]) -> list[str]:
     """Return the advice to believe another law of a part, where a curve of the deflection explains most of a remainder.
 
     left [N]: what the corrected part leaves. A law of few constants may be too far from the part's for a refitted one.
+    A curve that does not repeat is none of the deflection.
     """
-    curve = next((c for c in regressions if c.by == "deflection"), None)
+    curve = next((c for c in regressions if c.by == "deflection" and not c.r2 <= 0.0), None)
     if curve is None or curve.after**2 > (1.0 - MAJORITY) * left**2:
         return []
     return [

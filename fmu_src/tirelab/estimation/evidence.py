@@ -16,7 +16,7 @@ IntArray = NDArray[np.int_]
 
 
 LAW_SCALES = (1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)
-"""Scales of a group of the law's parameters that are tried (type II)."""
+"""Scales of a group of the law's parameters that are tried (type II), the smallest for one that is not changed."""
 
 PASSES = 2
 """Number of rounds in which the scales of the groups are found one after the other."""
@@ -62,15 +62,15 @@ class LaplaceEvidence:
 
 def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEvidence:
     """Return the evidence of a fit."""
+    power = float(fit.residual @ fit.residual)
     gram = fit.slopes.T @ fit.slopes
     width, law_scales = fit.widths, dict[int, float]()
-    evidence_at = _parameter_evidence(fit, gram, discrepancy)
-    best = evidence_at(width)
+    best = _parameter_evidence(power, gram, fit.positions, width, discrepancy)
     for _ in range(PASSES if fit.groups.any() else 0):
         for group in np.unique(fit.groups[fit.groups > 0]):
             for scale in LAW_SCALES:
                 trial = np.where(fit.groups == group, scale, width)
-                value = evidence_at(trial)
+                value = _parameter_evidence(power, gram, fit.positions, trial, discrepancy)
                 if value[0] > best[0]:
                     best, width = value, trial
                     law_scales[int(group)] = scale
@@ -91,30 +91,16 @@ def _cost_of_scales(scales: FloatArray) -> float:
 
 
 def _parameter_evidence(
-    fit: Linearised, gram: FloatArray, discrepancy: Discrepancy
-) -> Callable[[FloatArray], tuple[float, float]]:
-    """Return the function from standard deviations of the prior to the evidence without form errors, and its best V.
-
-    The parameters follow a narrower or a wider prior linearly: a group whose scale vanishes is not there.
-    """
-    variances, moment = discrepancy.grid, fit.slopes.T @ fit.residual
-    power = float(fit.residual @ fit.residual)
-
-    def gained(width: FloatArray) -> tuple[FloatArray, FloatArray]:
-        pull = -fit.positions / width
-        gain, determinant, _ = _linear_gain(gram * np.outer(width, width), moment * width, pull, variances)
-        return gain - float(pull @ pull), determinant
-
-    # What a fit that stopped early could still gain is not counted: see `_evidence_with_forms`.
-    alone = gained(fit.widths)[0] + float(np.sum((fit.positions / fit.widths) ** 2))
-
-    def of(width: FloatArray) -> tuple[float, float]:
-        gain, determinant = gained(width)
-        values = 0.5 * (gain - alone - power / variances - determinant) + discrepancy.terms
-        best = int(np.argmax(values))
-        return float(values[best]), float(variances[best])
-
-    return of
+    power: float, gram: FloatArray, positions: FloatArray, width: FloatArray, discrepancy: Discrepancy
+) -> tuple[float, float]:
+    """Return the evidence at given standard deviations of the prior, without form errors, at the best V."""
+    variances = discrepancy.grid
+    curvatures = np.maximum(np.linalg.eigvalsh(gram * np.outer(width, width)), 0.0) if width.size else width
+    determinant = np.log1p(curvatures[:, None] / variances).sum(axis=0)
+    prior = float(np.sum((positions / width) ** 2))
+    values = -0.5 * (power / variances + prior + determinant) + discrepancy.terms
+    best = int(np.argmax(values))
+    return float(values[best]), float(variances[best])
 
 
 def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:

@@ -138,6 +138,7 @@ def test_an_alternative_is_told_as_a_difference():
     assert told == {
         "difference": "+ force lag",
         "probability": 0.05,
+        "same": False,
         "reason": "no hold",
         "action": "hold it",
     }

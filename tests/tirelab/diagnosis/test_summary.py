@@ -122,6 +122,7 @@ def test_another_law_is_proposed_where_a_curve_of_the_deflection_explains_most()
     )
     assert other_law(20.1, (regressed("time", 0.9, 1.2), regressed("deflection", 0.3, 15.0))) == []
     assert other_law(20.1, (regressed("time", 0.9, 1.2),)) == []
+    assert other_law(20.1, (regressed("deflection", -0.1, 1.43),)) == []
 
 
 def test_beside_a_likelier_alternative_a_refitted_law_does_not_say_that_nothing_is_missing():

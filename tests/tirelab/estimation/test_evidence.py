@@ -206,8 +206,11 @@ def test_a_scale_of_the_laws_prior_is_found() -> None:
         laplace_evidence(grouped, fixed(1.0)).log_likelihood
         - laplace_evidence(fit, fixed(1.0)).log_likelihood
     )
-    # The Gaussian law with thirty times the prior's width, to which the parameter is fitted anew.
-    expected = dense(misfit, 30.0 * column, 1.0) - dense(misfit, column, 1.0)
+    curvature, q = float(column[:, 0] @ column[:, 0]), float(fit.positions[0])
+    # The prior costs q^2 / 2 at its own width, 1 / 900 of that at thirty times; the width costs by Occam's factor.
+    expected = 0.5 * q**2 * (1.0 - 1.0 / 900.0) - 0.5 * math.log(
+        (1.0 + 900.0 * curvature) / (1.0 + curvature)
+    )
     assert gained == pytest.approx(expected, rel=1e-9)
     assert laplace_evidence(grouped, fixed(1.0)).law_scales == {1: 30.0}
     assert laplace_evidence(fit, fixed(1.0)).law_scales == {}
