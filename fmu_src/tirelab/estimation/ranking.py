@@ -19,7 +19,7 @@ from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn_beside
 from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
-from .additions import additions, predicted_gains
+from .additions import additions, can_follow, predicted_gains
 from .fit import LEAST_GAIN, Fit, fitted
 from .held_out import HeldOutRecordings, predicted
 from .problem import Values
@@ -147,10 +147,8 @@ class FittedSets:
         return self.count - self.gained_at >= MOST_FITS or self.work >= self.most_work
 
     def update_discrepancy(self) -> bool:
-        """Compute the evidence of all sets with the usual form error of the best one, beside the slow noise that it
-        leaves; return whether these have changed.
-
-        One form error serves all sets: their own would favour sets whose forms are declared to be good.
+        """Compute the evidence of all sets with the usual form error of the best one (their own would favour sets whose
+        forms are declared to be good), beside the slow noise that it leaves; return whether these have changed.
         """
         if self.assessed_at == self.count:
             return False
@@ -251,23 +249,18 @@ def begun(
     noise, known = discrepancy_of(dataset.misfit, 0.0), {s.name: s for s in signatures}
     sets = FittedSets(dataset, known, noise, discrepancy, held_out, most_work=most_work)
     sets.fit([{}], discrepancy.highest)
-    nothing_fitted = np.zeros((dataset.misfit.size, 0))
+    no_slopes = np.zeros((dataset.misfit.size, 0))
     for variance, parts in starts:
         if parts and len(parts) <= MOST_EFFECTS:
-            first = {
-                name: additions(sets.signatures[name], part, nothing_fitted, 1.0, dataset)[0]
-                for name, part in parts.items()
-            }
+            first = {n: additions(known[n], part, no_slopes, 1.0, dataset)[0] for n, part in parts.items()}
             sets.fit([first], variance)
     sets.update_discrepancy()
     return sets
 
 
 def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
-    """Return the sets that can still win, fitted and ranked, from those to begin with.
-
-    alike: returns the effects that the motion cannot distinguish from one; the best set is also fitted with each of
-    them in its place
+    """Return the sets that can still win, fitted and ranked, from those to begin with; alike: returns the effects that
+    the motion cannot distinguish from one.
     """
     sets.followed.add(nothing := frozenset[str]())
     if nothing in sets.fits:
@@ -283,15 +276,22 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
         if sets.update_discrepancy():
             sets.followed.clear()
     _refit_below_subsets(sets)
-    best_names = sets.best()
-    for name in sorted(best_names - {LAW}):
-        less = sets.fits.get(best_names - {name})
-        for other in alike(name):
-            if less is None or other not in sets.signatures or other in best_names:
-                continue
-            if not sets.beside(less)[other].silent:
-                sets.add(less, other)
+    _fit_alike(sets, sets.best_fit, alike)
     return Ranking(_in_order(sets.fits.values()), sets.discrepancy, sets.held_out)
+
+
+def _fit_alike(sets: FittedSets, best: Fit, alike: Callable[[str], Sequence[str]]) -> None:
+    """Fit the best set with another candidate in place of each that the motion, or what it explains, does not tell from
+    it: sets that leave the same share their probability.
+    """
+    for name in best.names:
+        if (less := sets.fits.get(frozenset(best.names) - {name})) is None:
+            continue
+        explained = less.residual - best.residual
+        others = {n: s for n, s in sets.beside(less).items() if n not in best.names and not s.silent}
+        for other, signature in others.items():
+            if other in alike(name) or can_follow(signature, explained, less, best.variance):
+                sets.add(less, other)
 
 
 def _depends(name: str, beside: Sequence[str]) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.estimation.additions import additions, predicted_gains
+from tirelab.estimation.additions import additions, can_follow, predicted_gains
 from tirelab.estimation.fit import fitted
 from tirelab.regressors.dataset import Dataset
 from tirelab.regressors.signature import Signature
@@ -45,3 +45,19 @@ def test_parameters_of_any_size_that_are_nearly_alike_leave_what_is_across_them(
     first = additions(damper, missing, alike, 1.0, dataset)[0]
     # A line over the deflection follows next to nothing of a damper.
     assert first[0] == pytest.approx(2.0 * damper.values[3][0], rel=0.02)
+
+
+def test_a_candidate_follows_its_own_response_and_what_a_fitted_parameter_does_but_no_other(
+    dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy
+) -> None:
+    damper, law = (next(s for s in signatures if s.name == n) for n in ("viscous_damping", "recalibration"))
+    nothing = fitted(dataset, [{}], noise, noise.highest, -np.inf)
+    damped = 100.0 * damper.mean
+    assert can_follow(damper, damped, nothing, 1.0)
+    assert not can_follow(law, damped, nothing, 1.0)
+    # A thousandth of it is less than the noise and worth nothing, whoever follows it.
+    assert can_follow(law, 1e-3 * damper.mean, nothing, 1.0)
+    beside = fitted(
+        dataset, [{"viscous_damping": (500.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)}], noise, 1.0, -np.inf
+    )
+    assert can_follow(law, 10.0 * beside.slopes[:, 0], beside, 1.0)
