@@ -82,6 +82,8 @@ _SPELLINGS = {
 _WORD = r"[^\W\d_]+(?:_[^\W\d_]+)*"
 _UNIT = re.compile(rf"[°Δ%]?{_WORD}(?:(?:\^|\*\*)?-?[1-4]|[²³])?")
 _JOINT = re.compile(r"\s*[*/·⋅]\s*|\s+")
+_DOT = re.compile(r"(?<=[Nf])\.(?=(?:[cm]?m|s|in|ft)\b)")
+"""The dot of a product as in N.m and N.s/m."""
 _GAUGE = re.compile(
     r"^(?P<unit>psi|bar|mbar|Pa|hPa|kPa|MPa|atm)[\s_]*(?:\(?(?P<kind>g|ga|gauge|a|abs|absolute)\)?)$"
 )
@@ -170,7 +172,7 @@ def conversion(unit: str, si: str) -> Conversion:
     Errors: UnitError with the likely spelling when pint does not know the unit or it measures something else.
     Source: pint's default registry (definitions of NIST SP 811).
     """
-    text = " ".join(unit.translate(_LOOKALIKES).split()).removesuffix(".")
+    text = _DOT.sub("*", " ".join(unit.translate(_LOOKALIKES).split()).removesuffix("."))
     quantity = QUANTITIES[si]
     gauge = _GAUGE.match(text) if si == "Pa" else None
     absolute = gauge is not None and gauge["kind"].startswith("a")
@@ -237,7 +239,7 @@ def _stand_in(unit: str, si: str) -> str:
     """Return the unit of a length or a force as which an angle or a torque is read; "" for any other. J is energy."""
     if si == "m" and unit.casefold() in ANGLES:
         return "mm"
-    spelled = _SPELLINGS.get((si, unit), unit)
+    spelled = _SPELLINGS.get((si, unit), _DOT.sub("*", unit))
     if si != "N" or "j" in unit.casefold() or not is_unit(spelled) or unit.strip() in ("%", "-"):
         return ""
     torque = _registry().Unit("N*m").dimensionality
@@ -247,7 +249,8 @@ def _stand_in(unit: str, si: str) -> str:
 @lru_cache(maxsize=MOST_TEXTS)
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of anything that pint knows, or of a share: V, deg, N/mm, %."""
-    words = _JOINT.split(text.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").strip())
+    text = _DOT.sub("*", text.replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}"))
+    words = _JOINT.split(text.strip())
     if text.strip() in ("%", "-"):
         return True
     if not all(_UNIT.fullmatch(word) for word in words):

@@ -13,6 +13,8 @@ from tirelab.recordings.units import (
     UnitError,
     conversion,
     given_conversion,
+    is_unit,
+    meant_unit,
     measures,
     parse_radius,
     sampling_said,
@@ -238,3 +240,15 @@ def test_a_line_may_state_the_sampling(line: str, rate: str) -> None:
 @pytest.mark.parametrize("degree", ["°", "\N{RING ABOVE}", "\N{MASCULINE ORDINAL INDICATOR}"])
 def test_a_degree_is_one_however_an_export_writes_it(degree: str) -> None:
     assert conversion(f"{degree}C", "K").to_si(np.array([20.0])) == pytest.approx([293.15])
+
+
+@pytest.mark.parametrize("unit", ["N.m", "\N{GREEK SMALL LETTER MU}N.m", "kgf.cm", "lbf.in"])
+def test_a_dot_joins_a_torque(unit: str) -> None:
+    assert is_unit(unit)
+    assert meant_unit(unit, "N") == "N"
+
+
+def test_a_dot_within_words_joins_nothing() -> None:
+    assert not is_unit("a.u.")
+    assert not is_unit("S.D")
+    assert conversion("mm.", "m").divide == 1000.0
