@@ -369,9 +369,7 @@ def _fit_neighbours(sets: FittedSets, names: frozenset[str]) -> None:
 
 def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[str], most: int) -> None:
     """Add the candidates that may bring a fitted set near the best one, or that promise as much as the one they
-    replace.
-
-    beside: the set whose neighbours are fitted; its own effects are not added
+    replace; beside: the set whose neighbours are fitted, of which none is added.
     """
     base, best = sets.fits[names], sets.posterior(sets.best())
     signatures = sets.beside(base)
@@ -380,7 +378,9 @@ def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[st
     gains = predicted_gains([signatures[n] for n in (*others, *replaced)], base, sets.discrepancy)
     # A fit may gain far more than was predicted, so a prediction is compared with that of the effect it would replace.
     wanted = min([best + PRIOR_ODDS - sets.posterior(names), *gains[len(others) :]])
-    for gain, name in sorted(zip(gains, others, strict=False), reverse=True)[:most]:
+    # What the law promises is known of one size for all its groups: it is one more, and takes no other's place.
+    law_last = sorted(zip(gains, others, strict=False), key=lambda pair: (pair[1] == LAW, -pair[0]))
+    for gain, name in (p for i, p in enumerate(law_last) if i < most or p[1] == LAW):
         if gain > wanted - GAIN_ERROR and not sets.spent:
             sets.add(base, name)
 

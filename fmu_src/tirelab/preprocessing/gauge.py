@@ -154,15 +154,23 @@ def _in_ramps(changing: NDArray[np.bool_]) -> float:
 
 
 def _on_grid(deflection: FloatArray, step: float) -> bool:
-    """Return whether readings lie on levels that are a step [m] apart, from the first one to the last.
+    """Return whether readings lie on levels that are a step [m] apart, all the way from one turn to the next.
 
-    Each change may be near a step where a motion is told every third sample; their sum is not.
+    Each change may be near a step where a motion is told every third sample; their sum is not. The levels on the way
+    back may be others, and the first and the last change a part of a step.
     """
-    level = np.cumsum(np.round(np.diff(deflection, prepend=deflection[0]) / step))
+    stays = deflection[np.append(True, np.abs(np.diff(deflection)) > 1e-12)]
+    changes = np.diff(stays)
+    level = np.append(0.0, np.cumsum(np.round(changes / step)))
     level -= level.mean()
-    spacing = float(level @ deflection) / max(float(level @ level), 1e-300)
-    apart = deflection / spacing - level if spacing > 0.0 else np.full(level.size, np.inf)
-    return float(np.quantile(np.abs(apart - np.median(apart)), 0.9)) < GRID_TOLERANCE
+    spacing = float(level @ stays) / max(float(level @ level), 1e-300)
+    if spacing <= 0.0:
+        return False
+    apart = stays / spacing - level
+    begins = np.append(0, np.flatnonzero(np.diff(np.sign(changes))) + 1)
+    middles = (begins + np.append(begins[1:], stays.size - 1)) // 2
+    own = np.searchsorted(begins, np.arange(stays.size), side="right") - 1
+    return float(np.quantile(np.abs(apart - apart[middles[own]]), 0.9)) < GRID_TOLERANCE
 
 
 def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArray:

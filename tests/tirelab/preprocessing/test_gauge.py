@@ -201,6 +201,13 @@ def test_a_gauge_whose_motion_is_driven_in_steps_keeps_its_step() -> None:
     assert staircase_step(read) == pytest.approx(1e-4)
 
 
+def test_a_gauge_may_have_other_levels_on_the_way_back() -> None:
+    """The backlash of an encoder: in from a part of a step, back from another part."""
+    into = STEP * np.append(0.0, 0.4 + np.arange(40.0))
+    back = into[-1] - STEP * (0.7 + np.arange(40.0))
+    assert staircase_step(np.repeat(np.append(into, back), 5)) == pytest.approx(STEP)
+
+
 def test_a_reading_that_is_renewed_every_third_sample_is_no_step() -> None:
     """Its changes are nearly alike, but what they add up to lies on no grid."""
     speed = 2e-3 * (1.0 + 0.1 * np.random.default_rng(5).standard_normal(TIME.size))
