@@ -39,6 +39,9 @@ speed."""
 SAME = "their forces are the same in this motion"
 """Why two sets are not told apart that leave the same; whether another motion decides is what the next test says."""
 
+OF_AN_INSTRUMENT = "test the gauges by themselves"
+"""What decides between what an instrument does and what the part does where no motion shows it."""
+
 LAW_TRAITS = ("static",)
 """Traits of a refitted law: it depends on deflection and surface only."""
 
@@ -141,7 +144,7 @@ def reason_of(
             "they depend on the deflection only in this motion: load and unload to two depths, at two speeds"
         )
     if tuple(other) in explanation.same:
-        return SAME
+        return f"{SAME}: {OF_AN_INSTRUMENT}" if any("reading" in _traits(n) for n in between) else SAME
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):

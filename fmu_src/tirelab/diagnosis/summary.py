@@ -17,13 +17,12 @@ from ..preprocessing.noise import Noise
 from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
 from ..report.words import (
-    DECIDED,
     LIKELIEST,
     OTHER_LIKELIER,
     SURE,
     beside_alternatives,
     confidence_word,
-    whole_percent,
+    is_undecided,
 )
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
@@ -53,7 +52,9 @@ def summarise(
     """
     names = [e.name for e in effects]
     left = more_than_noise(fit.left, fit.noise)
-    undecided = bool(alternatives) and whole_percent(confidence) < DECIDED
+    undecided = bool(alternatives) and is_undecided(
+        confidence, [a.probability for a in alternatives if a.same]
+    )
     doubted = bool(alternatives) and not undecided and confidence_word(confidence) != SURE
     said = [_undecided(effects, alternatives, confidence)] if undecided else []
     if undecided and not regressions and not (names and left) and set(names) <= {REFITTED_LAW}:

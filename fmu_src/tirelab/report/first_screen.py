@@ -58,7 +58,8 @@ def headline(diagnosis: Mapping[str, Any]) -> str:
 
 def undecided(verdict: Mapping[str, Any]) -> bool:
     """Return whether the recordings do not decide between the verdict and its alternatives."""
-    return bool(verdict["alternatives"]) and words.whole_percent(verdict["confidence"]) < words.DECIDED
+    same = [d["probability"] or 0.0 for d in verdict.get("alternative_details") or [] if d.get("same")]
+    return bool(verdict["alternatives"]) and words.is_undecided(verdict["confidence"], same)
 
 
 def sureness(verdict: Mapping[str, Any]) -> str:
@@ -265,6 +266,9 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     details = verdict.get("alternative_details") or []
     if len(details) == len(alternatives):
         pairs = [{**d, "names": names} for d, names in zip(details, alternatives, strict=True)]
+        if not words.is_undecided(verdict["confidence"], ()):
+            least = words.NEAR * verdict["confidence"]
+            pairs = [p for p in pairs if p.get("same") and (p["probability"] or 0.0) >= least]
         alternatives = [pair["names"] for pair in words.likeliest(pairs)]
     if sure := _sure(verdict):
         yield from _beside(sure, [own, *(names for names in alternatives if set(sure) <= set(names))])

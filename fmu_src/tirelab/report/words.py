@@ -208,6 +208,17 @@ OTHER_LIKELIER = "an alternative is likelier"
 NONE_LIKELY = "no explanation is likely"
 
 
+NEAR = 0.5
+"""Probability of an alternative, over that of the verdict, from which both have to be tried."""
+
+
+def is_undecided(confidence: float, same: Iterable[float]) -> bool:
+    """Return whether a verdict does not decide: it is more probably wrong, or an explanation that leaves the same of
+    the recordings is half as likely at least; same: probabilities of those.
+    """
+    return whole_percent(confidence) < DECIDED or any(p >= NEAR * confidence for p in same)
+
+
 def beside_alternatives(confidence: float, others: Iterable[float]) -> str:
     """Return how an undecided verdict stands beside its alternatives, of the known probabilities `others`."""
     most = whole_percent(max(others, default=0.0))

@@ -86,7 +86,7 @@ def test_a_set_that_leaves_the_same_is_as_likely_beside_the_verdict_as_its_evide
     explanation = explained_by_sets(*sets, same=(("viscous_damping",),), share=2.0 / 3.0)
     first, second = alternatives_of(explanation, RIDE, 0.6)[:2]
     assert (first.names, first.same, first.probability) == (("viscous_damping",), True, pytest.approx(0.3))
-    assert first.reason == "their forces are the same in this motion"
+    assert first.reason == "their forces are the same in this motion: test the gauges by themselves"
     assert (second.names, second.same, second.probability) == (("inertia",), False, pytest.approx(0.06))
 
 

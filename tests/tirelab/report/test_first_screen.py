@@ -104,6 +104,18 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
 
 
+def test_what_leaves_the_same_is_told_in_the_headline_where_it_is_half_as_likely() -> None:
+    told = diagnosis({"deflection_lag": 20.0}, 0.58, alternatives=[["viscous_damping"], ["inertia"]])
+    details = [{"probability": p, "same": same} for p, same in ((0.3, True), (0.05, False))]
+    told["verdict"]["alternative_details"] = details
+    assert first_screen.headline(told) == "Undecided: deflection lag or viscous damping"
+    assert first_screen.lead(told) == (
+        "These recordings cannot decide between the explanations; the likeliest one is shown."
+    )
+    details[0]["probability"] = 0.28
+    assert first_screen.headline(told) == "Deflection lag, 4 % of the load"
+
+
 def test_alarm_is_where_something_is_wrong() -> None:
     def alarms(**errors: float | None) -> dict[str, str]:
         shown = first_screen.figures(diagnosis({"inertia": 9.0}, **errors))
