@@ -212,7 +212,8 @@ class Verdict:
             "size": effect_size(effect.name, self.tire, self.baseline, self.recordings),
         }
         if effect.name == REFITTED_LAW:
-            entry["law"] = [change.to_dict() for change in self._law()]
+            # A curve has no A and B; those of the power law below it are next to nothing.
+            entry["law"] = [] if self.baseline.curve else [change.to_dict() for change in self._law()]
         return entry
 
     def page_content(self) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def effect_shown(
                 draw_sketch(sketch, parameter) if sketch else "",
             )
             for parameter, e in effect["parameters"].items()
-            if not (effect.get("law") and words.is_of_a_surface(parameter))
+            if not ("law" in effect and words.is_of_a_surface(parameter))
         ],
     }
 

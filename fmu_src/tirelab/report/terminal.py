@@ -74,7 +74,7 @@ def _effect(effect: Mapping[str, Any], report: str, kind: str) -> list[Table | T
     name = effect["name"]
     title = f"{titles.full_title(name)}, without it {words.percent(effect['share'])} of the error comes back"
     lines: list[Table | Text] = [Text(title, style="dim")]
-    if not effect.get("law"):
+    if "law" not in effect:
         parameters = _table("", "", "")
         parameters.show_header = False
         for parameter, e in effect["parameters"].items():
@@ -84,7 +84,8 @@ def _effect(effect: Mapping[str, Any], report: str, kind: str) -> list[Table | T
     surfaces = _table("surface", "A before", "A after [N/cm^B]", "B before", "B after")
     for row in (words.law_row(entry, kind) for entry in effect["law"]):
         surfaces.add_row(*(row[k] for k in ("surface", "A_before", "A_after", "B_before", "B_after")))
-    lines.append(surfaces)
+    if effect["law"]:
+        lines.append(surfaces)
     others = {p: e for p, e in effect["parameters"].items() if not words.is_of_a_surface(p)}
     for constant in words.OF_A_PART:
         if (e := others.pop(constant, None)) is not None:

@@ -44,6 +44,9 @@ def test_a_refitted_law_is_shown_by_a_and_b_and_not_by_their_logarithms() -> Non
     assert shown["law"][0]["surface"] == "flat ground"
     assert effect_shown(given, {}, "part")["law"][0]["surface"] == "the part"
     assert "not missing physics" in shown["statement"]
+    of_curve = effect_shown({**given, "law": []}, {})
+    assert [row[0] for row in of_curve["parameters"]] == ["bend"]
+    assert of_curve["law"] == []
 
 
 def test_a_sketch_that_would_show_one_curve_says_so() -> None:

@@ -38,6 +38,16 @@ def test_parameters_are_printed_with_their_meaning(kinds: dict[str, Any]) -> Non
     assert "slip force 30.10 ± 0.60 N friction whatever the load: half the loop's height" in text
 
 
+def test_the_law_of_a_curve_has_no_constants_of_a_power(kinds: dict[str, Any]) -> None:
+    """Those of the power law below a part's curve are next to nothing, and say nothing."""
+    diagnosis = kinds["two"].diagnosis
+    law = {**next(e for e in diagnosis["verdict"]["effects"] if e["name"] == "recalibration"), "law": []}
+    text = printed({**diagnosis, "verdict": {**diagnosis["verdict"], "effects": [law]}})
+    assert "A before" not in text
+    assert "log factor" not in text
+    assert "and 1 constants of its shape: the curve is in report.html" in text
+
+
 def test_what_to_do_next_is_said_as_on_the_page(kinds: dict[str, Any]) -> None:
     undecided = kinds["alternatives"].diagnosis
     text = printed(undecided)
