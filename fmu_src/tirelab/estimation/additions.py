@@ -12,7 +12,7 @@ from scipy.linalg import solve_triangular
 from ..regressors.dataset import Dataset
 from ..regressors.draws import strengthened
 from ..regressors.signature import LAW, Signature
-from ..selection.search import PRIOR_ODDS, Discrepancy
+from ..selection.search import Discrepancy
 from .fit import Fit
 from .problem import law_start, with_readings
 
@@ -70,17 +70,15 @@ def additions(
     return found
 
 
-def can_follow(signature: Signature, explained: FloatArray, base: Fit, variance: float) -> bool:
-    """Return whether a candidate, added to a fit, may explain all of what another one does, `explained` (m,).
-
-    What is left of that outside its columns and the slopes of the fit (see `Fit.slopes`) is then worth less in log
-    likelihood, at this V, than the prior odds of an effect.
+def not_followed(signature: Signature, explained: FloatArray, base: Fit, variance: float) -> float:
+    """Return what a candidate, added to a fit, cannot explain at least of what another one does, `explained` (m,): a
+    log likelihood at this V, of the part outside its columns and the slopes of the fit (see `Fit.slopes`).
     """
     columns = np.concatenate([signature.columns, base.slopes], axis=1)
     vectors, values, _ = np.linalg.svd(columns, full_matrices=False)
     vectors = vectors[:, values > 1e-9 * values[0]]
     left = explained - vectors @ (vectors.T @ explained)
-    return 0.5 * float(left @ left) / variance < PRIOR_ODDS
+    return 0.5 * float(left @ left) / variance
 
 
 def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepancy) -> list[float]:

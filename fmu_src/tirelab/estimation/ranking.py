@@ -19,8 +19,8 @@ from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset, Samples
 from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn_beside
 from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
-from .additions import additions, can_follow, predicted_gains
-from .fit import LEAST_GAIN, Fit, fitted
+from .additions import additions, not_followed, predicted_gains
+from .fit import BARE_MENTION, LEAST_GAIN, Fit, fitted
 from .held_out import HeldOutRecordings, predicted
 from .problem import Values
 
@@ -259,9 +259,7 @@ def begun(
 
 
 def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
-    """Return the sets that can still win, fitted and ranked, from those to begin with; alike: returns the effects that
-    the motion cannot distinguish from one.
-    """
+    """Return the sets that can still win, fitted and ranked; alike: effects that a motion does not tell from one."""
     sets.followed.add(nothing := frozenset[str]())
     if nothing in sets.fits:
         _fit_neighbours(sets, nothing)
@@ -289,9 +287,10 @@ def _fit_alike(sets: FittedSets, best: Fit, alike: Callable[[str], Sequence[str]
             continue
         explained = less.residual - best.residual
         others = {n: s for n, s in sets.beside(less).items() if n not in best.names and not s.silent}
-        for other, signature in others.items():
-            if other in alike(name) or can_follow(signature, explained, less, best.variance):
-                sets.add(less, other)
+        missed = {n: not_followed(s, explained, less, best.variance) for n, s in others.items()}
+        nearest = sorted((n for n in others if missed[n] < BARE_MENTION), key=missed.__getitem__)[:SWAPPED]
+        for other in [n for n in others if n in nearest or n in alike(name)]:
+            sets.add(less, other)
 
 
 def _depends(name: str, beside: Sequence[str]) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.estimation.additions import additions, can_follow, predicted_gains
+from tirelab.estimation.additions import additions, not_followed, predicted_gains
 from tirelab.estimation.fit import fitted
 from tirelab.regressors.dataset import Dataset
 from tirelab.regressors.signature import Signature
@@ -53,11 +53,14 @@ def test_a_candidate_follows_its_own_response_and_what_a_fitted_parameter_does_b
     damper, law = (next(s for s in signatures if s.name == n) for n in ("viscous_damping", "recalibration"))
     nothing = fitted(dataset, [{}], noise, noise.highest, -np.inf)
     damped = 100.0 * damper.mean
-    assert can_follow(damper, damped, nothing, 1.0)
-    assert not can_follow(law, damped, nothing, 1.0)
+    assert not_followed(damper, damped, nothing, 1.0) == pytest.approx(0.0, abs=1e-6)
+    assert not_followed(law, damped, nothing, 1.0) > 1e3
+    assert not_followed(law, damped, nothing, 4.0) == pytest.approx(
+        0.25 * not_followed(law, damped, nothing, 1.0)
+    )
     # A thousandth of it is less than the noise and worth nothing, whoever follows it.
-    assert can_follow(law, 1e-3 * damper.mean, nothing, 1.0)
+    assert not_followed(law, 1e-3 * damper.mean, nothing, 1.0) < 0.01
     beside = fitted(
         dataset, [{"viscous_damping": (500.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)}], noise, 1.0, -np.inf
     )
-    assert can_follow(law, 10.0 * beside.slopes[:, 0], beside, 1.0)
+    assert not_followed(law, 10.0 * beside.slopes[:, 0], beside, 1.0) == pytest.approx(0.0, abs=1e-6)
