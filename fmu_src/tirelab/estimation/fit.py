@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset
@@ -20,7 +20,6 @@ from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
 from .evidence import Linearised, laplace_evidence
 from .minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
 from .problem import EstimationProblem, Values, form_errors, law_start, problem_of, smooth_functions
-from .valid_ranges import beyond_range
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]
@@ -231,6 +230,18 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         1.0,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
-        beyond=beyond_range(problem, held, found.positions),
+        beyond=_beyond(problem, held, found.positions),
     )
     return fit.with_discrepancy(discrepancy)
+
+
+def _beyond(problem: EstimationProblem, held: NDArray[np.bool_], positions: FloatArray) -> tuple[str, ...]:
+    """Return the effects with a strength held (k,) at a limit of its valid range, other than where they vanish."""
+    found = []
+    for i in (i for i in np.flatnonzero(held) if problem.parameters[i].owner != LAW):
+        free = problem.parameters[i]
+        parameter = CATALOGUE[free.owner].parameters[free.index]
+        limit = parameter.minimum if positions[i] <= free.low else parameter.maximum
+        if parameter.role == "strength" and parameter.neutral != limit:
+            found.append(free.owner)
+    return tuple(dict.fromkeys(found))
