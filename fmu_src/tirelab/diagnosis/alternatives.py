@@ -91,8 +91,9 @@ def alternatives_of(
         beside = confidence * e.probability / max(own.probability, 1e-300)
         equal = (with_confounded - with_same) / count if alike else 0.0
         left = (1.0 - with_confounded) * e.probability / whole
-        covered += beside if e.names in same else equal + left
-        stated = beside if e.names in same else equal + min(left, beside)
+        shared = min(beside, with_same)
+        covered += shared if e.names in same else equal + left
+        stated = shared if e.names in same else equal + min(left, beside)
         reason = reason_of(best, e.names, explanation, dataset, limits)
         found.append(Alternative(e.names, own.log_evidence - e.log_evidence, reason, stated, e.names in same))
     found.sort(key=lambda a: (not a.same, a.names not in explanation.confounded))

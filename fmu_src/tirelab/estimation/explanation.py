@@ -133,7 +133,7 @@ class Explanation:
     def share(self) -> float:
         """Probability of the set over that of itself and of all that leave the same, which no recording changes."""
         others = sum(e.probability for e in self.evidence if e.names in self.same)
-        return self.probability / (self.probability + others) if others else 1.0
+        return self.probability / (self.probability + others) if self.probability and others else 1.0
 
     def was_fitted(self, names: Sequence[str]) -> bool:
         """Whether a set was fitted, its effects within their valid ranges."""

@@ -90,6 +90,14 @@ def test_a_set_that_leaves_the_same_is_as_likely_beside_the_verdict_as_its_evide
     assert (second.names, second.same, second.probability) == (("inertia",), False, pytest.approx(0.06))
 
 
+def test_what_leaves_the_same_as_a_verdict_that_is_far_behind_has_no_more_than_both() -> None:
+    """Where the verdict's own evidence is nothing beside another set's, its confidence is all there is to share."""
+    sets = (("deflection_lag", 0.0, 0.0), ("viscous_damping", 3.0, 0.2), ("inertia", 9.0, 0.8))
+    explanation = explained_by_sets(*sets, same=(("viscous_damping",),))
+    damping = alternatives_of(explanation, RIDE, 0.3)[0]
+    assert (damping.names, damping.probability) == (("viscous_damping",), pytest.approx(0.3))
+
+
 def test_an_effect_is_no_surer_than_the_alternatives_without_it_leave() -> None:
     """Two of three alternatives lack the lag, with 0.12 and 0.05 together; a fourth one's probability is not known."""
     lag, law = (NamedEffect(n, {}, 0.5, 0.96) for n in ("deflection_lag", "recalibration"))
