@@ -145,7 +145,10 @@ def reason_of(
             "they depend on the deflection only in this motion: load and unload to two depths, at two speeds"
         )
     if tuple(other) in explanation.same:
-        return f"{SAME}: {OF_AN_INSTRUMENT}" if any("reading" in _traits(n) for n in between) else SAME
+        if any("reading" in _traits(n) for n in between):
+            return f"{SAME}: {OF_AN_INSTRUMENT}"
+        if not explanation.excitation.one_speed:
+            return SAME
     if "slow" in common:
         return "they all change slowly with time: repeat the first cycle after a rest"
     if {"loop", "rate"} & set.union(set(), *differing):

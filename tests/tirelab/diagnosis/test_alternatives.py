@@ -90,6 +90,15 @@ def test_a_set_that_leaves_the_same_is_as_likely_beside_the_verdict_as_its_evide
     assert (second.names, second.same, second.probability) == (("inertia",), False, pytest.approx(0.06))
 
 
+@pytest.mark.parametrize(
+    ("one_speed", "said"), [(True, "one speed at each deflection only: "), (False, "their forces")]
+)
+def test_what_leaves_the_same_at_one_speed_is_told_apart_by_another(one_speed: bool, said: str) -> None:
+    sets = (("viscous_damping", 0.0, 0.6), (*LOOP, -0.5, 0.4))
+    explanation = explained_by_sets(*sets, same=(LOOP,), share=0.6, one_speed=one_speed)
+    assert alternatives_of(explanation, RIDE, 0.5)[0].reason.startswith(said)
+
+
 def test_what_leaves_the_same_as_a_verdict_that_is_far_behind_has_no_more_than_both() -> None:
     """Where the verdict's own evidence is nothing beside another set's, its confidence is all there is to share."""
     sets = (("deflection_lag", 0.0, 0.0), ("viscous_damping", 3.0, 0.2), ("inertia", 9.0, 0.8))
