@@ -175,9 +175,14 @@ def _stated(content: Mapping[str, Any], folder: Path) -> Stated:
             for effect in verdict["effects"]
         },
         remainder=_remainder(verdict.get("remainder")),
-        same=sum(
-            _probability(d["probability"]) for d in verdict.get("alternative_details", []) if d.get("same")
-        ),
+        same=stated_of_same(verdict),
+    )
+
+
+def stated_of_same(verdict: Mapping[str, Any]) -> float:
+    """Return the probability of all alternatives of a `verdict` of diagnosis.json that leave the same as it."""
+    return sum(
+        _probability(d["probability"]) for d in verdict.get("alternative_details", []) if d.get("same")
     )
 
 

@@ -70,14 +70,18 @@ def additions(
     return found
 
 
+def outside(columns: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Return the function that takes out of a curve (m,) what columns (m, n) follow of it, with any coefficients."""
+    vectors, values, _ = np.linalg.svd(columns, full_matrices=False)
+    vectors = vectors[:, values > 1e-9 * values[0]]
+    return lambda curve: np.asarray(curve - vectors @ (vectors.T @ curve))
+
+
 def not_followed(signature: Signature, explained: FloatArray, base: Fit, variance: float) -> float:
     """Return what a candidate, added to a fit, cannot explain at least of what another one does, `explained` (m,): a
     log likelihood at this V, of the part outside its columns and the slopes of the fit (see `Fit.slopes`).
     """
-    columns = np.concatenate([signature.columns, base.slopes], axis=1)
-    vectors, values, _ = np.linalg.svd(columns, full_matrices=False)
-    vectors = vectors[:, values > 1e-9 * values[0]]
-    left = explained - vectors @ (vectors.T @ explained)
+    left = outside(np.concatenate([signature.columns, base.slopes], axis=1))(explained)
     return 0.5 * float(left @ left) / variance
 
 

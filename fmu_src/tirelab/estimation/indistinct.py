@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..regressors.excitation import Excitation
 from ..regressors.signature import AS_GOOD, LAW, Signature, size_of
 from ..selection.search import LOST, PRIOR_ODDS
+from .additions import outside
 from .fit import BARE_MENTION, Fit
 from .ranking import Ranking
 
@@ -25,12 +26,10 @@ def followed_by_law(signatures: Sequence[Signature], misfit: FloatArray, varianc
     law = next((s for s in signatures if s.name == LAW), None)
     if law is None:
         return ()
-    vectors, values, _ = np.linalg.svd(law.columns, full_matrices=False)
-    vectors = vectors[:, values > 1e-9 * values[0]]
-    found = []
+    found, beside_law = [], outside(law.columns)
     for other in (s for s in signatures if s.name != LAW and not s.silent):
         curve = other.mean * size_of(misfit) / max(size_of(other.mean), 1e-300)
-        beyond = curve - vectors @ (vectors.T @ curve)
+        beyond = beside_law(curve)
         if 0.5 * float(beyond @ beyond) / variance < PRIOR_ODDS:
             found.append(other.name)
     return tuple(found)

@@ -80,7 +80,7 @@ def break_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> 
 
 
 LOST = 2.0
-"""A lost reading is this many times as far from both its neighbours as any other two neighbours are apart."""
+"""A lost reading is this many times as far from the median of those around as any other two neighbours are apart."""
 
 RARE = 0.02
 """Most of the readings that may be lost; more are how the gauge reads."""

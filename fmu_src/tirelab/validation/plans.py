@@ -38,6 +38,7 @@ from ..planning.plan import RecordingPlan, plan_recordings
 from ..planning.rig import Rig
 from ..planning.waveforms import sample_times, slow_triangles
 from ..recordings.recording import Recording
+from ..report.words import DECIDED, NEAR
 from .baseline import baseline_tire
 from .folders import read_json
 from .metrics import COVERAGE, RESAMPLES
@@ -50,12 +51,6 @@ DRAWS, APART = 8, 100_000
 
 MOST_SURFACES = 2
 """Surfaces of a trial that are mounted."""
-
-DECIDED = 0.5
-"""Least confidence of a verdict that decides."""
-
-NEAR = 0.5
-"""Probability of an alternative, over that of the verdict, from which an engineer would have to try both."""
 
 ARMS = {
     "planned": "after the plan",

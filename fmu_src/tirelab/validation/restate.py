@@ -18,6 +18,7 @@ from typing import Any
 import click
 
 from ..diagnosis.confidence import confidence_of, probability_of_effect
+from ..diagnosis.diagnosis_file import stated_of_same
 from .calibration import confidence_pairs, reliability, skill
 from .folders import Folders, read_json
 from .score import Score
@@ -29,7 +30,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 def restated(verdict: Mapping[str, Any]) -> float:
     """Return the confidence of a `verdict` of diagnosis.json by the present weights."""
     named, doubted = ([_of_effect(e) for e in verdict[own]] for own in ("effects", "doubted"))
-    same = sum(d["probability"] for d in verdict.get("alternative_details", []) if d.get("same"))
+    same = stated_of_same(verdict)
     share = verdict["confidence"] / (verdict["confidence"] + same) if same else 1.0
     return confidence_of(verdict["grounds"], named, doubted, share)
 

@@ -6,23 +6,10 @@ from itertools import combinations
 from typing import Any
 
 import pytest
+from first_screens import diagnosis
 from radialtire import CATALOGUE
 from tirelab.diagnosis.contradiction import Contradiction
 from tirelab.report import first_screen
-
-
-def diagnosis(
-    sizes: dict[str, float | None], confidence: float = 0.95, load: float | None = 500.0, **more: Any
-) -> dict[str, Any]:
-    """A diagnosis in which each effect adds so many newtons."""
-    fit = {"noise": 6.0, "before": 60.0, "after": 6.1, "held_out_before": 61.0, "held_out_after": 6.2}
-    effects = [{"name": name, "share": 0.5, "size": size} for name, size in sizes.items()]
-    verdict: dict[str, Any] = {"effects": effects, "confidence": confidence, "remainder": {"rms": 20.0}}
-    verdict |= {"alternatives": [], "unexplained": False, "separating_test": None}
-    return {
-        "verdict": {**verdict, **{k: v for k, v in more.items() if k in verdict}},
-        "fit": {**fit, "load": load, **{k: v for k, v in more.items() if k in fit}},
-    }
 
 
 @pytest.mark.parametrize(
@@ -71,49 +58,6 @@ def test_no_headline_is_longer_than_its_line(count: int, confidence: float) -> N
         line = first_screen.headline(told)
         assert 0 < len(line) <= 70, line
         assert "_" not in line
-
-
-def test_where_the_recordings_cannot_decide_that_is_the_headline() -> None:
-    doubtful = {"alternatives": [["viscous_damping"]]}
-    assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.49, **doubtful)).startswith("Undecided: ")
-    assert first_screen.headline(diagnosis({"inertia": 9.0}, 0.51, **doubtful)).startswith("Inertia, ")
-    assert "cannot decide" in first_screen.lead(diagnosis({"inertia": 9.0}, 0.49, **doubtful))
-
-
-def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
-    told = diagnosis(
-        {"viscoelastic_relaxation": 20.0, "recalibration": 5.0},
-        0.1,
-        alternatives=[
-            ["viscoelastic_relaxation"],
-            ["viscoelastic_relaxation", "inertia"],
-            ["mullins_softening"],
-        ],
-    )
-    first = told["verdict"]["effects"][0]
-    first["probability"] = 0.97
-    assert first_screen.headline(told) == "Relaxation; undecided: refitted law or inertia"
-    assert first_screen.lead(told).startswith("The force relaxes")
-    assert "cannot decide what else acts" in first_screen.lead(told)
-    assert "the likeliest one is shown" in first_screen.lead(told)
-    told["verdict"]["alternative_details"] = [{"probability": None}, {"probability": 0.5}]
-    assert "an alternative is likelier" in first_screen.lead(told)
-    told["verdict"]["alternative_details"] = [{"probability": 0.3}]
-    assert "no explanation is likely" in first_screen.lead(told)
-    first["probability"] = 0.6
-    assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
-
-
-def test_what_leaves_the_same_is_told_in_the_headline_where_it_is_half_as_likely() -> None:
-    told = diagnosis({"deflection_lag": 20.0}, 0.58, alternatives=[["viscous_damping"], ["inertia"]])
-    details = [{"probability": p, "same": same} for p, same in ((0.3, True), (0.05, False))]
-    told["verdict"]["alternative_details"] = details
-    assert first_screen.headline(told) == "Undecided: deflection lag or viscous damping"
-    assert first_screen.lead(told) == (
-        "These recordings cannot decide between the explanations; the likeliest one is shown."
-    )
-    details[0]["probability"] = 0.28
-    assert first_screen.headline(told) == "Deflection lag, 4 % of the load"
 
 
 def test_alarm_is_where_something_is_wrong() -> None:
