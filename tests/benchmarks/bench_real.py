@@ -1,10 +1,11 @@
-"""The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT]
+"""The engine on recordings that others made: python tests/benchmarks/bench_real.py REAL [--only TEXT] [--given]
 
 REAL holds the folders told in examples/real_recordings.py, programmed_spring_static
 (github.com/harrislab-brown/CyberDiver, data/validation, CC BY-SA 4.0) and vhb4910, an acrylic elastomer that is pulled
 (github.com/Chongran-Zhao/VHB4910_data, to be cited, no licence told). More files of the same repositories may lie
 beside theirs; a folder that is not there is passed over. Dampers, pistons and springs are read as they are; errors of
-indentations are printed in nanonewtons.
+indentations are printed in nanonewtons. For dampers and pistons, plain least squares on the same fitted samples are
+printed too. With --given, the diagnosis is given the held-out samples as such, as `tirelab diagnose --held-out` does.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from radialtire import PowerLaw, TireModel
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
 from indentations import indentation, power_law_fit, read_hysitron, recorded
 from real_recordings import part
+from scipy.optimize import minimize_scalar
 from strokes import piston_recording, preloaded, signed
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.identification.part_laws import fit_laws
@@ -36,7 +38,10 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Real:
-    """fitted: samples of `whole` that are fitted; kept: held-out ones; unit [N]: of what is printed."""
+    """fitted: samples of `whole` that are fitted; kept: held-out ones; unit [N]: of what is printed.
+
+    moving: whether plain least squares of a strut (`strut`) mean something for it
+    """
 
     name: str
     whole: Recording
@@ -45,6 +50,7 @@ class Real:
     tire: TireModel
     unit: float
     reference: str
+    moving: bool = False
 
 
 def law(coefficient: float, exponent: float) -> TireModel:
@@ -59,7 +65,9 @@ def damper(folder: Path, name: str, reference: str) -> Real:
     half = len(own) // 2
     fitted = part(own, slice(0, half))
     line = next(fit for fit in fit_laws([fitted]) if fit.name == "linear")
-    return Real(name, own, slice(0, half), slice(half, None), tire_of(line, [fitted], name), 1.0, reference)
+    return Real(
+        name, own, slice(0, half), slice(half, None), tire_of(line, [fitted], name), 1.0, reference, True
+    )
 
 
 def piston(path: Path, reference: str) -> Real:
@@ -67,7 +75,7 @@ def piston(path: Path, reference: str) -> Real:
     own = piston_recording(path)
     half = len(own) // 2
     tire = preloaded(float(own.force[:half].mean()))
-    return Real(own.name, own, slice(0, half), slice(half, None), tire, 1.0, reference)
+    return Real(own.name, own, slice(0, half), slice(half, None), tire, 1.0, reference, True)
 
 
 def springs(path: Path) -> list[Real]:
@@ -184,6 +192,33 @@ def reals(root: Path) -> Iterator[Callable[[], Real]]:
         yield lambda: indenter(nano)
 
 
+def strut(recording: Recording, fitted: slice) -> FloatArray:
+    """Return the residual [N] of F0 + k x + c v + S z by least squares on the fitted samples, z the state of a Dahl
+    friction whose reach is searched for between 1e-4 and 1 of the range of the deflection.
+    """
+    x, force = recording.deflection, recording.force
+    step = np.diff(x, prepend=x[0])
+    others = [np.ones_like(x), x, np.gradient(x, recording.time)]
+
+    def residual(reach: float) -> FloatArray:
+        keep = np.exp(-np.abs(step) / (np.exp(reach) * float(np.ptp(x))))
+        state, z = 0.0, np.empty_like(x)
+        for i, way in enumerate(np.sign(step)):
+            state = way + keep[i] * (state - way)
+            z[i] = state
+        columns = np.stack([*others, z], axis=1)
+        values = np.linalg.lstsq(columns[fitted], force[fitted], rcond=None)[0]
+        return np.asarray(force - columns @ values)
+
+    def left(reach: float) -> float:
+        return rms(residual(reach)[fitted])
+
+    tried = np.linspace(np.log(1e-4), 0.0, 25)
+    best = float(tried[np.argmin([left(reach) for reach in tried])])
+    near = (best - tried[1] + tried[0], best + tried[1] - tried[0])
+    return residual(float(minimize_scalar(left, bounds=near, method="bounded").x))
+
+
 def rms(values: FloatArray) -> float:
     """Root mean square."""
     return float(np.sqrt(np.mean(values**2)))
@@ -196,6 +231,7 @@ def main() -> None:
     )
     parser.add_argument("root", type=Path)
     parser.add_argument("--only", default="")
+    parser.add_argument("--given", action="store_true")
     given = parser.parse_args()
     for make in reals(given.root):
         real = make()
@@ -204,7 +240,7 @@ def main() -> None:
         w, s = real.whole, real.fitted
         fitted = part(w, s)
         began = time.process_time()
-        found = diagnose([fitted], real.tire)
+        found = diagnose([fitted], real.tire, held_out=[part(w, real.kept)] if given.given else ())
         seconds = time.process_time() - began
         rows = [
             (rms((w.force - simulate(tire, w))[k]) / real.unit)
@@ -217,6 +253,12 @@ def main() -> None:
             f"fitted {rows[0]:.4g} -> {rows[1]:.4g}, held-out {rows[2]:.4g} -> {rows[3]:.4g}, noise {noise:.3g}; "
             f"{seconds:.1f} s   [{real.reference}]"
         )
+        if real.moving:
+            plain = strut(w, s)
+            fit, other = (rms(plain[samples]) / real.unit for samples in (s, real.kept))
+            print(
+                f"             least squares, F0 + k x + c v + Dahl: fitted {fit:.4g}, held-out {other:.4g}"
+            )
         for effect in found.effects:
             print(
                 f"             {effect.name}: probability {effect.probability:.2f}, share {effect.share:.3f}"
