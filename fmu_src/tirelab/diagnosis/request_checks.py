@@ -46,7 +46,10 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                 first, last = max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1])
                 count = int(np.sum((one.time >= first) & (one.time <= last)))
                 shared = f"{first:.6g} to {last:.6g} s" if one.timed else f"{count} sample{'s' * (count > 1)}"
-                raise TirelabError(f"{other_file} and {file} share {shared}; give each part of a file once")
+                raise TirelabError(
+                    f"{other_file} and {file} share {shared}; give each part of a file once "
+                    "(a range includes both ends)"
+                )
 
 
 def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple[str, ...]:

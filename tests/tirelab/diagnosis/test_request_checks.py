@@ -38,7 +38,9 @@ def test_parts_of_a_file_may_touch_nothing_of_each_other(tmp_path: Path) -> None
     with pytest.raises(TirelabError, match="share 5 to 9 s; give each part of a file once"):
         check_apart([(first, part(0.0, 9.0, source=file)), (second, part(5.0, 12.0, source=file))])
     one, other = (replace(part(*ends, source=file), timed=False) for ends in ((0.0, 9.0), (9.0, 12.0)))
-    with pytest.raises(TirelabError, match="share 1 sample; give each part of a file once"):
+    with pytest.raises(
+        TirelabError, match=r"share 1 sample; give each part of a file once \(a range includes both ends\)"
+    ):
         check_apart([(first, one), (second, other)])
 
 
