@@ -24,10 +24,10 @@ from typing import NamedTuple
 
 from .parameter import Parameter
 
-TRAITS = ("static", "rate", "loop", "localized", "slow", "reading", "law", "air")
-"""What an effect depends on or is: deflection alone; rate or acceleration; loading and unloading differ; acts in a part
-of the range only; changes with the time since the start; is of the instrument and not of the tire; is the elastic law's
-own shape; needs air that carries the load."""
+TRAITS = ("static", "rate", "loop", "rest", "localized", "slow", "reading", "law", "air")
+"""What an effect depends on or is: deflection alone; rate or acceleration; loading and unloading differ; moves the
+force for a while in a hold; acts in a part of the range only; changes with the time since the start; is of the
+instrument and not of the tire; is the elastic law's own shape; needs air that carries the load."""
 
 PLACES = ("deflection", "series", "law", "scale", "parallel", "mass", "reading")
 

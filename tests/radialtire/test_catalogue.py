@@ -120,6 +120,16 @@ def test_effects_stand_in_the_order_of_the_signals_way() -> None:
 
 
 @EFFECTS
+def test_only_what_is_said_to_rest_or_to_be_slow_moves_the_force_in_a_hold(effect: Effect) -> None:
+    """A ramp of half a second to 15 mm, and a hold: half a second later filters have settled, to 1e-6 of the force."""
+    values = [p.start if p.nominal is None else p.nominal for p in effect.parameters]
+    time = np.linspace(0.0, 6.0, 6001)
+    force = drive(tire_with((effect.name, values)), time, 0.015 * np.minimum(2.0 * time, 1.0))
+    moved = float(np.ptp(force[time >= 1.0])) > 1e-6 * float(force.max())
+    assert moved == ("rest" in effect.traits) or "slow" in effect.traits
+
+
+@EFFECTS
 def test_it_is_described(effect: Effect) -> None:
     assert effect.name in CATALOGUE
     assert effect.respond.__module__ == f"radialtire.effects.{effect.name}"

@@ -251,6 +251,6 @@ VISCOELASTIC_RELAXATION = Effect(
     tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",
     imitators=("viscous_damping", "rate_independent_hysteresis", "pressure_leak", "recalibration"),
     source="Fung 1981, section 7.6; no magnitude for bicycle tires was found, bounds wide",
-    traits=("rate", "loop"),
+    traits=("rate", "loop", "rest"),
     form_error=0.0089,
 )

@@ -42,6 +42,9 @@ SAME = "their forces are the same in this motion"
 OF_AN_INSTRUMENT = "test the gauges by themselves"
 """What decides between what an instrument does and what the part does where no motion shows it."""
 
+OF_DEFLECTION = "they depend on the deflection only, and no motion of this part tells them apart"
+"""Why two sets are not told apart that differ in effects of the deflection: there is no test to propose."""
+
 LAW_TRAITS = ("static",)
 """Traits of a refitted law: it depends on deflection and surface only."""
 
@@ -135,10 +138,10 @@ def reason_of(
     between = sorted(set(names) ^ set(other))
     differing = [set(_traits(n)) for n in between]
     common = set.intersection(*differing) if differing else set()
-    lacks = insufficient_excitation(explanation, dataset, limits)
+    lacks = insufficient_excitation(explanation, dataset, limits, hold=_told_by_hold(names, other))
     if "static" in common:
         if not explanation.model.baseline.inflated:
-            return "they depend on the deflection only: no motion of this part tells them apart"
+            return OF_DEFLECTION
         return f"they depend on deflection and surface only: {second_pressure(limits)}"
     if between and all("static" in _traits(n) or explanation.excitation.of_deflection(n) for n in between):
         return (
@@ -158,10 +161,19 @@ def reason_of(
     return "; ".join(lacks) or "the difference is smaller than these recordings can show"
 
 
+def _told_by_hold(names: Sequence[str], other: Sequence[str]) -> bool:
+    """Return whether a hold tells two sets apart: an effect in which they differ moves the force at rest, or some of
+    their effects keep a force there that depends on the way, and others lose theirs.
+    """
+    between = {trait for name in set(names) ^ set(other) for trait in _traits(name)}
+    moving = [{"rate", "loop"} & set(_traits(name)) for name in {*names, *other}]
+    return bool({"rest", "slow"} & between) or ({"loop"} in moving and any("rate" in m for m in moving))
+
+
 def insufficient_excitation(
-    explanation: Explanation, dataset: RawDataset, limits: Limits | None = None
+    explanation: Explanation, dataset: RawDataset, limits: Limits | None = None, *, hold: bool = True
 ) -> list[str]:
-    """Return what the recordings lack to distinguish effects, each with what to record."""
+    """Return what the recordings lack to distinguish effects, each with what to record; hold: whether one may tell."""
     timed = explanation.excitation.timed
     lacks = []
     if not timed:
@@ -175,7 +187,7 @@ def insufficient_excitation(
     rates = [np.abs(e.motion.rate) for e in dataset.experiments]
     typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
     held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
-    if timed and held < LONG_ENOUGH:
+    if hold and timed and held < LONG_ENOUGH:
         lacks.append(f"no hold: hold 10 s at {_hold_level(dataset)}")
     if len({float(d) for e in dataset.experiments for d in np.unique(e.motion.direction)}) == 1:
         lacks.append("no way back: release it as slowly as it was loaded, and load it again")

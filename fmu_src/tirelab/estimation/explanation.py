@@ -48,7 +48,7 @@ FIRST_PART = 0.5
 LIKE_READING = "the noise of the deflection makes as large a response: move faster, or use a finer gauge"
 """Why an effect cannot be shown of which other readings of the motion give another response."""
 
-LIKE_PRELOAD = "it is one force in this motion: the preload of a refitted law is the same"
+LIKE_PRELOAD = "it is one force in this motion, as the preload of a refitted law"
 """The same of a part, whose law has a preload."""
 
 LIKE_GAP = "it is the same as another gap of the part, a constant of the refitted law"

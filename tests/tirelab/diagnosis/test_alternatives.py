@@ -17,6 +17,7 @@ from tirelab.diagnosis.alternatives import (
     no_surer_than_alternatives,
     reason_of,
 )
+from tirelab.diagnosis.outcome import split_reason
 from tirelab.estimation.findings import Evidence, NamedEffect
 from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.samples import RawDataset, raw_dataset_of
@@ -207,7 +208,28 @@ def test_a_second_surface_is_asked_for_only_where_one_can_be_mounted() -> None:
 def test_no_second_pressure_is_asked_for_where_there_is_no_air() -> None:
     part = explained_by_sets(("", 0.0, 1.0), baseline=TireModel(inflated=False))
     said = reason_of(("recalibration",), ("gas_compression",), part, RIDE)
-    assert said == "they depend on the deflection only: no motion of this part tells them apart"
+    assert said == "they depend on the deflection only, and no motion of this part tells them apart"
+    assert split_reason(said) == (said, "")  # not an action
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "told"),
+    [
+        (LOOP, DAMPING, True),  # friction stays, the damper's force is gone
+        (LOOP, ("viscoelastic_relaxation",), True),
+        ((), ("viscoelastic_relaxation",), True),
+        (DAMPING, ("force_lag",), False),  # neither has a force at rest
+        ((), ("inertia",), False),
+        (LOOP, ("mullins_softening",), False),  # both keep theirs
+    ],
+)
+def test_a_hold_is_asked_for_where_it_tells_sets_apart(
+    one: tuple[str, ...], other: tuple[str, ...], told: bool
+) -> None:
+    time, deflection = triangle(samples=180)
+    press = raw_dataset_of([read("press", time, deflection, flat_force(deflection), 4)], TireModel())
+    said = reason_of(one, other, explained_by_sets((" ".join(one), 0.0, 1.0)), press)
+    assert ("hold 10 s" in said) == told
 
 
 @pytest.mark.parametrize(
