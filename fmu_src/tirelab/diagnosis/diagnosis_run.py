@@ -44,7 +44,15 @@ from .outcome import (
     files_read,
     sha256,
 )
-from .request_checks import check_apart, check_depth, check_folder, check_once, copies_told
+from .request_checks import (
+    beyond_fitted,
+    check_apart,
+    check_depth,
+    check_folder,
+    check_once,
+    copies_told,
+    without_time,
+)
 from .simulation_correction import CORRECTION, Believed, believed_of, deliver, simulated_by, write_corrected
 from .verdict import Verdict
 
@@ -223,7 +231,7 @@ def _delivered(
         write_corrected(folder, on_fitted)
         write_corrected(folder, on_kept)
         of_correction = {"corrected_fmu": CORRECTION, "correction": corrected.to_dict()}
-    warnings += _without_time((*fitted, *kept))
+    warnings += [*without_time((*fitted, *kept)), *beyond_fitted(fitted, kept)]
     # The terminal has them among the notes.
     doubts = [f"{r.name}: doubtful: {doubt}" for r in (*fitted, *kept) for doubt in r.doubts]
     report("writing the report")
@@ -311,16 +319,6 @@ def _simulation(
 def _read(file: Path, reading: Reading, progress: Progress) -> Recording:
     progress(f"reading {file.name}")
     return reading(file)
-
-
-def _without_time(recordings: Sequence[Recording]) -> list[str]:
-    """Return a warning where times were made up."""
-    if not (names := [recording.name for recording in recordings if not recording.timed]):
-        return []
-    return [
-        f"the time of {', '.join(names)} was not measured: seconds count samples here, and nothing of rate, time or "
-        "acceleration was judged"
-    ]
 
 
 def _replayed(

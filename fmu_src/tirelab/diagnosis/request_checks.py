@@ -1,7 +1,8 @@
 """What a diagnosis refuses before its work would be lost: files given twice, samples that two parts share, a motion
 that no tire can follow, a folder that cannot be written.
 
-Each check raises TirelabError with one sentence and returns nothing. Copies of a recording are told, not refused.
+Each check raises TirelabError with one sentence and returns nothing. What a request cannot show is told, not refused:
+copies of a recording, times that were made up, deflections that only held-out recordings reach.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
 from ..preprocessing.data_checks import MAJORITY
-from ..preprocessing.noise import FEWEST_EVENTS
+from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
 from ..recordings.zero import quantity_text, refuse_too_deep
@@ -79,6 +80,31 @@ def _runs(recording: Recording) -> NDArray[np.uint64]:
     )
     last = readings.size - FEWEST_EVENTS + 1
     return pl.DataFrame([readings[k : last + k] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()
+
+
+def without_time(recordings: Sequence[Recording]) -> list[str]:
+    """Return a sentence where times were made up."""
+    if not (names := [recording.name for recording in recordings if not recording.timed]):
+        return []
+    return [
+        f"the time of {', '.join(names)} was not measured: seconds count samples here, and nothing of rate, time or "
+        "acceleration was judged"
+    ]
+
+
+def beyond_fitted(fitted: Sequence[Recording], kept: Sequence[Recording]) -> list[str]:
+    """Return a sentence for each held-out recording of which more than NEGLIGIBLE lies beyond all fitted deflections:
+    there its error is one of the law, which nothing showed.
+    """
+    least = min(float(recording.deflection.min()) for recording in fitted)
+    most = max(float(recording.deflection.max()) for recording in fitted)
+    shares = [float(np.mean((r.deflection < least) | (r.deflection > most))) for r in kept]
+    return [
+        f"{100.0 * share:.0f} % of {r.name} lie beyond the fitted deflections, {1e3 * least:.3g} to "
+        f"{1e3 * most:.3g} mm: there the law is extrapolated, and its error says nothing of the effects"
+        for r, share in zip(kept, shares, strict=True)
+        if share > NEGLIGIBLE
+    ]
 
 
 def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], baseline: TireModel) -> None:

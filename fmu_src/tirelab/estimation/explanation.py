@@ -239,7 +239,8 @@ def explain_misfit(
         hidden |= {gap[0].name: LIKE_GAP}
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
-    samples, others = samples_of(recordings, baseline), held_out_of(held_out, baseline)
+    samples = samples_of(recordings, baseline)
+    others = held_out_of(held_out, baseline, samples)
     blocks = FirstSets(dataset, raw, samples, others, FIRST_PART * most_work)
     alike = partial(alike_in, excitation)
     sets = blocks.begun(quiet)

@@ -1,17 +1,25 @@
-"""Recordings to which nothing is fitted, which judge what is."""
+"""Recordings to which nothing is fitted, which judge what is, as far as they move within what is fitted.
+
+Beyond the fitted deflections no law is known: a bend there that no recording showed would count for any effect that
+happens to bend as well.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.samples import Recorded
-from ..regressors.dataset import Dataset, dataset_of, samples_of
+from ..preprocessing.samples import Recorded, surface_numbers
+from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
 from ..selection.search import Discrepancy, discrepancy_of, usual_form_error
 from ..simulation.simulate import SmoothedMotion, simulate
 from .fit import Fit
+
+BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -37,14 +45,38 @@ class HeldOutRecordings:
         return replace(fit, held_out_residual=residual, log_predictive=likelihood)
 
 
-def held_out_of(recordings: Sequence[Recorded], baseline: TireModel) -> HeldOutRecordings | None:
-    """Return the held-out recordings with what the predictive likelihood needs; None where there are none."""
+def held_out_of(
+    recordings: Sequence[Recorded], baseline: TireModel, fitted: Samples
+) -> HeldOutRecordings | None:
+    """Return the held-out recordings with what the predictive likelihood needs; None where there are none, or none that
+    moves within the deflections of those that are fitted.
+    """
     if not recordings:
         return None
-    dataset = dataset_of(recordings, baseline)
-    law = discrepancy_of(dataset.misfit, usual_form_error(baseline)).blurred(dataset.rounding_error)
     motions = samples_of([getattr(r, "whole", r) for r in recordings], baseline).motions
+    dataset = dataset_of(recordings, baseline).counting(_within(fitted.motions, recordings, motions))
+    if not dataset.misfit.size:
+        return None
+    law = discrepancy_of(dataset.misfit, usual_form_error(baseline)).blurred(dataset.rounding_error)
     return HeldOutRecordings(tuple(recordings), motions, dataset, law)
+
+
+def _within(
+    fitted: Sequence[SmoothedMotion], recordings: Sequence[Recorded], motions: Sequence[SmoothedMotion]
+) -> list[BoolArray]:
+    """Return which samples of recordings lie within the deflections that are fitted on their surface, or on all where
+    theirs is none of the fitted ones; motions: of the recordings, with what was before each.
+    """
+    surfaces = surface_numbers([m.surface_radius for m in fitted] + [r.surface_radius for r in recordings])
+    own, others = np.concatenate(surfaces[: len(fitted)]), surfaces[len(fitted) :]
+    deflection = np.concatenate([m.deflection for m in fitted])
+    count = 1 + max(int(number.max()) for number in surfaces)
+    least, most = np.full(count, deflection.min()), np.full(count, deflection.max())
+    for number in np.unique(own):
+        there = deflection[own == number]
+        least[number], most[number] = there.min(), there.max()
+    moved = [m.deflection[-n.size :] for m, n in zip(motions, others, strict=True)]
+    return [(least[n] <= x) & (x <= most[n]) for x, n in zip(moved, others, strict=True)]
 
 
 def predicted(held_out: HeldOutRecordings | None, fit: Fit) -> Fit:

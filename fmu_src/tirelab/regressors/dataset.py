@@ -160,14 +160,18 @@ class Dataset:
         pairs = zip(recordings, self.experiments, strict=True)
         return replace(self, experiments=tuple(read_anew(r, e, self.tire) for r, e in pairs), stages=None)
 
-    def only(self, kept: Sequence[BoolArray]) -> Dataset:
+    def counting(self, kept: Sequence[BoolArray]) -> Dataset:
         """Return the dataset in which only blocks count whose samples are all in `kept` (n,), one array per recording;
         the motion is that of the whole recordings.
         """
-        found = []
-        for e, k in zip(self.experiments, kept, strict=True):
-            found.append(replace(e, counts=e.counts & e.blocks.of(k).all(axis=1)))
-        return replace(self, experiments=tuple(e for e in found if e.counts.any()), stages=None)
+        pairs = zip(self.experiments, kept, strict=True)
+        found = (replace(e, counts=e.counts & e.blocks.of(k).all(axis=1)) for e, k in pairs)
+        return replace(self, experiments=tuple(found), stages=None)
+
+    def only(self, kept: Sequence[BoolArray]) -> Dataset:
+        """Return the same without the recordings of which nothing counts."""
+        counting = self.counting(kept)
+        return replace(counting, experiments=tuple(e for e in counting.experiments if e.counts.any()))
 
 
 def dataset_of(

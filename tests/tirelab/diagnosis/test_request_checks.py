@@ -8,7 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from radialtire import PowerLaw, TireModel
-from tirelab.diagnosis.request_checks import check_apart, check_depth, check_folder, check_once, copies_told
+from tirelab.diagnosis.request_checks import (
+    beyond_fitted,
+    check_apart,
+    check_depth,
+    check_folder,
+    check_once,
+    copies_told,
+)
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import Recording
 
@@ -93,3 +100,19 @@ def test_a_folder_may_be_new_but_not_within_a_file(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
     with pytest.raises(TirelabError, match="taken is a file; name another folder with --out"):
         check_folder(tmp_path / "taken" / "out")
+
+
+def test_what_only_held_out_recordings_reach_is_told() -> None:
+    """A press to 10 mm, and one to 20 mm, of which half the samples lie deeper; one to 10.2 mm lies within."""
+    half, whole, within = (
+        Recording(
+            name,
+            *np.stack([np.arange(101.0), np.linspace(0.0, most, 101)]),
+            np.full(101, np.inf),
+            np.ones(101),
+        )
+        for name, most in (("half", 0.010), ("whole", 0.020), ("within", 0.0102))
+    )
+    (told,) = beyond_fitted([half], [within, whole])
+    assert told.startswith("50 % of whole lie beyond the fitted deflections, 0 to 10 mm")
+    assert beyond_fitted([whole], [half, within]) == []

@@ -291,7 +291,7 @@ def test_held_out_recordings_judge_what_is_fitted() -> None:
             "rate_independent_hysteresis": (10.0, 0.0, 0.003, 0.0, 0.6, 0.0, 1.0, 1.0),
         }.items()
     }
-    held_out = held_out_of([fast], TireModel())
+    held_out = held_out_of([fast], TireModel(), samples_of([slow], TireModel()))
     assert held_out is not None
     damping, friction = (held_out.predicted(fits[name]) for name in fits)
     assert damping.held_out_residual.size == friction.held_out_residual.size == held_out.dataset.misfit.size
@@ -304,7 +304,7 @@ def test_held_out_recordings_judge_what_is_fitted() -> None:
     )
     # A set is priced by e ln(what it leaves), e = 30 effective samples, as far as forms usually miss: 6 % or less.
     assert apart > 30.0 * np.log(0.8 / 0.06)
-    assert held_out_of([], TireModel()) is None
+    assert held_out_of([], TireModel(), samples_of([slow], TireModel())) is None
 
 
 def test_every_set_without_one_of_the_effects_is_fitted(ranking: Ranking, dataset: Dataset) -> None:
