@@ -51,6 +51,7 @@ from .request_checks import (
     check_folder,
     check_once,
     copies_told,
+    pulls_told,
     without_time,
 )
 from .simulation_correction import CORRECTION, Believed, believed_of, deliver, simulated_by, write_corrected
@@ -232,6 +233,7 @@ def _delivered(
         write_corrected(folder, on_kept)
         of_correction = {"corrected_fmu": CORRECTION, "correction": corrected.to_dict()}
     warnings += [*without_time((*fitted, *kept)), *beyond_fitted(fitted, kept)]
+    warnings += pulls_told((*fitted, *kept), verdict.tire) if believed is None else []
     # The terminal has them among the notes.
     doubts = [f"{r.name}: doubtful: {doubt}" for r in (*fitted, *kept) for doubt in r.doubts]
     report("writing the report")

@@ -2,7 +2,7 @@
 that no tire can follow, a folder that cannot be written.
 
 Each check raises TirelabError with one sentence and returns nothing. What a request cannot show is told, not refused:
-copies of a recording, times that were made up, deflections that only held-out recordings reach.
+copies of a recording, times that were made up, deflections that only held-out recordings reach, a tire that pulls.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
 from ..preprocessing.data_checks import MAJORITY
-from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE
+from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE, STANDS_OUT
 from ..recordings.pieces import split_piece
 from ..recordings.recording import Recording
 from ..recordings.zero import quantity_text, refuse_too_deep
@@ -105,6 +105,28 @@ def beyond_fitted(fitted: Sequence[Recording], kept: Sequence[Recording]) -> lis
         for r, share in zip(kept, shares, strict=True)
         if share > NEGLIGIBLE
     ]
+
+
+PULL, PARTS, FEWEST = 0.01, 200, 10
+"""A tire pulls where the mean force of one of so many parts of a recording, of so many samples at least, is below zero
+by this part of the largest, beyond the noise."""
+
+
+def pulls_told(recordings: Sequence[Recording], tire: TireModel) -> list[str]:
+    """Return a sentence for each recording in which a tire pulls, which no effect lets it do; a part may."""
+    told = []
+    for r in () if tire.two_sided else recordings:
+        length = max(len(r) // PARTS, FEWEST)
+        least = float(np.diff(np.cumsum(r.force)[::length]).min(initial=0.0)) / length
+        noise = float(np.std(np.diff(r.force))) / np.sqrt(2.0 * length)
+        if least < -PULL * float(r.force.max()) - STANDS_OUT * noise:
+            zero = quantity_text("force", float(f"{least:.3g}"))
+            told.append(
+                f"the force of {r.name} goes down to {least:.3g} N, and a tire does not pull: if the load cell was "
+                f"not zeroed, give what it reads without load, as in --zero force={zero}; if this is a part that is "
+                "held at both ends, identify it with --part"
+            )
+    return told
 
 
 def check_depth(fitted: Sequence[Recording], kept: Sequence[Recording], baseline: TireModel) -> None:

@@ -15,6 +15,7 @@ from tirelab.diagnosis.request_checks import (
     check_folder,
     check_once,
     copies_told,
+    pulls_told,
 )
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import Recording
@@ -116,3 +117,18 @@ def test_what_only_held_out_recordings_reach_is_told() -> None:
     (told,) = beyond_fitted([half], [within, whole])
     assert told.startswith("50 % of whole lie beyond the fitted deflections, 0 to 10 mm")
     assert beyond_fitted([whole], [half, within]) == []
+
+
+def test_a_tire_that_pulls_is_told_and_a_part_is_not() -> None:
+    """Of 2000 N, 60 are more than a hundredth and 15 are not; nor is the noise, 40 N in the last."""
+    x = 0.02 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 1000)))
+
+    def press(shift: float, sigma: float = 4.0) -> Recording:
+        noise = sigma * np.random.default_rng(1).standard_normal(x.size)
+        return Recording(f"{shift:g}", np.arange(1000.0), x, np.full(1000, np.inf), 1e5 * x + noise + shift)
+
+    presses = [press(0.0), press(-15.0), press(-60.0), press(0.0, 40.0)]
+    (told,) = pulls_told(presses, TireModel())
+    assert told.startswith("the force of -60 goes down to -")
+    assert "--zero force=-" in told
+    assert pulls_told(presses, TireModel(two_sided=True)) == []
