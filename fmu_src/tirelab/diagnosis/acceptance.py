@@ -39,6 +39,7 @@ from ..preprocessing.samples import (
     is_timed,
     raw_dataset_of,
     surface_numbers,
+    within,
 )
 from ..simulation.channels import begun
 from ..simulation.simulate import simulate, smoothed_motion
@@ -180,16 +181,9 @@ def _ways(
 
 
 def _within(kept: Chosen, motions: Sequence[Motion], surfaces: Sequence[IndexArray]) -> list[BoolArray]:
-    """Return which samples lie within the deflections of those that are kept on the same surface."""
-    fits, surface = np.concatenate(kept), np.concatenate(surfaces)
-    deflection = np.concatenate([m.deflection for m in motions])
-    least, most = np.full((2, int(surface.max()) + 1), [[np.inf], [-np.inf]])
-    np.minimum.at(least, surface[fits], deflection[fits])
-    np.maximum.at(most, surface[fits], deflection[fits])
-    return [
-        (m.deflection >= least[own]) & (m.deflection <= most[own])
-        for m, own in zip(motions, surfaces, strict=True)
-    ]
+    """Return which samples lie within the deflections of those that are kept."""
+    placed = [(m.deflection, number) for m, number in zip(motions, surfaces, strict=True)]
+    return within(((x[k], n[k]) for (x, n), k in zip(placed, kept, strict=True)), placed)
 
 
 def _rested(time: FloatArray, rests: BoolArray) -> FloatArray:
@@ -221,20 +215,20 @@ def _parts(
         for residuals in (before, explanation.residuals)
     )
 
-    def within(kept: Chosen) -> list[BoolArray]:
+    def inside_of(kept: Chosen) -> list[BoolArray]:
         return [w & s for w, s in zip(_within(kept, motions, surfaces), seen, strict=True)]
 
     for number in reversed(range(len(recordings))) if len(recordings) > 1 else ():
         kept = [np.full(r.time.size, i != number) for i, r in enumerate(recordings)]
-        if _shows_as_much(kept, before, after, ways, within(kept)):
+        if _shows_as_much(kept, before, after, ways, inside_of(kept)):
             return kept, f"recording {recordings[number].name}"
     kept = [_beginning(b, np.zeros_like(w)) for b, w in zip(before, ways, strict=True)]
-    inside = within(kept)
+    inside = inside_of(kept)
     if _shows_as_much(kept, before, after, ways, inside):
         kept = [k | ~w for k, w in zip(kept, inside, strict=True)]
         return kept, _name_of(kept, recordings)
     ends = [_beginning(b, w) for b, w in zip(before, ways, strict=True)]
-    kept = [k | ~w for k, w in zip(ends, within(ends), strict=True)]
+    kept = [k | ~w for k, w in zip(ends, inside_of(ends), strict=True)]
     few = sum(int(np.sum(~k)) for k in kept) < FEWEST_EVENTS
     return ends if few else kept, "the end of each motion"
 

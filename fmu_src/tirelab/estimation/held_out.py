@@ -1,7 +1,6 @@
 """Recordings to which nothing is fitted, which judge what is, as far as they move within what is fitted.
 
-Beyond the fitted deflections no law is known: a bend there that no recording showed would count for any effect that
-happens to bend as well.
+A bend of the law beyond that, which no recording showed, would count for any effect that happens to bend as well.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.samples import Recorded, surface_numbers
+from ..preprocessing.samples import Recorded, surface_numbers, within
 from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
 from ..selection.search import Discrepancy, discrepancy_of, usual_form_error
 from ..simulation.simulate import SmoothedMotion, simulate
@@ -64,19 +63,14 @@ def held_out_of(
 def _within(
     fitted: Sequence[SmoothedMotion], recordings: Sequence[Recorded], motions: Sequence[SmoothedMotion]
 ) -> list[BoolArray]:
-    """Return which samples of recordings lie within the deflections that are fitted on their surface, or on all where
-    theirs is none of the fitted ones; motions: of the recordings, with what was before each.
+    """Return which samples of recordings are `within` the fitted ones; motions: of the recordings, with what was before
+    each.
     """
     surfaces = surface_numbers([m.surface_radius for m in fitted] + [r.surface_radius for r in recordings])
-    own, others = np.concatenate(surfaces[: len(fitted)]), surfaces[len(fitted) :]
-    deflection = np.concatenate([m.deflection for m in fitted])
-    count = 1 + max(int(number.max()) for number in surfaces)
-    least, most = np.full(count, deflection.min()), np.full(count, deflection.max())
-    for number in np.unique(own):
-        there = deflection[own == number]
-        least[number], most[number] = there.min(), there.max()
-    moved = [m.deflection[-n.size :] for m, n in zip(motions, others, strict=True)]
-    return [(least[n] <= x) & (x <= most[n]) for x, n in zip(moved, others, strict=True)]
+    moved = [m.deflection for m in fitted]
+    moved += [m.deflection[-r.force.size :] for m, r in zip(motions, recordings, strict=True)]
+    placed = list(zip(moved, surfaces, strict=True))
+    return within(placed[: len(fitted)], placed[len(fitted) :])
 
 
 def predicted(held_out: HeldOutRecordings | None, fit: Fit) -> Fit:

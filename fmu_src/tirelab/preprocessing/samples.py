@@ -5,7 +5,7 @@ The sets of effects are compared in blocks of samples instead, see `regressors.d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol, TypeVar
@@ -13,7 +13,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 from radialtire import TireModel
 
-from .motion import FloatArray, IndexArray, Motion, motion_of
+from .motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 
 ROWS = 8000
 """Number of samples in which the misfit is located: evenly spaced, of all recordings together."""
@@ -100,6 +100,10 @@ class RawExperiment:
         return self.coefficient * np.maximum(x, 0.0) ** self.exponent
 
 
+Placed = tuple[FloatArray, IndexArray]
+"""Deflections (n,) [m] and the numbers of their surfaces (see `surface_numbers`)."""
+
+
 @dataclass(frozen=True)
 class RawDataset:
     """All experiments of one diagnosis; radii [m]: of their surfaces; max_deflection [m]: the largest."""
@@ -145,6 +149,21 @@ def surface_numbers(radii: Sequence[FloatArray]) -> list[IndexArray]:
     if known.size > MOST_SURFACES:
         return [np.zeros(own.size, dtype=np.intp) for own in radii]
     return [np.searchsorted(known, own) for own in radii]
+
+
+def within(fitted: Iterable[Placed], asked: Iterable[Placed]) -> list[BoolArray]:
+    """Return which samples lie within the deflections that are fitted on their surface, or on all surfaces where theirs
+    is none of the fitted ones.
+
+    Beyond them no law is known: what it leaves there says nothing of any effect.
+    """
+    (deflection, own), others = map(np.concatenate, zip(*fitted, strict=True)), list(asked)
+    count = 1 + max(int(own.max()), *(int(number.max()) for _, number in others))
+    least, most = np.full(count, deflection.min()), np.full(count, deflection.max())
+    for number in np.unique(own):
+        there = deflection[own == number]
+        least[number], most[number] = there.min(), there.max()
+    return [(least[n] <= x) & (x <= most[n]) for x, n in others]
 
 
 def alone(recording: R) -> R:
