@@ -91,7 +91,7 @@ class DiscriminatingTest:
             return f"{none} at most {differ} ({self.test.name}{place})."
         rate = 1e3 * float(np.abs(np.diff(path) / np.diff(self.test.time)).max())
         first, last = (millimetres(x, float(np.abs(path).max())) for x in (self.begins_at, float(path.max())))
-        begins = f" from {first.removesuffix(' mm')}" if self.begins_at else ""
+        begins = f" from {first.removesuffix(' mm')}" if float(first.split()[0]) else ""
         speed = f"{rate:.0f}" if rate >= 1.0 else number(rate, 1)
         return (
             f"Drive {self.test.name}{begins} to {last}{place}, at up to {speed} mm/s, for "

@@ -317,10 +317,10 @@ def _drive(test: Mapping[str, Any]) -> str:
     if any(test.get(key) is None for key in keys):
         return str(test.get("sentence", ""))
     place = titles.listed([f" on {words.on_surface(radius)}" for radius in test["surfaces"]])
-    begins = test.get("begins_at")
-    begins = f" from {words.number(1e3 * begins)}" if begins else ""
+    first, last = words.edges(test.get("begins_at") or 0.0, test["amplitude"], 1e3)
+    begins = "" if first == "0" else f" from {first}"
     return (
-        f"Record {test['waveform']}{begins} to {words.number(1e3 * test['amplitude'])} mm{place}, at up to "
+        f"Record {test['waveform']}{begins} to {last} mm{place}, at up to "
         f"{words.number(1e3 * test['rate_max'])} mm/s, for {words.number(test['duration'], 2)} s."
     )
 

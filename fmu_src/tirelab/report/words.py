@@ -321,7 +321,7 @@ def span(place: Mapping[str, Any]) -> str:
     factor, name = scaled(str(unit))
     if start == stop:
         return with_unit(_edge(start, factor), name)
-    first, last = _edges(start, stop, factor)
+    first, last = edges(start, stop, factor)
     return with_unit(first if first == last else f"{first} to {last}", name)
 
 
@@ -331,7 +331,7 @@ def where_phrase(place: Mapping[str, Any], *, coordinate_too: bool = True) -> st
     return f"{lead} {span(place)}" if coordinate_too and not is_at_rest(place) else span(place)
 
 
-def _edges(start: float | str, stop: float | str, factor: float) -> tuple[str, str]:
+def edges(start: float | str, stop: float | str, factor: float) -> tuple[str, str]:
     """Return both ends of a span with the decimals of the larger one's third digit; two more where they are alike."""
     if isinstance(start, str) or isinstance(stop, str):
         return _edge(start, factor), _edge(stop, factor)

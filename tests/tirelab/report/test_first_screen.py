@@ -103,6 +103,20 @@ TEST = {
             [],
             "Record sweep to 22.0 mm on flat ground, at up to 250 mm/s, for 60 s.",
         ),
+        (  # the least deflection of a smooth beginning is none
+            diagnosis(
+                {"inertia": 9.0}, 0.6, alternatives=[[]], separating_test={**TEST, "begins_at": 1.6e-9}
+            ),
+            [],
+            "Record sweep to 22.0 mm on flat ground, at up to 250 mm/s, for 60 s.",
+        ),
+        (
+            diagnosis(
+                {"inertia": 9.0}, 0.6, alternatives=[[]], separating_test={**TEST, "begins_at": -0.005}
+            ),
+            [],
+            "Record sweep from −5.0 to 22.0 mm on flat ground, at up to 250 mm/s, for 60 s.",
+        ),
         (
             diagnosis({"inertia": 9.0}, 0.6, alternatives=[[]]),
             ["no hold: hold 10 s at 15 mm; one speed only: repeat at 30 mm/s"],
