@@ -50,8 +50,8 @@ def test_a_surface_has_its_own_deflections_if_it_is_fitted() -> None:
 def test_what_is_slow_in_what_is_left_is_no_evidence() -> None:
     """An amplifier that stands twice the noise off for the whole recording of n samples has a V of 2^2 n / 30.
 
-    A set that leaves 1.8 in place of 2 of it gains (2^2 - 1.8^2) n / 2V = 2.85 in log likelihood. Were it white, V
-    would be what each leaves beyond the noise: 15 ln((2^2 - 1) / (1.8^2 - 1)) = 4.4, and more for the noise in it.
+    A set that leaves 1.8 in place of 2 of it gains (2^2 - 1.8^2) n / 2V = 2.85 in log likelihood. Were it white, V would be
+    what each leaves beyond the noise: 15 ln((2^2 - 1) / (1.8^2 - 1)) = 4.4, and more for the noise in it.
     """
     shallow, held_out = pressed("shallow", 0.0, 0.010), pressed("alike", 0.001, 0.009, seed=3)
     others = held_out_of([held_out], TireModel(), samples_of([shallow], TireModel()))
