@@ -14,7 +14,7 @@ from radialtire import TireModel
 
 from ..preprocessing.samples import Recorded, surface_numbers, within
 from ..regressors.dataset import Dataset, Samples, dataset_of, samples_of
-from ..selection.search import Discrepancy, discrepancy_of, slow_variance, usual_form_error
+from ..selection.search import Discrepancy, discrepancy_of, usual_form_error
 from ..simulation.simulate import SmoothedMotion, simulate
 from .fit import Fit
 
@@ -27,25 +27,21 @@ class HeldOutRecordings:
 
     log p(all) = log p(fitted) + log p(held out | fitted), the latter at the fitted parameters.
     motions: from where each recording begins; dataset: of the recordings; law: of the discrepancy that forms usually
-    leave of their misfit; slow: V of what is slow in what the likeliest set leaves of them, below which nothing is told
+    leave of their misfit
     """
 
     recordings: tuple[Recorded, ...]
     motions: tuple[SmoothedMotion, ...]
     dataset: Dataset
     law: Discrepancy
-    slow: float = 1.0
 
     def predicted(self, fit: Fit) -> Fit:
         """Return a fit with its residual on these recordings and the log likelihood of that at the best V."""
         pairs = zip(self.recordings, self.motions, strict=True)
         left = [r.force - simulate(fit.tire, m, m)[-r.force.size :] for r, m in pairs]
-        return self.judged(replace(fit, held_out_residual=self.dataset.stacked(self.dataset.averaged(left))))
-
-    def judged(self, fit: Fit) -> Fit:
-        """Return a fit with the log likelihood of its residual here, beside the slow noise."""
-        power = float(fit.held_out_residual @ fit.held_out_residual)
-        return replace(fit, log_predictive=self.law.beside_slow(self.slow).profile(power)[0])
+        residual = self.dataset.stacked(self.dataset.averaged(left))
+        likelihood, _ = self.law.profile(float(residual @ residual))
+        return replace(fit, held_out_residual=residual, log_predictive=likelihood)
 
 
 def held_out_of(
@@ -80,21 +76,3 @@ def _within(
 def predicted(held_out: HeldOutRecordings | None, fit: Fit) -> Fit:
     """Return a fit with its residual on held-out recordings, where there are any."""
     return fit if held_out is None else held_out.predicted(fit)
-
-
-def slow_in(held_out: HeldOutRecordings | None, fit: Fit) -> float:
-    """Return the V of what is slow in what a fit leaves of held-out recordings, see `slow_variance`; 1 for none."""
-    if held_out is None:
-        return 1.0
-    return slow_variance(held_out.dataset.apart(fit.held_out_residual), held_out.law.effective, 0.0)
-
-
-def beside_slow(held_out: HeldOutRecordings | None, fit: Fit) -> HeldOutRecordings | None:
-    """Return held-out recordings beside the slow noise that a fit leaves of them."""
-    return None if held_out is None else replace(held_out, slow=slow_in(held_out, fit))
-
-
-def judged(fit: Fit, discrepancy: Discrepancy, held_out: HeldOutRecordings | None) -> Fit:
-    """Return a fit with its evidence under another discrepancy, and its likelihood on held-out recordings anew."""
-    fit = fit.with_discrepancy(discrepancy)
-    return fit if held_out is None else held_out.judged(fit)

@@ -21,7 +21,7 @@ from ..regressors.signature import LAW, Beside, Signature, acts_on_signal, drawn
 from ..selection.search import LOST, MOST_CANDIDATES, PRIOR_ODDS, Discrepancy, discrepancy_of
 from .additions import additions, not_followed, predicted_gains
 from .fit import BARE_MENTION, LEAST_GAIN, Fit, fitted
-from .held_out import HeldOutRecordings, beside_slow, judged, predicted, slow_in
+from .held_out import HeldOutRecordings, predicted
 from .problem import Values
 
 FloatArray = NDArray[np.float64]
@@ -130,7 +130,7 @@ class FittedSets:
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     followed: set[frozenset[str]] = field(default_factory=set)
     count: int = 0
-    assessed: FloatArray = field(default_factory=lambda: np.zeros(3))
+    assessed: FloatArray = field(default_factory=lambda: np.zeros(2))
     assessed_at: int = 0
     gained_at: int = 0
     work: int = 0
@@ -163,23 +163,23 @@ class FittedSets:
         return self.assessed is not before
 
     def _assess(self, by: Fit) -> None:
-        found = np.array([by.form_error, by.slow, slow_in(self.held_out, by)])
+        found = np.array([by.form_error, by.slow])
         if np.all((self.assessed / USUAL_MOVED <= found) & (found <= self.assessed * USUAL_MOVED)):
             return
-        self.assessed, (self.discrepancy, self.held_out) = found, self._beside(by)
-        self.fits = {n: judged(fit, self.discrepancy, self.held_out) for n, fit in self.fits.items()}
+        self.assessed, self.discrepancy = found, self._beside(by)
+        self.fits = {names: fit.with_discrepancy(self.discrepancy) for names, fit in self.fits.items()}
 
-    def _beside(self, fit: Fit) -> tuple[Discrepancy, HeldOutRecordings | None]:
-        return self.noise.above(fit.form_error).beside_slow(fit.slow), beside_slow(self.held_out, fit)
+    def _beside(self, fit: Fit) -> Discrepancy:
+        return self.noise.above(fit.form_error).beside_slow(fit.slow)
 
     def _would_win(self, fit: Fit) -> bool:
         """Whether a set would be ahead of the best one beside the slow noise that it leaves itself."""
-        ratios = self.assessed[1:] / np.maximum([fit.slow, slow_in(self.held_out, fit)], 1.0)
-        most = 0.5 * self.noise.effective * float(np.log(np.maximum(ratios, 1.0)).sum())
-        if ratios.max() < USUAL_MOVED or self.best_fit.log_posterior - fit.log_posterior > most:
+        best, ratio = self.best_fit, self.assessed[1] / max(fit.slow, 1.0)
+        most = 0.5 * self.noise.effective * np.log(max(ratio, 1.0))
+        if ratio < USUAL_MOVED or best.log_posterior - fit.log_posterior > most:
             return False
         own = self._beside(fit)
-        return judged(fit, *own).log_posterior > judged(self.best_fit, *own).log_posterior
+        return fit.with_discrepancy(own).log_posterior > best.with_discrepancy(own).log_posterior
 
     def posterior(self, names: frozenset[str]) -> float:
         return self.fits[names].log_posterior

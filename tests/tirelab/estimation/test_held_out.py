@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from drives import flat_force
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.estimation.fit import fitted
-from tirelab.estimation.held_out import HeldOutRecordings, beside_slow, held_out_of, judged, slow_in
+from tirelab.estimation.held_out import held_out_of
 from tirelab.recordings.recording import Recording
-from tirelab.regressors.dataset import dataset_of, samples_of
-from tirelab.selection.search import discrepancy_of
+from tirelab.regressors.dataset import samples_of
 
 PART = TireModel(two_sided=True, inflated=False, tested_range=None)
 
@@ -45,32 +42,6 @@ def test_a_surface_has_its_own_deflections_if_it_is_fitted() -> None:
     flat, drum = pressed("flat", 0.0, 0.010), pressed("drum", 0.0, 0.020, radius=0.3)
     assert counted(pressed("deep", 0.0, 0.020, seed=2), flat, drum) <= 0.0101
     assert counted(pressed("other", 0.0, 0.020, radius=-0.3, seed=2), flat, drum) > 0.0198
-
-
-def test_what_is_slow_in_what_is_left_is_no_evidence() -> None:
-    """An amplifier that stands twice the noise off for the whole recording of n samples has a V of 2^2 n / 30.
-
-    A set that leaves 1.8 in place of 2 of it gains (2^2 - 1.8^2) n / 2V = 2.85 in log likelihood. Were it white, V would be
-    what each leaves beyond the noise: 15 ln((2^2 - 1) / (1.8^2 - 1)) = 4.4, and more for the noise in it.
-    """
-    shallow, held_out = pressed("shallow", 0.0, 0.010), pressed("alike", 0.001, 0.009, seed=3)
-    others = held_out_of([held_out], TireModel(), samples_of([shallow], TireModel()))
-    assert others is not None
-    dataset = dataset_of([shallow], TireModel())
-    noise = discrepancy_of(dataset.misfit, 0.0)
-    nothing, count = fitted(dataset, [{}], noise, 1.0, -np.inf), others.dataset.misfit.size
-    off, less = (replace(nothing, held_out_residual=np.full(count, off)) for off in (2.0, 1.8))
-    slow = slow_in(others, off)
-    assert slow == pytest.approx(4.0 * count / 30.0, rel=0.02)
-    assert slow_in(None, off) == 1.0
-
-    def gain(beside: HeldOutRecordings | None) -> float:
-        return float(np.subtract(*(judged(f, noise, beside).log_predictive for f in (less, off))))
-
-    assert gain(beside_slow(others, off)) == pytest.approx(2.85, rel=0.05)
-    assert gain(others) == pytest.approx(4.4, rel=0.3)
-    assert beside_slow(None, off) is None
-    assert gain(None) == 0.0
 
 
 def test_a_law_that_goes_on_as_it_was_is_no_relaxation() -> None:
