@@ -19,8 +19,9 @@ from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
 from ..preprocessing.data_checks import MAJORITY
-from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE, STANDS_OUT
+from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE
 from ..recordings.pieces import split_piece
+from ..recordings.pulling import pull_of
 from ..recordings.recording import Recording
 from ..recordings.zero import quantity_text, refuse_too_deep
 
@@ -107,19 +108,11 @@ def beyond_fitted(fitted: Sequence[Recording], kept: Sequence[Recording]) -> lis
     ]
 
 
-PULL, PARTS, FEWEST = 0.01, 200, 10
-"""A tire pulls where the mean force of one of so many parts of a recording, of so many samples at least, is below zero
-by this part of the largest, beyond the noise."""
-
-
 def pulls_told(recordings: Sequence[Recording], tire: TireModel) -> list[str]:
     """Return a sentence for each recording in which a tire pulls, which no effect lets it do; a part may."""
     told = []
     for r in () if tire.two_sided else recordings:
-        length = max(len(r) // PARTS, FEWEST)
-        least = float(np.diff(np.cumsum(r.force)[::length]).min(initial=0.0)) / length
-        noise = float(np.std(np.diff(r.force))) / np.sqrt(2.0 * length)
-        if least < -PULL * float(r.force.max()) - STANDS_OUT * noise:
+        if least := pull_of(r.force):
             zero = quantity_text("force", float(f"{least:.3g}"))
             told.append(
                 f"the force of {r.name} goes down to {least:.3g} N, and a tire does not pull: if the load cell was "
