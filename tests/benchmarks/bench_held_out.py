@@ -60,7 +60,7 @@ def main() -> None:
     parser.add_argument("proof", type=Path)
     parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args()
-    keys = sorted(path.stem for path in Folders(asked.proof).score("*").parent.glob("*.json"))
+    keys = sorted(path.stem for path in (asked.proof / "scores").glob("*.json"))
     scores: list[tuple[Score, Score]] = []
     with get_context("spawn").Pool(asked.jobs) as pool:
         for key, (before, after) in zip(keys, pool.imap(partial(given, asked.proof), keys), strict=True):

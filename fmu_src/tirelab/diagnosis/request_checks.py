@@ -20,6 +20,7 @@ from radialtire.model import DEFLECTION_HIGHEST
 from ..errors import TirelabError
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE
+from ..preprocessing.samples import surface_numbers, within
 from ..recordings.pieces import split_piece
 from ..recordings.pulling import pull_of
 from ..recordings.recording import Recording
@@ -94,16 +95,18 @@ def without_time(recordings: Sequence[Recording]) -> list[str]:
 
 
 def beyond_fitted(fitted: Sequence[Recording], kept: Sequence[Recording]) -> list[str]:
-    """Return a sentence for each held-out recording of which more than NEGLIGIBLE lies beyond all fitted deflections:
-    there its error is one of the law, which nothing showed.
+    """Return a sentence for each held-out recording of which more than NEGLIGIBLE is not `within` the fitted
+    deflections: there its error is one of the law, which nothing showed.
     """
+    numbers = surface_numbers([r.surface_radius for r in (*fitted, *kept)])
+    placed = [(r.deflection, n) for r, n in zip((*fitted, *kept), numbers, strict=True)]
+    known = within(placed[: len(fitted)], placed[len(fitted) :]) if kept else []
     least = min(float(recording.deflection.min()) for recording in fitted)
     most = max(float(recording.deflection.max()) for recording in fitted)
-    shares = [float(np.mean((r.deflection < least) | (r.deflection > most))) for r in kept]
     return [
-        f"{100.0 * share:.0f} % of {r.name} lie beyond the fitted deflections, {1e3 * least:.3g} to "
-        f"{1e3 * most:.3g} mm: there the law is extrapolated, and its error says nothing of the effects"
-        for r, share in zip(kept, shares, strict=True)
+        f"{100.0 * share:.0f} % of {r.name} lie beyond the deflections fitted on their surface, {1e3 * least:.3g} to "
+        f"{1e3 * most:.3g} mm in all: there the law is extrapolated, and its error says nothing of the effects"
+        for r, share in zip(kept, (1.0 - float(k.mean()) for k in known), strict=True)
         if share > NEGLIGIBLE
     ]
 

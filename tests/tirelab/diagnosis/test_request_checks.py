@@ -115,8 +115,12 @@ def test_what_only_held_out_recordings_reach_is_told() -> None:
         for name, most in (("half", 0.010), ("whole", 0.020), ("within", 0.0102))
     )
     (told,) = beyond_fitted([half], [within, whole])
-    assert told.startswith("50 % of whole lie beyond the fitted deflections, 0 to 10 mm")
+    assert told.startswith("50 % of whole lie beyond the deflections fitted on their surface, 0 to 10 mm")
     assert beyond_fitted([whole], [half, within]) == []
+    assert beyond_fitted([half], []) == []
+    drum = replace(whole, surface_radius=np.full(101, 0.3))
+    assert beyond_fitted([half, drum], [replace(drum, name="again")]) == []
+    assert len(beyond_fitted([half, drum], [whole])) == 1
 
 
 def test_a_tire_that_pulls_is_told_and_a_part_is_not() -> None:
