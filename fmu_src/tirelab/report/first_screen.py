@@ -252,10 +252,15 @@ def _by_size(effects: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
 def _sure(verdict: Mapping[str, Any]) -> list[str]:
     """Return the effects that are as good as certain by themselves, whatever acts beside them."""
+    return _at_least(verdict, SURE)
+
+
+def _at_least(verdict: Mapping[str, Any], least: float) -> list[str]:
+    """Return the effects with that probability of their own, the largest first."""
     return [
         e["name"]
         for e in _by_size(verdict["effects"])
-        if words.whole_percent(e.get("probability") or 0.0) >= SURE
+        if words.whole_percent(e.get("probability") or 0.0) >= least
     ]
 
 
@@ -278,7 +283,10 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
         beside = bool(own) and set(own) < set(names)
         sets.append(f"+ {titles.short_set(added)}" if beside else titles.short_set(names))
     yield f"Undecided: {titles.listed(sets, 'or')}"
+    likely = [titles.short_title(name) for name in _at_least(verdict, words.LIKELIER)]
     for shown in range(len(sets) - 1, 0, -1):
+        if shown == 1 and likely:
+            yield f"Undecided; more likely than not: {titles.listed(likely)}"
         others = len(sets) - shown
         more = f"{others} other{'s' if others > 1 else ''}"
         yield f"Undecided: {titles.listed([*sets[:shown], more], 'or')}"

@@ -232,9 +232,13 @@ SURE = "sure"
 """The word for a confidence from 0.9 on."""
 
 
+LIKELIER = 0.5
+"""From this confidence on, the word is "more likely than not"."""
+
+
 def confidence_word(confidence: float) -> str:
     """Return how sure that is, in words."""
-    for limit, word in ((0.9, SURE), (0.7, "fairly sure"), (0.5, "more likely than not")):
+    for limit, word in ((0.9, SURE), (0.7, "fairly sure"), (LIKELIER, "more likely than not")):
         if whole_percent(confidence) >= limit:
             return word
     return "one of several possibilities"

@@ -37,6 +37,22 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
 
 
+def test_an_effect_that_is_likely_leads_where_the_sets_are_too_long_for_a_line() -> None:
+    """Sets of three or more effects each, of which a line of 70 characters holds one: it told a number of sets."""
+    physics = ("inertia", "viscous_damping", "bottoming", "viscoelastic_relaxation")
+    others = [["rate_independent_hysteresis", "series_compliance", name] for name in physics]
+    told = diagnosis(
+        {"force_lag": 20.0, "viscous_damping": 9.0, "recalibration": 2.0}, 0.2, alternatives=others
+    )
+    lag, damping, _ = told["verdict"]["effects"]
+    lag["probability"], damping["probability"] = 0.57, 0.47
+    assert first_screen.headline(told) == "Undecided; more likely than not: force lag"
+    damping["probability"] = 0.52
+    assert first_screen.headline(told) == "Undecided; more likely than not: force lag and viscous damping"
+    lag["probability"] = damping["probability"] = 0.4
+    assert "likely" not in first_screen.headline(told)
+
+
 def test_what_leaves_the_same_is_told_in_the_headline_where_it_is_half_as_likely() -> None:
     told = diagnosis({"deflection_lag": 20.0}, 0.58, alternatives=[["viscous_damping"], ["inertia"]])
     details = [{"probability": p, "same": same} for p, same in ((0.3, True), (0.05, False))]
