@@ -20,7 +20,7 @@ from ..estimation.explanation import Explanation
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 from ..preprocessing.noise import NEGLIGIBLE, STILL
-from ..preprocessing.samples import Recorded, is_timed
+from ..preprocessing.samples import Placed, Recorded, is_timed, surface_numbers, within
 from ..report.titles import newtons, set_title
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 from .acceptance import rmse
@@ -50,7 +50,7 @@ class Contradiction:
     as_if: what alone would make the recording agree, as a sentence; empty where nothing of it does
     inflated: whether they are of tires, which have a pressure, and not of parts
     other: the name of the other one where there is one only; one_series: whether they are parts of one file, so that
-    gauges and specimen are the same
+    gauges and specimen are the same; held_out: whether it is held out, so that the verdict is that of the others
     """
 
     names: tuple[str, ...]
@@ -61,6 +61,16 @@ class Contradiction:
     inflated: bool = True
     other: str = ""
     one_series: bool = False
+    held_out: bool = False
+
+    @property
+    def question(self) -> str:
+        """What the confidence of the verdict is a probability of."""
+        return (
+            "That it holds for the fitted ones"
+            if self.held_out
+            else "That one explanation holds for all of them"
+        )
 
     @property
     def headline(self) -> str:
@@ -114,6 +124,7 @@ class Contradiction:
             "headline": self.headline,
             "finding": self.finding,
             "action": self.action,
+            "question": self.question,
         }
 
 
@@ -132,7 +143,7 @@ def contradiction_of(
     if len(recordings) < 2 or not explanation.remainder.unexplained:
         return None
     together = min(e.error for e in (explanation, *map(explanation.of, explanation.in_order(1))))
-    states = states_of(recordings, motions)
+    states, places = states_of(recordings, motions), places_of(recordings, motions)
     apart = _apart(before, states)
     found: list[tuple[float, Contradiction]] = []
     for number in np.argsort(-apart)[:SUSPECTED].tolist():
@@ -140,11 +151,11 @@ def contradiction_of(
             break
         recording, level = recordings[number], explanation.floors[number].level
         others = explain([r for i, r in enumerate(recordings) if i != number])
-        alike = _as_others(states, number) & explanation.compared[number]
+        alike = driven_alike(states, places, number)[0] & explanation.compared[number]
         if others.error >= EXPLAINED * together or alike.mean() < NEGLIGIBLE:
             continue
         moved = smoothed_motion(recording, motions[number])
-        own = min(_missed(others.model.tire, recording, m, alike) for m in (None, moved))
+        own = min(missed(others.model.tire, recording, m, alike) for m in (None, moved))
         forms = others.model.missed(moved)
         if own > max(others.error / EXPLAINED, BEYOND_NOISE * float(np.hypot(level, forms))):
             names = [r.name for r in recordings] if len(recordings) == 2 else [recording.name]
@@ -169,16 +180,16 @@ def contradiction_held_out(
     """
     every = [*recordings, *held_out]
     motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]
-    states, seen = states_of(every, motions), compared(held_out)
+    states, places, seen = states_of(every, motions), places_of(every, motions), compared(held_out)
     level = float(np.sqrt(np.mean([floor.level**2 for floor in explanation.floors])))
     for number, recording in enumerate(held_out):
         own_number = len(recordings) + number
-        alike = _as_others(states, own_number) & seen[number]
+        alike = driven_alike(states, places, own_number)[0] & seen[number]
         if alike.mean() < NEGLIGIBLE:
             continue
         moved = smoothed_motion(recording, motions[own_number])
         # What begins in motion is not followed at once, and what follows noise of the reading is not of the part.
-        own = min(_missed(explanation.model.tire, recording, m, alike) for m in (None, moved))
+        own = min(missed(explanation.model.tire, recording, m, alike) for m in (None, moved))
         beyond = BEYOND_NOISE * float(np.hypot(level, explanation.model.missed(moved)))
         if own > max(explanation.error / EXPLAINED, beyond):
             as_if = _as_if(recording, moved, explanation.model.tire, alike, own)
@@ -189,11 +200,12 @@ def contradiction_held_out(
                     *(who, model.names, explanation.error, own, as_if, model.tire.inflated),
                     other=recordings[0].name if len(recordings) == 1 else "",
                     one_series=_of_one_series([*recordings, recording]),
+                    held_out=True,
                 )
     return None
 
 
-def _missed(tire: TireModel, recording: Recorded, moved: SmoothedMotion | None, alike: BoolArray) -> float:
+def missed(tire: TireModel, recording: Recorded, moved: SmoothedMotion | None, alike: BoolArray) -> float:
     """Return the error [N] of a tire on some samples of a recording, given its deflection as read or smoothed."""
     force = simulate(tire, recording) if moved is None else simulate(tire, moved, moved)
     return rmse([(recording.force - force)[alike]])
@@ -251,10 +263,23 @@ def in_states(states: Sequence[IndexArray], *values: Sequence[FloatArray]) -> tu
     return np.array([np.bincount(k, minlength=size) for k in own], dtype=float), *summed
 
 
-def _as_others(states: Sequence[IndexArray], number: int) -> BoolArray:
-    """Return which samples of a recording are in a state that another one has too."""
+def places_of(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list[Placed]:
+    """Return the deflection [m] and the number of the surface of each sample of each recording."""
+    numbers = surface_numbers([r.surface_radius for r in recordings])
+    return [(m.deflection, n) for m, n in zip(motions, numbers, strict=True)]
+
+
+def driven_alike(
+    states: Sequence[IndexArray], places: Sequence[Placed], number: int
+) -> tuple[BoolArray, BoolArray]:
+    """Return which samples of a recording another one drove alike, and which otherwise, as far as the others reach.
+
+    A state is wider than the end of what the others reached in it: what lies deeper is neither.
+    """
     others = np.unique(np.concatenate([s for i, s in enumerate(states) if i != number]))
-    return np.asarray(np.isin(states[number], others))
+    reached = within((p for i, p in enumerate(places) if i != number), [places[number]])[0]
+    alike = np.isin(states[number], others)
+    return np.asarray(alike & reached), np.asarray(~alike & reached)
 
 
 def _apart(misfits: Sequence[FloatArray], states: Sequence[IndexArray]) -> FloatArray:

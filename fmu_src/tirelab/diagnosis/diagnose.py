@@ -37,10 +37,11 @@ from .acceptance import (
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of, no_surer_than_alternatives
 from .between_recordings import difference_between
-from .confidence import confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
+from .confidence import EITHER, confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
+from .missed import Missed, missed_held_out
 from .residual_model import residual_models, unexplained_by
 from .summary import not_seen, other_law, slow_noise, summarise
 from .verdict import FitErrors, NotNamed, Verdict
@@ -98,7 +99,16 @@ def diagnose(
 
     grounds = grounds_of_verdict(explanation, validation, remainder, unexplained=bool(unexplained))
     named, doubted = ([e.probability for e in own] for own in (accepted.effects, accepted.doubted))
+    motions = [e.motion for e in data.samples.experiments]
+
+    def explain_anew(several: Sequence[Recorded]) -> Explanation:
+        return explain(several, lambda sentence: None, ANEW * MOST_WORK)
+
+    contradiction = contradiction_of(explanation, fitted, motions, data.before, explain_anew)
+    contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
+    contradiction = contradiction or _contradicted_by(candidates, accepted, fitted, kept)
     confidence = confidence_of(grounds, named, doubted, explanation.share)
+    confidence = min(confidence, EITHER) if isinstance(contradiction, Missed) else confidence
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:
@@ -108,14 +118,6 @@ def diagnose(
     noise = None if unexplained else explanation.residuals
     where = data.shown(localize(fitted, data.samples, located, explanation.noises, noise))
 
-    motions = [e.motion for e in data.samples.experiments]
-
-    def explain_anew(several: Sequence[Recorded]) -> Explanation:
-        return explain(several, lambda sentence: None, ANEW * MOST_WORK)
-
-    contradiction = contradiction_of(explanation, fitted, motions, data.before, explain_anew)
-    contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
-    contradiction = contradiction or _contradicted_by(candidates, accepted, fitted, kept)
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, _limits_of(data, limits, part=baseline.is_part))
     missing = not_compared(fitted)
@@ -207,13 +209,16 @@ def _not_named(candidates: Explanation, validate: Validate, before: float) -> No
 def _contradicted_by(
     candidates: Explanation, accepted: _Accepted, fitted: Sequence[Recorded], kept: Sequence[Recorded]
 ) -> Contradiction | None:
-    """Return the held-out recording that contradicts the set which explains the fitted ones, refused by it or not."""
+    """Return the held-out recording that contradicts the set which explains the fitted ones, refused by it or not, or
+    that shows what they do not.
+    """
     if not kept:
         return None
     names, chosen = candidates.likeliest_fitted, accepted.explanation
     likeliest = candidates.of(names) if candidates.was_fitted(names) else chosen
     clearly = likeliest.error < EXPLAINED * chosen.error
-    return contradiction_held_out(likeliest if clearly else chosen, fitted, kept)
+    judged = likeliest if clearly else chosen
+    return contradiction_held_out(judged, fitted, kept) or missed_held_out(judged, fitted, kept)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

@@ -191,7 +191,10 @@ class Excitation:
         if not self.timed and {"rate", "slow"} & set(traits):
             return "the recording has no time"
         if "slow" in traits and self.returns < NEGLIGIBLE:
-            return "no deflection was visited again: time cannot be told from deflection and direction"
+            return (
+                "no deflection was visited again, so time cannot be told from deflection and direction: "
+                "drive the same motion again"
+            )
         return ""
 
     def reasons(self, names: Sequence[str]) -> dict[str, str]:

@@ -64,8 +64,8 @@ def undecided(verdict: Mapping[str, Any]) -> bool:
 
 def sureness(verdict: Mapping[str, Any]) -> str:
     """Return how sure the verdict is, in words and as a number."""
-    if verdict.get("contradiction"):
-        return f"That one explanation holds for all of them: {words.percent(verdict['confidence'])}"
+    if contradiction := verdict.get("contradiction"):
+        return f"{contradiction['question']}: {words.percent(verdict['confidence'])}"
     word = words.confidence_word(verdict["confidence"])
     return f"{word[0].upper()}{word[1:]}: {words.percent(verdict['confidence'])}"
 

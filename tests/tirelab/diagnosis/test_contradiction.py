@@ -247,3 +247,20 @@ def test_a_held_out_recording_that_refuses_one_of_two_effects_is_named() -> None
     # 525 of 575 is 8.7 % less.
     assert "the force of other were 8." in found.as_if
     assert verdict.summary.startswith("Recording other contradicts a.")
+
+
+def test_what_lies_deeper_than_the_others_reached_contradicts_nothing() -> None:
+    """One pull, 550 N/cm^1.42 as far as it is fitted, to 24 mm, and a tenth stiffer beyond: nothing else showed that.
+
+    The fitted part ends within one of the 24 parts of the deflection's span in which samples are compared.
+    """
+    time = np.linspace(0.0, 200.0, 2000)
+    x = 2e-4 * time
+    force = 550.0 * (100.0 * x) ** 1.42 * np.where(x > 0.024, 1.1, 1.0)
+    force += np.random.default_rng(5).normal(0.0, NOISE, time.size)
+    begun = x <= 0.024
+    first, rest = (
+        Recording(name, time[own], x[own], np.full(own.sum(), np.inf), force[own])
+        for name, own in (("first", begun), ("rest", ~begun))
+    )
+    assert diagnose([first], TIRE, held_out=[rest], catalogue=FEW).contradiction is None
