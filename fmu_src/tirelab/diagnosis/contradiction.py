@@ -73,6 +73,13 @@ class Contradiction:
         )
 
     @property
+    def caution(self) -> str:
+        """How the rest of the report is to be read."""
+        if self.held_out:
+            return "What is said here is of the fitted recordings alone."
+        return "What is said here of all of them is no more than a guess."
+
+    @property
     def headline(self) -> str:
         """The message about it without figures."""
         if len(self.names) > 1:
@@ -125,6 +132,7 @@ class Contradiction:
             "finding": self.finding,
             "action": self.action,
             "question": self.question,
+            "caution": self.caution,
         }
 
 

@@ -130,10 +130,8 @@ def next_step(diagnosis: Mapping[str, Any], reasons: Sequence[str] = ()) -> Next
     reasons: of each alternative what the recordings lack, as "lack: action"
     """
     verdict, fit, given = diagnosis["verdict"], diagnosis["fit"], delivered_of(diagnosis)
-    if verdict.get("contradiction"):
-        return NextStep(
-            verdict["contradiction"]["action"], "What is said here of all of them is no more than a guess."
-        )
+    if contradiction := verdict.get("contradiction"):
+        return NextStep(contradiction["action"], contradiction["caution"])
     test = verdict["separating_test"]
     errors = [
         e for e in (_beside_reading(fit, "after"), _beside_reading(fit, "held_out_after")) if e is not None

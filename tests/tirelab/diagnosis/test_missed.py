@@ -87,6 +87,7 @@ def test_its_message_says_what_the_confidence_is_of_and_what_to_do() -> None:
     )
     verdict = {"contradiction": one.to_dict(), "confidence": 0.5}
     assert first_screen.sureness(verdict) == "That this is all that acts: 50 %"
+    assert one.to_dict()["caution"] == "What is said here is of the fitted recordings alone."
     two = Missed(("quick",), ("viscous_damping", "inertia"), 2.0, 60.0, held_out=True)
     assert two.finding.startswith(
         "Viscous damping and inertia explain the fitted ones to 2.00 N and miss quick by 60.0 N"
