@@ -131,7 +131,7 @@ def step(
     held = p[TWO_SIDED] != 0.0
     where = time - start, interval, first, pressure, temperature, held, A, B, bend
     v = rate
-    differenced = p[FOLLOWED] != 0.0 and (p[TRACKED] == 0.0 or p[NOISE] >= tracking.FINEST)
+    differenced = p[FOLLOWED] != 0.0 and (p[TRACKED] == 0.0 or p[NOISE] >= tracking.EXACT)
     if differenced:
         # x holds rates: of noisy readings it is too noisy to be differentiated once more, as if it were a reading.
         h = AHEAD

@@ -358,9 +358,14 @@ def without_unlikely(
 
 
 def _idle(name: str, accepted: Explanation, validation: HeldOut, validate: Validate) -> bool:
-    """Return whether a set leaves no more without an effect, fitted and held out: then it does not explain anything."""
+    """Return whether a set leaves no more without an effect, fitted and held out, neither of the readings nor of the
+    noise-free deflection: then it does not explain anything.
+    """
     less = tuple(n for n in accepted.model.names if n != name)
-    if not less or not accepted.was_fitted(less) or (plainer := accepted.of(less)).error > accepted.error:
+    if not less or not accepted.was_fitted(less):
+        return False
+    plainer = accepted.of(less)
+    if plainer.error > accepted.error or plainer.error_left > accepted.error_left:
         return False
     return validate(plainer).after <= validation.after
 

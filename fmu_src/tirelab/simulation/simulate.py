@@ -22,7 +22,7 @@ from radialtire.effect import Response
 from radialtire.flat_step import AHEAD
 from radialtire.model import Law
 from radialtire.part_curve import PartCurve
-from radialtire.tracking import FINEST
+from radialtire.tracking import EXACT
 
 from . import compiled
 from .channels import Sampled, begun, channel_rows, measured_of
@@ -237,7 +237,7 @@ def _moved(tire: TireModel, read: History, kinematics: Kinematics | None, stages
         if tire.differentiates:
             if kinematics is not None:
                 rate = rate + np.gradient(x - read.deflection, read.time)
-            elif tire.reading_noise < FINEST:
+            elif tire.reading_noise < EXACT:
                 rate, _ = track(read.time, x, tire.reading_noise)
             else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
                 later, sooner = (upstream_beside(tire, extrapolated(read, h), read) for h in (AHEAD, -AHEAD))

@@ -212,13 +212,17 @@ class Accepted(Made):
 
     def of(self, names: Sequence[str]) -> Made:
         found = self.ranked.of(names)
-        return Accepted(found.names, found.left, found.tire, self.ranked)
+        return accepted(found, self.ranked)
+
+
+def accepted(one: Made, ranked: Ranked) -> Accepted:
+    return Accepted(one.names, one.left, one.tire, ranked, left_noise_free=one.left_noise_free)
 
 
 def likely_part(held_out: Drive, *sets: Made, **probabilities: float) -> set[str]:
     """Return what is named of the first of the sets."""
 
-    first: Any = Accepted(sets[0].names, sets[0].left, sets[0].tire, Ranked(sets))
+    first: Any = accepted(sets[0], Ranked(sets))
     before = [FITTED.force - flat_force(FITTED.deflection)]
     validate = validation_on([FITTED], [held_out], raw_dataset_of([FITTED], TireModel()), before)
     return set(without_unlikely(first, validate(first), probabilities, validate)[0].names)
@@ -239,6 +243,13 @@ def test_an_effect_without_which_no_more_is_left_is_not_named_however_likely_it_
     assert likely_part(KEPT, PAIR, better, viscous_damping=0.99, bottoming=0.9) == {"viscous_damping"}
     # Held-out data tell that it is needed.
     assert likely_part(KEPT, PAIR, elsewhere, viscous_damping=0.99, bottoming=0.9) == set(PAIR.names)
+
+
+def test_an_effect_that_magnifies_the_noise_of_the_reading_is_not_needless_for_that() -> None:
+    """A mass leaves more where it is given the acceleration of a noisy reading, and half without that noise."""
+    pair = replace(made("viscous_damping inertia", 5.0, 500.0), left_noise_free=2.0)
+    alone = replace(made("viscous_damping", 4.9, 500.0), left_noise_free=4.0)
+    assert likely_part(KEPT, pair, alone, viscous_damping=0.99, inertia=0.9) == set(pair.names)
 
 
 def test_an_unlikely_effect_is_named_where_the_others_leave_clearly_more() -> None:

@@ -274,12 +274,14 @@ static inline Tuple3 tracking_follow(Tuple3 track, double interval, double defle
     double ratio = greater(interval / last, SOONEST);
     double scale = greater(interval, FADES * last);
     double part = ratio >= FADES ? 1.0 : ratio / FADES;
-    if (noise < FINEST) {
+    if (noise < EXACT) {
         return tracking_exactly(modes, probability, ratio, part, deflection, scale);
     }
     double certainty = 1.0 / (noise * noise);
     double fifth = interval * interval * interval * interval * interval * certainty;
     double seventh = fifth * interval * interval;
+    double smaller = lesser(noise / FINEST, 1.0);
+    double part_of_tire = smaller * smaller;
     double jerk_max = tracking_jerk_max(part);
     double snap_max = tracking_snap_max(part);
     Vector14 whole = tracking_mean(modes, probability, certainty);
@@ -293,9 +295,9 @@ static inline Tuple3 tracking_follow(Tuple3 track, double interval, double defle
     Vector14 ride = tracking_predicted(tracking_mixed(modes.v[1], whole, other / c1, certainty), ratio);
     Vector14 smooth = tracking_predicted(tracking_mixed(modes.v[2], whole, other / c2, certainty), ratio);
     Vector14 sharp = tracking_predicted(tracking_mixed(modes.v[3], whole, other / c3, certainty), ratio);
-    press = tracking_jerked(press, lesser(PRESS * fifth, jerk_max));
+    press = tracking_jerked(press, lesser(PRESS * part_of_tire * fifth, jerk_max));
     ride = tracking_jerked(ride, lesser(RIDE * fifth, jerk_max));
-    smooth = tracking_snapped(smooth, lesser(SMOOTH * seventh, snap_max));
+    smooth = tracking_snapped(smooth, lesser(SMOOTH * part_of_tire * seventh, snap_max));
     sharp = tracking_snapped(sharp, lesser(SHARP * seventh, snap_max));
     double l0 = log(c0) + tracking_log_likelihood(press, deflection, certainty);
     double l1 = log(c1) + tracking_log_likelihood(ride, deflection, certainty);
@@ -1543,7 +1545,7 @@ Vector2 tire_step(Vector2 law, Vector7 motion, const double *p, const double *s,
     bool held = p[4] != 0.0;
     Tuple4 where = (Tuple4){time - start, interval, first, pressure, temperature, held, A, B, bend};
     double v = rate;
-    bool differenced = p[1] != 0.0 && (p[0] == 0.0 || p[2] >= FINEST);
+    bool differenced = p[1] != 0.0 && (p[0] == 0.0 || p[2] >= EXACT);
     if (differenced) {
         h = AHEAD;
         later = (Vector3){{deflection + h * rate, rate + h * acceleration, acceleration}};
