@@ -10,7 +10,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from .channels import EXAMPLE_UNITS, UNIT_OF, begins_in_word, ends_in_word, unit_of_column
+from .channels import (
+    EXAMPLE_UNITS,
+    UNIT_OF,
+    begins_in_word,
+    ends_in_word,
+    is_symbol,
+    symbolises_another,
+    unit_of_column,
+)
 from .choices import Choices
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
@@ -317,8 +325,9 @@ def _guessed_columns(
     values: Mapping[int, FloatArray],
     headers: Sequence[Header],
 ) -> dict[str, int]:
-    """Return a likely column for each channel that has none: time rises, others go by their unit, else by the beginning
-    of their name ("forc"), its end (`Machine_Load`) or its first word (`Force_data`), else by their size.
+    """Return a likely column for each channel that has none: time rises, others go by their unit, else by their symbol
+    in small or large letters, the beginning of their name ("forc"), its end (`Machine_Load`) or its first word
+    (`Force_data`), else by their size.
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
@@ -350,8 +359,9 @@ def _guessed_columns(
             free.remove(fits[0])
     stating = {name: [i for i in free if _states(headers[i], name)] for name in ("deflection", "force")}
     free = [i for i in free if headers[i].unit is None and not counts_rows(headers[i].name)]
-    for name in ("deflection", "force"):
-        alike = [i for i in free if begins_like(headers[i].text, name)]
+    free = [i for i in free if not symbolises_another(headers[i].name)]
+    for likely, name in product((is_symbol, begins_like), ("deflection", "force")):
+        alike = [i for i in free if likely(headers[i].text, name)]
         if name in missing and name not in guessed and len(alike) == 1:
             guessed[name] = alike[0]
             free.remove(alike[0])

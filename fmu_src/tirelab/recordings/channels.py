@@ -115,6 +115,8 @@ CHANNELS = (
 EXAMPLE_UNITS = {channel.name: channel.example for channel in CHANNELS}
 """The unit of each channel that advice names."""
 
+_SYMBOLS = {channel.symbol: channel.name for channel in CHANNELS if channel.symbol}
+
 UNIT_OF = {channel.name: channel.unit for channel in CHANNELS}
 """The SI unit of each channel."""
 
@@ -228,6 +230,16 @@ def may_be(header: Header, channel: Channel) -> bool:
         return True
     base, _, _ = name.rpartition("_")
     return _words(base) in channel.words and unit_of_column(header, channel.name) is not None
+
+
+def is_symbol(name: str, channel: str) -> bool:
+    """Return whether a name is the channel's symbol in small or large letters: `f` of a force."""
+    return channel in (_SYMBOLS.get(name.lower()), _SYMBOLS.get(name.upper()))
+
+
+def symbolises_another(name: str) -> bool:
+    """Return whether a name is the symbol of a channel that is neither deflection nor force: `v` of the speed."""
+    return _SYMBOLS.get(name, "force") not in ("deflection", "force")
 
 
 def may_be_foreign(header: Header, channel: Channel) -> bool:

@@ -220,3 +220,13 @@ def test_an_angle_and_a_torque_are_guessed_to_stand_for_a_deflection_and_a_force
     names = f"time [s],Torque [{torque}],Twist [{angle}],Energy [J]"
     path = write_rows(tmp_path / "a.csv", names, time, 1e-3 * force, 1e3 * deflection, 2e-3 * force)
     assert proposed(path)[:4] == ["--columns", "deflection=#3,force=#2", "--units", "deflection=mm,force=N"]
+
+
+def test_a_symbol_in_small_letters_goes_before_the_place_of_a_column(tmp_path: Path) -> None:
+    """An acceleration, a velocity and the force of a damper; by their order the acceleration was the force."""
+    t = np.arange(0.0, 4.0, 0.005)
+    x, v, a = 10.0 * np.sin(t), 10.0 * np.cos(t), -10.0 * np.sin(t)
+    path = write_rows(tmp_path / "a.csv", "t [s],x [mm],a,f", t, x, a, 2.0 * x + 0.5 * v)
+    assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
+    path = write_rows(tmp_path / "b.csv", "t [s],x [mm],v,load2b", t, x, v, 2.0 * x + 0.5 * v)
+    assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
