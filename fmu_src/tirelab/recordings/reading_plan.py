@@ -8,12 +8,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .asking import Lacking, asked, may_count_time, rises, stating_time
-from .channels import UNIT_OF, known_channel, says_absolute, unit_of_column, units_stated
+from .channels import EXAMPLE_UNITS, UNIT_OF, known_channel, says_absolute, unit_of_column, units_stated
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import SomeColumns, listed, quoted
 from .matching import Match, match_channels, option_name, recognised
 from .metadata import Settings
 from .origin import Origin
+from .rows import OPTIONAL
 from .units import (
     Conversion,
     UnitError,
@@ -78,6 +79,11 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     conversions |= {name: conversion(unit, UNIT_OF[name]) for name, unit in stated.items()}
     without_unit = tuple(name for name in without_unit if name not in stated)
     notes += [f"{name} in {unit}, as the lines above the table say" for name, unit in stated.items()]
+    unread = _unread(headers, without_unit, settings)
+    without_unit = tuple(name for name in without_unit if name not in unread)
+    notes += [_unread_note(origin, headers.pop(name), name) for name in unread]
+    matches = {name: match for name, match in matches.items() if name not in unread}
+    radius = np.inf if "radius" in unread else radius
     lacking = tuple(name for name in found.missing if name != "time")
     no_time = "time" not in matches and interval is None
     looked_at: Table = table
@@ -115,6 +121,19 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         constants,
         {name: option_name(looked_at.headers, match.index) for name, match in of_test.items()},
         settings,
+    )
+
+
+def _unread(headers: Mapping[str, Header], without_unit: Sequence[str], settings: Settings) -> list[str]:
+    """Return the channels that no recording needs, found by a symbol alone: without a unit it may be of anything."""
+    needless = [name for name in OPTIONAL if name not in settings.columns] + ["radius"] * settings.part
+    return [name for name in without_unit if name in needless and len(headers[name].name) == 1]
+
+
+def _unread_note(origin: Origin, header: Header, name: str) -> str:
+    giving = origin.units(**{name: EXAMPLE_UNITS[name]})
+    return (
+        f"column {quoted(header.text)} not read as {name}: no unit; if it is the {name}, give one: {giving}"
     )
 
 
