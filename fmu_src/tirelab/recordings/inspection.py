@@ -230,6 +230,7 @@ def _settings(found: Understood) -> dict[str, Any]:
         if name in ("deflection", "force") and not sign:
             sign = 1
         columns[name] = {1: "+", -1: "-", 0: ""}[sign] + plan.names[name]
+    columns |= {name: "" for name, text in plan.settings.columns.items() if not text.strip()}
     if not recording.timed:
         columns["time"] = ""
     if plan.radius is not None and "radius" in recognised(found.table.headers, {}):

@@ -55,6 +55,14 @@ def test_a_radius_that_was_given_goes_over_the_column_in_the_file_of_settings_to
     assert inspect_recording(path, Choices()).settings == found.settings
 
 
+def test_a_channel_that_is_left_out_stays_so_in_the_file_of_settings(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    header = "time [s],deflection [cm],speed,F [N]"
+    path = write_rows(tmp_path / "a.csv", header, time, deflection, 0.0 * time, force)
+    keep(path.with_name("recording.toml"), inspect_recording(path, Choices({"speed": ""}, radius="flat")))
+    assert read_recording(path).speed is None
+
+
 def test_a_radius_that_is_as_good_as_flat_is_shown_in_metres() -> None:
     assert surface_text(np.array([127.0])) == "radius 127 m"
     assert surface_text(np.array([-0.127, np.inf])) == "radius -12.7 cm, flat"
