@@ -92,12 +92,28 @@ def _evidence(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tu
 
 
 def _together_before_the_peak(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
-    """Return the correlation up to the largest |force|; 0 where it is not clear, or too little is driven before."""
+    """Return the correlation up to the largest |force|; 0 where it is not clear, or that is no loading (`_loads`)."""
     first = slice(0, int(np.argmax(np.abs(force))) + 1)
-    if not np.ptp(deflection[first]) > PASSED * np.ptp(deflection):
+    if not _loads(deflection, force, first):
         return 0.0
     together = _evidence(deflection[first], force[first])[0]
     return together if abs(together) >= CLEAR else 0.0
+
+
+def _loads(deflection: NDArray[np.float64], force: NDArray[np.float64], first: slice) -> bool:
+    """Return whether what is driven up to the largest |force| is long enough to be a loading.
+
+    It is where it is more than `PASSED` of the stroke. A specimen that yields early is pulled on by far more: where the
+    force gains most of its largest, it is enough that a step of the gauge, or its noise, is below `PASSED` of the way.
+    """
+    x = deflection[first]
+    way = float(np.ptp(x))
+    if way > PASSED * np.ptp(deflection):
+        return True
+    steps = np.diff(x)
+    steps = steps[steps != 0.0]
+    gains = abs(force[first][-1] - force[0]) > CLEAR * np.max(np.abs(force))
+    return bool(gains and steps.size and np.sqrt(np.mean(steps**2)) < PASSED * way)
 
 
 def work_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> float:
@@ -131,12 +147,11 @@ def loading_share(deflection: NDArray[np.float64], force: NDArray[np.float64]) -
         sum (F - F_1) dx / sum |F - F_1| |dx|,    from the first sample to the largest |F|
 
     1 of a spring that is loaded, whatever its preload or the zero of its load cell; a snap-through has its barrier in
-    it. NaN where the force gains less than `CLEAR` of its largest, as friction alone, or the way is short (`PASSED`).
+    it. NaN where the force gains less than `CLEAR` of its largest, as friction alone, or the way is short (`_loads`).
     """
     first = slice(0, int(np.argmax(np.abs(force))) + 1)
     gained = force[first] - force[0]
-    short = not np.ptp(deflection[first]) > PASSED * np.ptp(deflection)
-    if short or not abs(gained[-1]) > CLEAR * np.max(np.abs(force)):
+    if not _loads(deflection, force, first) or not abs(gained[-1]) > CLEAR * np.max(np.abs(force)):
         return float("nan")
     way, middle = _steps(deflection[first], gained)
     with np.errstate(all="ignore"):

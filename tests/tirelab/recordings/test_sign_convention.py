@@ -113,6 +113,25 @@ class TestSigns:
         down = compressive_signs(-deflection - 0.2, force)
         assert (down.deflection, down.force) == (-1, 1)
 
+    @pytest.mark.parametrize("counts", [1, -1])
+    def test_a_polymer_that_yields_early_and_is_drawn_to_its_break_counts_as_it_is_loaded(
+        self, counts: int
+    ) -> None:
+        """Its force rises over 7 % of the way, in a hundred steps of the gauge, and falls over the rest."""
+        way = np.arange(0.0, 40.0, 0.025)
+        force = np.interp(way, [0.0, 2.8, 4.0, 20.0, 38.0, 38.4, 40.0], [0, 380, 270, 255, 150, 5, 0])
+        found = compressive_signs(counts * way, force + np.random.default_rng(4).normal(0.0, 0.5, way.size))
+        assert (found.deflection, found.force, found.doubt) == (counts, 1, "")
+
+    def test_the_noise_of_a_gauge_before_an_early_peak_is_no_loading(self) -> None:
+        """A gap that closes; at first the rig rests, and a reading of the force is false there."""
+        noise = np.random.default_rng(3).normal(0.0, 0.01, 300)
+        gap = np.concatenate([np.full(60, 40.0), np.linspace(40.0, 0.0, 240)]) + noise
+        force = 1e3 * np.concatenate([np.zeros(60), np.linspace(0.0, 1.0, 240)])
+        force[np.argmax(gap[:60])] = 1500.0
+        found = compressive_signs(gap, force)
+        assert (found.deflection, found.force, found.falls) == (-1, 1, True)
+
     @pytest.mark.parametrize("softens_to", [0.6, 0.4])
     def test_a_specimen_that_yields_while_its_gauge_counts_down_is_asked_about(
         self, tmp_path: Path, softens_to: float
