@@ -15,7 +15,7 @@ from .jumps import sudden_doubts
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
 from .work_doubt import work_doubt
-from .zero import Gauges, Zero
+from .zero import Gauges, Zero, force_at_least
 
 FloatArray = NDArray[np.float64]
 
@@ -64,9 +64,6 @@ FLAT_BINS = 60
 UNLOADED, AT_START = 0.03, 0.04
 """The force begins with the least deflection where it is below this part of the largest force there, and the law's own
 beginning is within this part of the stroke."""
-
-LOWEST = 0.003
-"""The force with the least deflection is the mean over this part of the stroke."""
 
 FOLLOWS = 0.9
 """A force follows the deflection where their correlation is above this."""
@@ -209,13 +206,17 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
     missed = [_missed(np.maximum(centre - begins, 0.0), weight, target) for begins in tried]
     begins, fits = float(tried[np.argmin(missed)]), 2e-2 * float(np.sum(target**2))
     largest = float(level.max())
-    least = float(np.mean(f[x <= low + LOWEST * stroke]))
+    least, uncertain = force_at_least(x, f)
     if not min(missed) <= fits:
         free = _without_force([f[place == b] for b in filled])
         end = float(edges[filled[free]])
         return Zero(end, high - end, low, least) if free else None
     if abs(float(level[0])) < UNLOADED * largest and abs(begins - low) < AT_START * stroke:
         return Zero(low, stroke, low, least)
+    if begins < low and abs(least) <= uncertain:
+        return Zero(
+            low, stroke, low, least
+        )  # no power of the deflection rises as this does, but from no force
     below = level[centre < begins]
     if below.size and float(np.abs(below).max()) > NO_FORCE * largest:
         return None

@@ -30,6 +30,13 @@ FARTHEST = 0.01
 """Neither a tire's zero nor a part's gap is farther off than this [m]: beyond, the gauge was not set to zero."""
 
 
+LOWEST = 0.003
+"""The force at the least deflection is told by the readings in this part of the stroke."""
+
+SURE = 3.0
+"""Standard errors within which a slope or a force is none."""
+
+
 @dataclass(frozen=True)
 class Zero:
     """Where the force begins [m], and how far the deflection goes beyond that [m].
@@ -149,6 +156,35 @@ class _Driven(_Named, Protocol):
     def deflection(self) -> NDArray[np.float64]: ...
     @property
     def timed(self) -> bool: ...
+
+
+def force_at_least(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the force [N] at the least deflection, and its uncertainty [N]. `deflection`, `force`: (samples,).
+
+    A straight line through the nearer half of the first stretch (`LOWEST`) is extrapolated to it. Where that through
+    the whole stretch ends elsewhere, as of a force that rises steeply and then less so, it is uncertain by that too.
+    """
+    beyond = deflection - float(deflection.min())
+    reach = LOWEST * float(beyond.max())
+    (near, error), (whole, _) = (
+        _line_at_zero(beyond[beyond <= r], force[beyond <= r]) for r in (0.5 * reach, reach)
+    )
+    return near, SURE * error + abs(near - whole)
+
+
+def _line_at_zero(x: NDArray[np.float64], f: NDArray[np.float64]) -> tuple[float, float]:
+    """Return where a line through points meets x = 0, and its standard error; the mean where no slope shows."""
+    centred, mean = x - x.mean(), float(f.mean())
+    spread, above = float(centred @ centred), f - mean
+    if x.size > 2 and spread > 0.0:
+        slope = float(centred @ above) / spread
+        left = above - slope * centred
+        variance = float(left @ left) / (x.size - 2)
+        if slope**2 * spread > SURE**2 * variance:
+            return mean - slope * float(x.mean()), math.sqrt(
+                variance * (1.0 / x.size + x.mean() ** 2 / spread)
+            )
+    return mean, math.sqrt(float(above @ above) / max(x.size - 1, 1) / x.size)
 
 
 def refuse_far_zeros(recordings: Iterable[_Named]) -> None:

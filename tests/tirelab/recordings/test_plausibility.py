@@ -78,6 +78,20 @@ def test_a_part_that_snaps_through_begins_where_it_was_driven_without_force() ->
     assert away is None
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+@pytest.mark.parametrize("offset", [0.0, 20.0])
+def test_a_steep_rise_from_no_force_is_no_force_at_the_least_deflection(offset: float, noise: float) -> None:
+    """A soft specimen that is steep at first: over the first 2 mm of 666 its force is 19 N more in the mean."""
+    x = np.arange(0.0, 0.666, 5e-5)
+    way = [0.0, 1e-3, 0.022, 0.044, 0.067, 0.111, 0.2, 0.289, 0.333, 0.4, 0.511, 0.666]
+    force = np.interp(x, way, [0, 22, 246, 312, 337, 379, 477, 598, 687, 879, 1250, 1780])
+    force += offset + noise * np.random.default_rng(2).standard_normal(x.size)
+    found = force_begins(x, force, np.full(x.size, np.inf))
+    assert found is not None
+    assert found.force == pytest.approx(offset, abs=0.1 + noise)
+    assert (found.begins, found.off) == (0.0, False) if offset == 0.0 else found.off
+
+
 @pytest.mark.parametrize(
     ("radius", "said"), [(127.0, "as good as flat"), (-50.0, "as good as flat"), (2.5, "")]
 )
