@@ -29,6 +29,7 @@ from ..recordings.files import recording_files
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
+from ..report.titles import newtons
 from ..simulation.simulate import simulate
 from .diagnose import PoorRecording, diagnose
 from .outcome import (
@@ -352,10 +353,8 @@ def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatAr
     difference = float(np.max(np.abs(replayed - simulated)))
     if difference <= AGREEMENT * float(np.max(np.abs(simulated))) + 1e-12:
         return []
-    return [
-        f"on {recording.name} the corrected FMU differs by up to {difference:.3g} N from the fitted "
-        "simulation; the stated errors are those of the FMU"
-    ]
+    by = f"the corrected FMU differs by up to {newtons(difference)} from the fitted simulation"
+    return [f"on {recording.name} {by}; the stated errors are those of the FMU"]
 
 
 def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:

@@ -44,6 +44,7 @@ from ..identification.part_tire import LEAST_SPRING, holds_air
 from ..identification.surfaces import CM_PER_M
 from ..preprocessing.noise import NEGLIGIBLE
 from ..recordings.recording import Recording
+from ..report.titles import newtons
 from ..simulation.simulate import UPSTREAM, SmoothedMotion, simulate
 from .acceptance import rmse
 from .outcome import Replayed
@@ -197,7 +198,7 @@ class Corrected:
     def notes(self) -> list[str]:
         """Return what a reader of the figures has to know."""
         held = " of a part held at both ends" if self.believed.tire.two_sided else ""
-        law = f"{self.believed.tire.law.name}{held}, which leaves {self.believed.rmse:.3g} N of it"
+        law = f"{self.believed.tire.law.name}{held}, which leaves {newtons(self.believed.rmse)} of it"
         runs = "as the simulated force plus the output additional_force of Correction.fmu, given the same deflection"
         if self.system is not None:
             runs = f"as {SYSTEM}, which couples {_name(self.believed)} with Correction.fmu"
@@ -247,7 +248,7 @@ def deliver(folder: Path, believed: Believed, corrected: TireModel, report: Prog
         return replace(moved, forces=forces)
     remark = (
         "an effect acts before the simulation, yet is delivered as an additional force: given the other deflection the "
-        f"simulation leaves {with_other:.3g} N, with the force {with_force:.3g} N"
+        f"simulation leaves {newtons(with_other)}, with the force {newtons(with_force)}"
     )
     return replace(_written(folder, believed, corrected, False), remark=remark)
 

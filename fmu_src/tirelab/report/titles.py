@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from radialtire import CATALOGUE
 
 from ..names import REFITTED_LAW, UNKNOWN
+from .words import rounded
 
 DEPENDENCE = {
     "deflection": "the deflection",
@@ -167,4 +168,4 @@ def sure(confidence: float) -> str:
 
 def newtons(force: float) -> str:
     """Return a force [N] to three digits with its unit."""
-    return f"{force:.0f} N" if abs(force) >= 999.5 else f"{force:#.3g}".rstrip(".") + " N"
+    return f"{rounded(force, 3)} N"

@@ -10,7 +10,7 @@ from typing import Any
 
 from radialtire import CATALOGUE, FLAT_RADIUS
 
-from ..names import REFITTED_LAW
+from ..names import REFITTED_LAW, with_power
 
 LAW_STATEMENT = (
     "the elastic law has other coefficients than in the baseline; a refitted law is not missing physics"
@@ -93,11 +93,16 @@ def number(value: Any, digits: int = 3) -> str:
     """Return `value` with so many significant digits; a dash where there is none."""
     if value is None or isinstance(value, str) or not math.isfinite(value):
         return str(value) if isinstance(value, str) else "–"
-    text = f"{value:#.{digits}g}".rstrip(".") if 0.0 < abs(value) < 10**digits else f"{value + 0.0:.0f}"
-    if "e" in text:
-        mantissa, exponent = text.split("e")
-        text = f"{mantissa}·10^{int(exponent)}"
-    return text.replace("-", "−")
+    return rounded(value, digits).replace("-", "−")
+
+
+def rounded(value: float, digits: int) -> str:
+    """Return a value with so many significant digits, all those before the point, and a power of ten where it is small.
+
+    Its minus sign is that of the keyboard, as in sentences on a terminal.
+    """
+    small = 0.0 < abs(value) < 10**digits - 0.5
+    return with_power(f"{value:#.{digits}g}".rstrip(".") if small else f"{value + 0.0:.0f}")
 
 
 MOST_DECIMALS = 6

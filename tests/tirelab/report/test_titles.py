@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from radialtire import CATALOGUE
 from tirelab.names import REFITTED_LAW, UNKNOWN
-from tirelab.report import titles
+from tirelab.report import titles, words
 
 REMAINS = ("deflection", "rate", "acceleration", "time", "force")
 """The coordinates of diagnosis.json on which a remainder may depend."""
@@ -60,6 +60,7 @@ def test_forces_and_confidence() -> None:
         "1000 N",
         "-1500 N",
     ]
+    assert titles.newtons(9.6e-5) == f"{words.number(9.6e-5)} N" == "9.60·10⁻⁵ N"
     assert titles.sure(0.946) == "Confidence 95 %."
 
 

@@ -38,7 +38,8 @@ def test_estimates_have_two_digits_of_their_deviation(
         (-0.0, "0"),
         (None, "–"),
         (float("nan"), "–"),
-        (1.5e-7, "1.50·10^-7"),
+        (1.5e-7, "1.50·10⁻⁷"),
+        (999.7, "1000"),
     ],
 )
 def test_numbers_have_three_digits(value: float | None, told: str) -> None:
@@ -56,7 +57,7 @@ def place(by: str, start: Any, stop: Any, unit: str, **more: Any) -> dict[str, A
         (place("deflection", 0.00084, 0.00799, "m"), "0.84 to 7.99 mm"),
         (place("rate", -0.0937, -0.00139, "m/s"), "−93.7 to −1.4 mm/s"),
         (place("rate", -1e-6, 0.5, "m/s"), "0 to 500 mm/s"),
-        (place("deflection", 1.2e-9, 3.45e-9, "m"), "1.20·10^−6 to 3.45·10^−6 mm"),
+        (place("deflection", 1.2e-9, 3.45e-9, "m"), "1.20·10⁻⁶ to 3.45·10⁻⁶ mm"),
         (place("rate", 0.0240, 0.024003, "m/s"), "24.000 to 24.003 mm/s"),
         (place("rate", 0.0599999999, 0.06, "m/s"), "60.000 mm/s"),
         (place("direction", -1.5, 0.0, "1"), "unloading"),
@@ -145,7 +146,7 @@ def test_residuals_are_told_to_a_tenth_of_the_noise() -> None:
     assert words.residual(-0.42, 6.0) == "−0.4"
     assert words.residual(0.00123, 0.0) == "0.001"
     assert words.residual(12.3456, 0.05) == "12.346"
-    assert words.residual(-3.24e-9, 6e-11) == "−3.24·10^−9"
+    assert words.residual(-3.24e-9, 6e-11) == "−3.24·10⁻⁹"
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.0, "0 %"), (0.001, "< 1 %"), (0.424, "42 %"), (1.0, "100 %")])
