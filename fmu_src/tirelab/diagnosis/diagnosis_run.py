@@ -23,13 +23,13 @@ from ..fmu.build import build_fmu
 from ..fmu.foreign import ForeignFmu, Simulation, read_foreign, tire_inside
 from ..fmu.replay import replay
 from ..fmu.system import SYSTEM
+from ..names import with_power
 from ..planning.rig import read_rig
 from ..preprocessing.samples import alone
 from ..recordings.files import recording_files
 from ..recordings.reading import Reading
 from ..recordings.recording import Recording
 from ..report.page import write_report
-from ..report.titles import newtons
 from ..simulation.simulate import simulate
 from .diagnose import PoorRecording, diagnose
 from .outcome import (
@@ -353,7 +353,7 @@ def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatAr
     difference = float(np.max(np.abs(replayed - simulated)))
     if difference <= AGREEMENT * float(np.max(np.abs(simulated))) + 1e-12:
         return []
-    by = f"the corrected FMU differs by up to {newtons(difference)} from the fitted simulation"
+    by = f"the corrected FMU differs by up to {with_power(f'{difference:.3g}')} N from the fitted simulation"
     return [f"on {recording.name} {by}; the stated errors are those of the FMU"]
 
 
