@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
+from ..names import with_power
 from .surfaces import CM_PER_M, describe
 
 WEAK = 1.5
@@ -139,10 +140,14 @@ class Identification:
         return json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
+SMALLEST = 1e-4
+"""A smaller number is written with a power of ten."""
+
+
 def digits(value: float, count: int) -> str:
-    """Return `value` with `count` significant digits and no exponent where it has fewer than eight places."""
-    if not 1e-4 <= abs(value) < 1e8:
-        return f"{value:.{count}g}"
+    """Return `value` with `count` significant digits, with a power of ten below `SMALLEST` and from eight places on."""
+    if not SMALLEST <= abs(value) < 1e8:
+        return with_power(f"{value:.{count}g}")
     return f"{float(f'{value:.{count}g}'):.10f}".rstrip("0").rstrip(".")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 
 from radialtire import Hull1996
@@ -10,8 +11,9 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from ..names import power_of_ten, with_power
 from .part_laws import LawFit
-from .result import Identification, SurfaceFit, digits
+from .result import SMALLEST, Identification, SurfaceFit, digits
 from .surfaces import CM_PER_M, describe
 
 
@@ -54,7 +56,7 @@ def law_table(fits: Sequence[LawFit]) -> Table:
         if len(constants) > SHOWN:
             first, last = (f"{1e3 * x:.3g} mm" for x in (fit.at[0], fit.at[-1]))
             constants = [f"{len(constants)} forces, from {first} to {last}"]
-        table.add_row(fit.name, f"{fit.rmse:.4g}", escape(", ".join(constants)))
+        table.add_row(fit.name, digits(fit.rmse, 4), escape(", ".join(constants)))
     return table
 
 
@@ -85,13 +87,24 @@ def constant_table(identification: Identification) -> Table:
 
 
 def with_uncertainty(value: float, uncertainty: float) -> str:
-    """Return "value ± uncertainty", the uncertainty with two digits and the value to the same place."""
+    """Return "value ± uncertainty", the uncertainty with two digits and the value to the same place.
+
+    Where both are small, one power of ten stands behind both.
+    """
     if not math.isfinite(uncertainty):
         return f"{digits(value, 4)} ± ?"
     if uncertainty == 0.0:
         return f"{digits(value, 4)} ± 0"
     if uncertainty < 1e-6 * abs(value):
-        return f"{digits(value, 6)} ± {uncertainty:.0e}"
+        return f"{digits(value, 6)} ± {with_power(f'{uncertainty:.0e}')}"
+    largest = max(abs(value), uncertainty)
+    if largest >= SMALLEST:
+        return _to_two_digits(value, uncertainty)
+    power = max(math.floor(math.log10(largest)), sys.float_info.min_10_exp)
+    return f"({_to_two_digits(value / 10.0**power, uncertainty / 10.0**power)}){power_of_ten(power)}"
+
+
+def _to_two_digits(value: float, uncertainty: float) -> str:
     places = 1 - math.floor(math.log10(uncertainty))
     if places < -6:  # beyond what anybody counts the noughts of
         return f"{digits(value, 2)} ± {digits(uncertainty, 2)}"
@@ -110,9 +123,9 @@ def _cells(row: SurfaceFit) -> tuple[str, ...]:
     return (
         with_uncertainty(row.coefficient, row.coefficient_uncertainty),
         with_uncertainty(row.exponent, row.exponent_uncertainty),
-        f"{row.rmse:.3g}",
-        f"{row.law_rmse:.3g}",
-        f"{row.largest_error:.3g}",
+        digits(row.rmse, 3),
+        digits(row.law_rmse, 3),
+        digits(row.largest_error, 3),
         f"{CM_PER_M * row.at:.2f}",
         f"{100.0 * row.relative_error:.2g}",
     )
