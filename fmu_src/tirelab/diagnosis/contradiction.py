@@ -178,36 +178,72 @@ def contradiction_of(
     return min(found, key=lambda one: one[0])[1] if found else None
 
 
+@dataclass(frozen=True)
+class Driven:
+    """A held-out recording beside the fitted ones.
+
+    moved: its smoothed motion; alike, otherwise: its compared samples that a fitted recording, or another held-out one,
+    drives alike, and those that it drives otherwise (see `driven_alike`)
+    """
+
+    recording: Recorded
+    moved: SmoothedMotion
+    alike: BoolArray
+    otherwise: BoolArray
+
+    def missed_by(self, tire: TireModel, samples: BoolArray) -> float:
+        """Return the error [N] of a tire on some samples, of the readings or the smoothed motion, where it is less.
+
+        What begins in motion is not followed at once, and what follows noise of the reading is not of the part.
+        """
+        return min(missed(tire, self.recording, m, samples) for m in (None, self.moved))
+
+
+def driven(recordings: Sequence[Recorded], held_out: Sequence[Recorded]) -> list[Driven]:
+    """Return the held-out recordings with how they are driven beside `recordings`."""
+    every = [*recordings, *held_out]
+    motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]
+    states, places = states_of(every, motions), places_of(every, motions)
+    found = []
+    for number, (recording, seen) in enumerate(
+        zip(held_out, compared(held_out), strict=True), len(recordings)
+    ):
+        alike, otherwise = driven_alike(states, places, number)
+        found.append(
+            Driven(recording, smoothed_motion(recording, motions[number]), alike & seen, otherwise & seen)
+        )
+    return found
+
+
 def contradiction_held_out(
-    explanation: Explanation, recordings: Sequence[Recorded], held_out: Sequence[Recorded]
+    explanation: Explanation, recordings: Sequence[Recorded], held_out: Sequence[Driven]
 ) -> Contradiction | None:
     """Return the held-out recording that would agree if one zero or factor of its own were another; None where there
     is none.
 
     explanation: fitted to `recordings`
     """
-    every = [*recordings, *held_out]
-    motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]
-    states, places, seen = states_of(every, motions), places_of(every, motions), compared(held_out)
     level = float(np.sqrt(np.mean([floor.level**2 for floor in explanation.floors])))
-    for number, recording in enumerate(held_out):
-        own_number = len(recordings) + number
-        alike = driven_alike(states, places, own_number)[0] & seen[number]
-        if alike.mean() < NEGLIGIBLE:
+    model = explanation.model
+    for kept in held_out:
+        if kept.alike.mean() < NEGLIGIBLE:
             continue
-        moved = smoothed_motion(recording, motions[own_number])
-        # What begins in motion is not followed at once, and what follows noise of the reading is not of the part.
-        own = min(missed(explanation.model.tire, recording, m, alike) for m in (None, moved))
-        beyond = BEYOND_NOISE * float(np.hypot(level, explanation.model.missed(moved)))
+        own = kept.missed_by(model.tire, kept.alike)
+        beyond = BEYOND_NOISE * float(np.hypot(level, model.missed(kept.moved)))
         if own > max(explanation.error / EXPLAINED, beyond):
-            as_if = _as_if(recording, moved, explanation.model.tire, alike, own)
+            as_if = _as_if(kept.recording, kept.moved, model.tire, kept.alike, own)
             if as_if:
-                model = explanation.model
-                who = (recording.name,)
                 return Contradiction(
-                    *(who, model.names, explanation.error, own, as_if, model.tire.inflated),
+                    *(
+                        (kept.recording.name,),
+                        model.names,
+                        explanation.error,
+                        own,
+                        as_if,
+                        model.tire.inflated,
+                    ),
                     other=recordings[0].name if len(recordings) == 1 else "",
-                    one_series=_of_one_series([*recordings, recording]),
+                    one_series=_of_one_series([*recordings, kept.recording]),
                     held_out=True,
                 )
     return None

@@ -38,7 +38,7 @@ from .acceptance import (
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of, no_surer_than_alternatives
 from .between_recordings import difference_between
 from .confidence import EITHER, confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
-from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of
+from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of, driven
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .missed import Missed, missed_held_out
@@ -218,7 +218,8 @@ def _contradicted_by(
     likeliest = candidates.of(names) if candidates.was_fitted(names) else chosen
     clearly = likeliest.error < EXPLAINED * chosen.error
     judged = likeliest if clearly else chosen
-    return contradiction_held_out(judged, fitted, kept) or missed_held_out(judged, fitted, kept)
+    beside = driven(fitted, kept)
+    return contradiction_held_out(judged, fitted, beside) or missed_held_out(judged, fitted, beside)
 
 
 def _calibrated(effect: NamedEffect, explanation: Explanation, validation: HeldOut) -> NamedEffect:

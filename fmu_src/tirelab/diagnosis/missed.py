@@ -12,22 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..estimation.explanation import Explanation
-from ..preprocessing.data_checks import compared
-from ..preprocessing.motion import motion_of
 from ..preprocessing.noise import NEGLIGIBLE
-from ..preprocessing.samples import Recorded, is_timed
+from ..preprocessing.samples import Recorded
 from ..regressors.dataset import dataset_of
 from ..report.titles import newtons, set_title
-from ..simulation.simulate import smoothed_motion
-from .contradiction import (
-    BEYOND_NOISE,
-    EXPLAINED,
-    Contradiction,
-    driven_alike,
-    missed,
-    places_of,
-    states_of,
-)
+from .contradiction import BEYOND_NOISE, EXPLAINED, Contradiction, Driven
 
 
 @dataclass(frozen=True)
@@ -68,40 +57,30 @@ class Missed(Contradiction):
 
 
 def missed_held_out(
-    explanation: Explanation, recordings: Sequence[Recorded], held_out: Sequence[Recorded]
+    explanation: Explanation, recordings: Sequence[Recorded], held_out: Sequence[Driven]
 ) -> Missed | None:
     """Return the held-out recording that is missed the most where it is driven otherwise; None where none is.
 
     explanation: fitted to `recordings`. Missed is what has an error beyond that of the fitted ones and BEYOND_NOISE,
     and more than EXPLAINED of the baseline's: what a set explains in part, in a form of its own, it does not miss.
     """
-    every = [*recordings, *held_out]
-    motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]
-    states, places, seen = states_of(every, motions), places_of(every, motions), compared(held_out)
     model, found = explanation.model, []
-    for number, recording in enumerate(held_out):
-        own_number = len(recordings) + number
-        otherwise = driven_alike(states, places, own_number)[1] & seen[number]
-        if otherwise.mean() < NEGLIGIBLE:
+    for kept in held_out:
+        if kept.otherwise.mean() < NEGLIGIBLE:
             continue
-        moved = smoothed_motion(recording, motions[own_number])
-        own, before = (
-            min(missed(tire, recording, m, otherwise) for m in (None, moved))
-            for tire in (model.tire, model.baseline)
-        )
+        own, before = (kept.missed_by(tire, kept.otherwise) for tire in (model.tire, model.baseline))
         if own <= max(explanation.error / EXPLAINED, EXPLAINED * before):
             continue
-        level = dataset_of([recording], model.baseline).experiments[0].floor.level
-        if own > BEYOND_NOISE * float(np.hypot(level, model.missed(moved))):
-            other = recordings[0].name if len(recordings) == 1 else ""
+        level = dataset_of([kept.recording], model.baseline).experiments[0].floor.level
+        if own > BEYOND_NOISE * float(np.hypot(level, model.missed(kept.moved))):
             found.append(
                 Missed(
-                    (recording.name,),
+                    (kept.recording.name,),
                     model.names,
                     explanation.error,
                     own,
                     inflated=model.tire.inflated,
-                    other=other,
+                    other=recordings[0].name if len(recordings) == 1 else "",
                     held_out=True,
                 )
             )

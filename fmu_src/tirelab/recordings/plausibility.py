@@ -214,9 +214,8 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
     if abs(float(level[0])) < UNLOADED * largest and abs(begins - low) < AT_START * stroke:
         return Zero(low, stroke, low, least)
     if begins < low and abs(least) <= uncertain:
-        return Zero(
-            low, stroke, low, least
-        )  # no power of the deflection rises as this does, but from no force
+        # No power of the deflection rises as this does, but from no force.
+        return Zero(low, stroke, low, least)
     below = level[centre < begins]
     if below.size and float(np.abs(below).max()) > NO_FORCE * largest:
         return None
