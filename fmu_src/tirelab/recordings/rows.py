@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from .channels import CHANNELS
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
+from .held import held_readings
 from .jumps import false_readings, lost_readings, unevenly_read
 from .origin import Origin
 
@@ -62,8 +62,8 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     """The rows with a value in every required channel; an optional channel with many blanks is left out.
 
     Of equal rows with one time the first is kept, with a note: some machines write the end of a step of a test twice.
-    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them, and rows whose
-    deflection was lost.
+    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them, rows that only
+    repeat a reading which the logger holds, and rows whose deflection was lost.
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
     """
     values = dict(zip(headers, columns.values, strict=True))
@@ -75,19 +75,8 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
         if NOT_MEASURED <= column.max() < np.inf:
             values[name] = np.where(column >= NOT_MEASURED, np.nan, column)
     values, kept, notes = _without_blanks(origin, columns, values)
-    for which, said in (
-        (_repeated, "equal to the row before, its time among it"),
-        (_before_the_clock, "before the clock runs"),
-        (
-            partial(_misread, lost_readings),
-            "readings that the gauge of the deflection lost, far from those before and after",
-        ),
-        (
-            _read_falsely,
-            "false readings of the deflection, off the motion before and after by more than noise",
-        ),
-    ):
-        skipped = which(values)
+    for which in (_repeated, _before_the_clock, _held, _lost, _read_falsely):
+        skipped, said = which(values)
         if len(skipped):
             whole = np.arange(samples) if kept is None else kept
             notes.append(f"skipped as {said}: {_places(columns, whole[skipped])}")
@@ -136,47 +125,62 @@ def _without_blanks(
     return {name: column[kept] for name, column in values.items()}, kept, notes
 
 
-def _repeated(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+Skipped = tuple[NDArray[np.intp], str]
+"""Rows to skip, and as what they are skipped."""
+
+NONE = np.empty(0, dtype=np.intp)
+
+
+def _repeated(values: Mapping[str, FloatArray]) -> Skipped:
     """Return the rows that equal the one before in every channel, the time among them."""
-    time = values.get("time")
+    said, time = "equal to the row before, its time among it", values.get("time")
     if time is None:
-        return np.empty(0, dtype=np.intp)
+        return NONE, said
     found = np.flatnonzero(time[1:] == time[:-1]) + 1
     same = [column[found] == column[found - 1] for column in values.values()]
-    return found[np.logical_and.reduce(same)] if len(found) else found
+    return (found[np.logical_and.reduce(same)] if len(found) else found), said
 
 
-def _before_the_clock(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+def _before_the_clock(values: Mapping[str, FloatArray]) -> Skipped:
     """Return the rows at the beginning that have the time of the row after them; none where other rows repeat one too.
 
     A machine may write what it reads while it waits for the start of the test. One row alone may be a slip; it is none
     where the deflection has not changed after it.
     """
+    said = "before the clock runs"
     time, deflection = values.get("time"), values.get("deflection")
-    none = np.empty(0, dtype=np.intp)
     if time is None or len(time) < 2 or not time[0] < time[-1]:
-        return none
+        return NONE, said
     still = np.flatnonzero(time[1:] == time[:-1])
     if len(still) == 1 and (deflection is None or deflection[0] != deflection[1]):
-        return none
-    return still if np.array_equal(still, np.arange(len(still))) else none
+        return NONE, said
+    return (still if np.array_equal(still, np.arange(len(still))) else NONE), said
 
 
-def _misread(
-    search: Callable[[FloatArray, FloatArray], NDArray[np.intp]], values: Mapping[str, FloatArray]
-) -> NDArray[np.intp]:
-    """Return the rows whose deflection was not read, as a search in deflection and force finds them."""
-    deflection, force = values.get("deflection"), values.get("force")
-    if deflection is None or force is None:
-        return np.empty(0, dtype=np.intp)
-    return search(deflection, force)
+def _held(values: Mapping[str, FloatArray]) -> Skipped:
+    """Return the rows in which one gauge has no new reading, as the logger writes rows more often."""
+    name, rows, repeats = held_readings(*_gauges(values))
+    return repeats, f"repeats of the last reading of the {name}, which is new in one of {rows} rows only"
 
 
-def _read_falsely(values: Mapping[str, FloatArray]) -> NDArray[np.intp]:
+def _lost(values: Mapping[str, FloatArray]) -> Skipped:
+    """Return the rows whose deflection was not read."""
+    said = "readings that the gauge of the deflection lost, far from those before and after"
+    return lost_readings(*_gauges(values)), said
+
+
+def _read_falsely(values: Mapping[str, FloatArray]) -> Skipped:
     """Return the rows whose deflection is off the motion."""
-    count, time = len(next(iter(values.values()))), values.get("time")
-    uneven = np.ones(count, dtype=bool) if time is None else unevenly_read(time)
-    return _misread(partial(false_readings, uneven=uneven), values)
+    gauges, time = _gauges(values), values.get("time")
+    uneven = np.ones(gauges[0].size, dtype=bool) if time is None else unevenly_read(time)
+    said = "false readings of the deflection, off the motion before and after by more than noise"
+    return false_readings(*gauges, uneven), said
+
+
+def _gauges(values: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return deflection and force, without samples where one of them is missing."""
+    both = values.keys() >= {"deflection", "force"}
+    return (values["deflection"], values["force"]) if both else (np.empty(0), np.empty(0))
 
 
 def _places(columns: Columns, rows: NDArray[np.intp]) -> str:
