@@ -16,8 +16,9 @@ IntArray = NDArray[np.intp]
 FEWEST = 20
 """New readings at least."""
 
-ONE_STEP = 1.5
-"""A change below this many of the smallest is one step of the gauge; it may be rounded once more."""
+ALIKE, MOST_ALIKE, STEPS = 0.02, 0.5, 2
+"""Changes that differ by less than the first part of the usual one are alike. More than the second part of the changes
+of a gauge that reads in coarse steps are so many different ones: one step, or two."""
 
 REGULAR = 0.9
 """Part of the readings that are held for the usual number of rows, or a multiple of it, within one row."""
@@ -52,11 +53,11 @@ def _rows_of_reading(own: FloatArray, other: FloatArray) -> int:
         return 1
     with np.errstate(all="ignore"):  # a damaged number may be any
         changes = np.abs(own[new] - own[new - 1])
-        far = changes > ONE_STEP * changes.min()
+        sizes = np.sort(np.unique(np.rint(changes / (ALIKE * np.median(changes))), return_counts=True)[1])
         moved = np.abs(np.diff(other))
         between = np.delete(moved, new - 1)
         along = np.mean(moved[new - 1]) > JUMPS * np.mean(between)
-    return 1 if along or np.mean(far) < REGULAR else rows
+    return 1 if along or np.sum(sizes[-STEPS:]) > MOST_ALIKE * new.size else rows
 
 
 def _repeats(values: FloatArray, rows: int) -> IntArray:

@@ -56,6 +56,10 @@ def test_a_rest_that_repeats_a_reading_was_read_as_often() -> None:
     [
         (STROKE + noise(1, 1e-4), 200.0 * STROKE + noise(2, 1.0)),
         (np.round(STROKE / 0.02) * 0.02, 200.0 * STROKE + noise(2, 1.0)),  # a coarse gauge
+        (
+            np.append(1e-4, np.round(STROKE / 0.02) * 0.02)[:-1],
+            200.0 * STROKE + noise(2, 1.0),
+        ),  # begun off its steps
         (STROKE, np.round(20.0 * STROKE + noise(2, 0.3))),  # a coarse load cell that trembles
         (
             np.round(STROKE / 0.04) * 0.04,
