@@ -358,16 +358,16 @@ def _sized(
 ) -> tuple[FloatArray, list[float]]:
     """Return a response near the wanted size, and its parameters; an empty response where it is not finite."""
     adjustable = any(p.role == "strength" for p in effect.parameters)
-    curve = np.zeros(0)
     for _ in range(3):
+        tried = values
         curve = dataset.response(arranged(beside.tire, [(effect.name, tuple(values))])) - beside.response
         size = size_of(curve)
         if not np.isfinite(size):
             return np.zeros(0), values
         if not adjustable or size <= 0.0 or 0.4 < size / wanted < 2.5:
             break
-        values = strengthened(effect, values, wanted / size)
-    return curve, values
+        values = strengthened(effect, tried, wanted / size)
+    return curve, tried
 
 
 def _basis(deviations: FloatArray) -> FloatArray:

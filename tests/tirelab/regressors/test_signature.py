@@ -71,6 +71,23 @@ def test_draws_have_the_size_one_and_the_values_that_made_them(dataset: Dataset)
     np.testing.assert_allclose(dataset.response(again), signature.curves[0] * signature.sizes[0], rtol=1e-6)
 
 
+def test_values_that_do_not_reach_the_wanted_size_are_those_of_their_curve() -> None:
+    # An indenter in eight cycles to twice the force each; a tenth of the largest depth so far comes back.
+    deepest = 7e-7 * np.sqrt(2.0) ** np.repeat(np.arange(-7.0, 1.0), 160)
+    way = np.tile(np.concatenate([np.linspace(0.3, 1.0, 80), np.linspace(1.0, 0.3, 80)]), 8)
+    come_back = np.tile(np.arange(160) >= 80, 8)
+    force = 0.045 * (deepest / 7e-7) ** 2 * np.where(come_back, way**1.5, way**2)
+    x = deepest * np.where(come_back, 0.9 + 0.1 * way, way)
+    part = TireModel(law=PowerLaw(2.17e6, 1.9), two_sided=True, inflated=False)
+    noise = 1e-5 * np.random.default_rng(3).normal(size=x.size)
+    recording = Recording("indent", 0.1 * np.arange(x.size), x, np.full(x.size, np.inf), force + noise)
+    cycles = dataset_of([recording], part)
+    for signature in signatures_of(candidates(), cycles):
+        for curve, size, values in zip(signature.curves, signature.sizes, signature.values, strict=True):
+            response = cycles.response(arranged(part, [(signature.name, values)]))
+            np.testing.assert_allclose(response, curve * size, atol=1e-5 * abs(size))
+
+
 @pytest.mark.parametrize(
     "name", ["viscous_damping", "rate_independent_hysteresis", "pressure_leak", "inertia"]
 )
