@@ -214,14 +214,21 @@ def _part(
 
 def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:
     """Return the advice to identify the law from the ramps before holds; "" where no recording is nearly all a hold."""
-    from ..identification.part_tire import ramp_before_hold
+    from ..identification.part_tire import ramp_before_hold, stroke_of
     from ..recordings.formats.table import listed
+    from ..recordings.pieces import split_piece
 
-    ramps = {path: None if "@" in path.name else ramp_before_hold(r) for path, r in found.items()}
-    held = [path.name for path, ramp in ramps.items() if ramp]
-    if not held:
+    stroke = stroke_of(list(found.values()))
+    ramps = {path: ramp_before_hold(r, stroke) for path, r in found.items()}
+    held, pieces = [path.name for path, ramp in ramps.items() if ramp], []
+    for path, ramp in ramps.items():
+        if ramp is None:
+            pieces.append(str(path))
+        elif ramp[0] < ramp[1]:
+            file, piece = split_piece(path)
+            pieces.append(f"{file}{piece.part}@{ramp[0]:.4g}s:{ramp[1]:.4g}s")
+    if not held or not pieces:
         return ""
-    pieces = [f"{path}@{ramp[0]:.4g}s:{ramp[1]:.4g}s" if ramp else str(path) for path, ramp in ramps.items()]
     return (
         f"nearly all of {listed(held)} is a hold, in which the force may relax, and this is its law, of no spring: "
         f"identify the way there, `{words.identify(pieces, part, tire)}`{words.then(tire)}"

@@ -345,10 +345,8 @@ def _explanation(
 def _share(ranking: Ranking, chosen: Fit, name: str) -> float:
     without = ranking.of(frozenset(chosen.names) - {name})
     misfit = chosen.problem.dataset.misfit
-    nothing = ranking.of(frozenset())
-    of_held_out = 0.0 if nothing is None else float(np.sum(nothing.held_out_residual**2))
-    missed = float(misfit @ misfit) + of_held_out - chosen.residual.size - chosen.held_out_residual.size
-    gained = 0.0 if without is None else without.left - chosen.left
+    missed = float(misfit @ misfit) - chosen.residual.size
+    gained = 0.0 if without is None else without.power - chosen.power
     return float(np.clip(gained / max(missed, 1e-12), 0.0, 1.0))
 
 

@@ -117,11 +117,6 @@ class Fit:
         return float(self.residual @ self.residual)
 
     @property
-    def left(self) -> float:
-        """Sum of squares of the residual on fitted and on held-out recordings."""
-        return self.power + float(self.held_out_residual @ self.held_out_residual)
-
-    @property
     def form_error(self) -> float:
         """Root mean square of the form errors of all its effects, in units of the noise."""
         tire = self.problem.dataset.tire

@@ -192,23 +192,30 @@ def falling(fit: LawFit, linear: LawFit) -> str:
     )
 
 
-def ramp_before_hold(recording: Recording) -> tuple[float, float] | None:
-    """Return the times [s] of the ramp after which a recording is a hold; None where it is not nearly all a hold.
+def ramp_before_hold(recording: Recording, stroke: float) -> tuple[float, float] | None:
+    """Return the times [s] of the ramp after which a recording is a hold, equal where it begins with that; None where
+    it is not nearly all a hold.
 
     In a hold the force relaxes at one deflection: a law that is fitted to it says nothing of a spring.
+    stroke [m]: of all recordings
     """
     deflection = recording.deflection
-    near = np.abs(deflection - np.median(deflection)) < AT_REST * np.ptp(deflection)
+    near = np.abs(deflection - np.median(deflection)) < AT_REST * stroke
     begun = float(recording.time[int(np.argmax(near))])
-    held = recording.timed and float(np.mean(near)) > MOSTLY_HELD and begun > recording.time[0]
+    held = recording.timed and float(np.mean(near)) > MOSTLY_HELD
     return (float(recording.time[0]), begun) if held else None
+
+
+def stroke_of(recordings: Sequence[Recording]) -> float:
+    """Return the stroke [m] of all recordings together."""
+    return float(np.ptp([bound for r in recordings for bound in (r.deflection.min(), r.deflection.max())]))
 
 
 def _ramp_advice(recordings: Sequence[Recording]) -> str:
     """Return the advice to identify the law from the ramp before the first hold; "" where no recording is a hold."""
     for recording in recordings:
-        ramp = ramp_before_hold(recording)
-        if ramp is not None:
+        ramp = ramp_before_hold(recording, stroke_of(recordings))
+        if ramp is not None and ramp[0] < ramp[1]:
             name = recording.name if recording.source is None else recording.source.name
             return (
                 f"nearly all of {name} is a hold, so identify the law from the way there, "

@@ -96,7 +96,7 @@ def with_uncertainty(value: float, uncertainty: float) -> str:
     if uncertainty == 0.0:
         return f"{digits(value, 4)} ± 0"
     if uncertainty < 1e-6 * abs(value):
-        return f"{digits(value, 6)} ± {with_power(f'{uncertainty:.0e}')}"
+        return f"{digits(value, 6)} ± {with_power(f'{uncertainty:.1g}')}"
     largest = max(abs(value), uncertainty)
     if largest >= SMALLEST:
         return _to_two_digits(value, uncertainty)

@@ -70,7 +70,8 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
         within, between = _spreads(value - followed, np.concatenate(cells))
         if within < max(channel.resolution, between):
             same = (
-                f"the {channel.name} was the same whenever a deflection was visited: record at a second one"
+                f"the {channel.name} was the same whenever a deflection was visited: record at a second "
+                f"{channel.name}"
             )
             unvaried |= {e.name: same for e in readers}
     return ChannelEvidence(frozenset(impossible), unvaried)

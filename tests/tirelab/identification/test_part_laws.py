@@ -24,6 +24,7 @@ def test_a_part_that_is_only_pulled_has_its_line_too(start: float) -> None:
     assert with_uncertainty(0.0, 0.0) == "0 ± 0"
     assert "00000" not in with_uncertainty(1.3e27, 1.6e28)
     assert with_uncertainty(1234567.0, 25000.0) == "1235000 ± 25000"
+    assert with_uncertainty(8550760.0, 4.2) == "8550760 ± 4"
     # A in N/cm^B of a steep power of a large deflection
     assert with_uncertainty(1.2346e-66, 5.6e-68) == "(1.235 ± 0.056)·10⁻⁶⁶"
     assert with_uncertainty(1.3e27, 1.6e28) == "1.3·10²⁷ ± 1.6·10²⁸"

@@ -53,7 +53,10 @@ def test_without_a_channel_nothing_that_needs_it_can_be() -> None:
 def test_a_constant_pressure_refutes_what_would_change_it() -> None:
     found = shown(pressed(SET + GAUGE))
     assert {"pressure_leak", "gas_compression", "warm_up"} <= found.channels.impossible
-    assert "was the same" in found.hidden("inflation_pressure")
+    reason = found.hidden("inflation_pressure")
+    assert "was the same" in reason
+    # what stands behind the colon is told alone, as what to do next
+    assert reason.endswith(": record at a second pressure")
 
 
 @pytest.mark.parametrize(
