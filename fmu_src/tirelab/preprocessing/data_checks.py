@@ -136,7 +136,7 @@ before), above which the gauge did not follow; a progressive tire is stiffer the
 MAJORITY = 0.5
 """A majority: of the samples near the largest reading (the motion is then hardly more than its noise), and of the stays
 in which the gauge is found at the end of its travel, of a remainder's samples whose values are there again, of the
-distance between a set and the mean of all."""
+distance between a set and the mean of all, of the way to a peak in its last step."""
 
 ONWARDS = 0.5
 """Rate of the force in the first fifth of a stay over that before it: halfway between going on (1) and stopping (0)."""
@@ -188,14 +188,19 @@ def spikes(misfit: FloatArray) -> BoolArray:
     """Return which single samples (n,) are outliers: they differ from both neighbours in the same direction, by more
     than white noise makes one of all samples differ (BY_CHANCE).
 
-    Both differences are larger than a limit only if their mean is, whose variance is 1.5 times that of a sample. The
-    first and the last one have one neighbour: they differ from it by as much more than the misfit rises there.
+    Both differences are larger than a limit only if their mean is, whose variance is 1.5 times that of a sample. Nor is
+    it a peak of the misfit, to which the samples before and after lead: theirs differ by less than MAJORITY of that,
+    noise apart. The first and the last one have one neighbour: they differ from it by as much more than the misfit
+    rises there.
     """
     level = white_level(misfit)
     far = float(np.sqrt(1.5) * norm.isf(BY_CHANCE / (2.0 * misfit.size)))
     lone = np.zeros(misfit.size, dtype=bool)
-    before, after = misfit[1:-1] - misfit[:-2], misfit[1:-1] - misfit[2:]
-    lone[1:-1] = (np.abs(before) > far * level) & (np.abs(after) > far * level) & (before * after > 0.0)
+    steps = np.diff(misfit, prepend=misfit[0], append=misfit[-1])
+    way = np.sign(steps[1:-2])
+    least = np.minimum(way * steps[1:-2], -way * steps[2:-1])
+    leading = np.maximum(way * steps[:-3], -way * steps[3:]) - far * level
+    lone[1:-1] = (least > far * level) & (leading < MAJORITY * least)
     for end, near, inwards in ((0, 1, misfit), (-1, -2, misfit[::-1])):
         step, *others = np.diff(inwards[: FEWEST_STEPS + 1]).tolist()
         lone[end] = not lone[near] and abs(step) > far * max(level, abs(float(np.median(others))))

@@ -307,6 +307,14 @@ def test_noise_and_a_steep_misfit_have_no_outliers() -> None:
     assert not spikes(steep).any()
 
 
+def test_a_peak_of_several_samples_is_no_outlier_and_two_near_ones_are() -> None:
+    sample = np.arange(1000)
+    for width in (1.5, 3.0, 10.0):
+        # The grip slips: a dip of 100 times the noise with samples on both its sides.
+        assert not spikes(with_lone() - 100.0 * np.exp(-0.5 * ((sample - 500) / width) ** 2)).any()
+    assert spikes(with_lone(at_500=40.0, at_502=40.0))[[500, 502]].all()
+
+
 def test_what_stands_out_often_is_noise_of_its_own() -> None:
     often = with_lone(**{f"at_{place}": 40.0 for place in range(5, 1000, 10)})
     assert not spikes(often).any()
