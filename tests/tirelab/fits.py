@@ -38,9 +38,12 @@ def fit_of(
     positions = problem.positions(values)
     slopes = np.ones((dataset.misfit.size, positions.size))
     residual = problem.residual(positions)
-    near = Linearised(residual, slopes, positions, (), (), problem.groups, problem.widths(positions))
+    no_drift = np.zeros((residual.size, 0))
+    near = Linearised(
+        residual, slopes, positions, (), (), no_drift, problem.groups, problem.widths(positions)
+    )
     left = float(residual @ residual)
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), left, 1.0, {}, 1)
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), 0.0, left, left, {}, 1)
 
 
 def model_of(

@@ -90,9 +90,9 @@ def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Dis
 
     It is the marginal likelihood linearised about the fit, whose parameters are refitted, at the best of a few sizes.
     """
-    before, variance = discrepancy.profile(base.beyond_forms)
+    before, variance = discrepancy.profile(base.beyond_drift)
     beside = _beside(base.slopes, variance)
-    left = float(np.sqrt(base.beyond_forms / base.residual.size))
+    left = float(np.sqrt(base.beyond_drift / base.residual.size))
     found = []
     for signature in signatures:
         columns = beside(signature.columns)
@@ -102,7 +102,7 @@ def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Dis
         best = -np.inf
         for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
             z = size * turned / (values * size**2 + variance)
-            power = base.beyond_forms - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
+            power = base.beyond_drift - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
             after, new = discrepancy.profile(power)
             determinant = float(np.log1p(values * size**2 / new).sum())
             best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))

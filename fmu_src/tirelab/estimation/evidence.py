@@ -1,4 +1,4 @@
-"""The evidence of a fitted set: Laplace's approximation, with form errors, discrepancy and the law's scales."""
+"""The evidence of a fitted set: Laplace's approximation, with form errors, drift, discrepancy and the law's scales."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ PASSES = 2
 FORM_SCALES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 """Scales of the form errors that are tried (type II); the form error of an effect is at most the whole effect."""
 
+DRIFT_SCALES = tuple(scale for scale in LAW_SCALES if scale <= 1.0)
+"""Scales of the drift that are tried, as parts of the misfit; the smallest stands for none."""
+
 
 @dataclass(frozen=True)
 class Linearised:
@@ -31,6 +34,7 @@ class Linearised:
 
     residual (m,); slopes (m, k); positions (k,) on the axes of the priors
     forms: for each effect the columns (m, f) of its form errors; errors: for each effect its form error, as declared
+    drift (m, d): columns of a drift of the force's zero, as large as the misfit
     groups (k,): number of the group of a parameter whose prior's scale is to be found; 0: the prior is as declared
     widths (k,): standard deviations of the priors; more than 1 for a parameter with a scale of its own
     """
@@ -40,23 +44,26 @@ class Linearised:
     positions: FloatArray
     forms: tuple[NDArray[np.floating], ...]
     errors: tuple[float, ...]
+    drift: NDArray[np.floating]
     groups: IntArray
     widths: FloatArray
 
 
 @dataclass(frozen=True)
 class LaplaceEvidence:
-    """log_likelihood: marginal; variance: V of the discrepancy; scales: of the form errors of each effect
+    """log_likelihood: marginal; variance: V of the discrepancy
+    scales: of the form errors of each effect; drift: of the drift
     law_scales: those of the groups of the law's parameters, by their numbers
     beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them
-    freedom: number of parameters and form errors that the data determine, sum of c / (c + V) over the curvatures c
+    and to the drift; beyond_drift (m,): minus what the drift explains too
     """
 
     log_likelihood: float
     variance: float
     scales: FloatArray
+    drift: float
     beyond_forms: FloatArray
-    freedom: float
+    beyond_drift: FloatArray
     law_scales: Mapping[int, float]
 
 
@@ -74,11 +81,8 @@ def laplace_evidence(fit: Linearised, discrepancy: Discrepancy) -> LaplaceEviden
                 if value[0] > best[0]:
                     best, width = value, trial
                     law_scales[int(group)] = scale
-    cost = _cost_of_scales(fit.widths)
-    if not fit.forms:
-        freedom = _freedom(gram * np.outer(width, width), best[1])
-        return LaplaceEvidence(best[0] - cost, best[1], np.zeros(0), fit.residual, freedom, law_scales)
     found = _evidence_with_forms(fit, width, discrepancy)
+    cost = _cost_of_scales(fit.widths)
     return replace(found, log_likelihood=found.log_likelihood - cost, law_scales=law_scales)
 
 
@@ -104,13 +108,13 @@ def _parameter_evidence(
 
 
 def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discrepancy) -> LaplaceEvidence:
-    """Return the evidence with form errors: linear coefficients beside the parameters, which are refitted with them.
+    """Return the evidence with form errors and a drift: linear coefficients beside the parameters, which are refitted.
 
-    One scale for all effects is found first, then those of the effects one after the other.
+    One scale for the forms of all effects is found first, then that of the drift and those of the effects one by one.
     """
     variances = discrepancy.grid
-    k, counts = width.size, [f.shape[1] for f in fit.forms]
-    columns = np.concatenate([fit.slopes, *fit.forms], axis=1)
+    k, counts = width.size, [fit.drift.shape[1], *(f.shape[1] for f in fit.forms)]
+    columns = np.concatenate([fit.slopes, fit.drift, *fit.forms], axis=1)
     gram, moment = columns.T @ columns, columns.T @ fit.residual
     # The slopes are those of the residual: a step along them takes the positions the other way.
     pull = np.concatenate([-fit.positions / width, np.zeros(sum(counts))])
@@ -118,10 +122,10 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
     fixed = -0.5 * (power / variances + float(pull @ pull)) + discrepancy.terms
     # The gain that the parameters alone could still make is not counted: a fit that stopped early must not win by it.
     alone, _, _ = _linear_gain(gram[:k, :k] * np.outer(width, width), moment[:k] * width, pull[:k], variances)
-    most = 1.0 / np.array(fit.errors)
+    none, most = DRIFT_SCALES[0], 1.0 / np.array(fit.errors)
 
     def of(scales: FloatArray) -> tuple[float, FloatArray, int, FloatArray]:
-        wide = np.concatenate([width, np.repeat(scales, counts)])
+        wide = np.concatenate([width, np.repeat(np.where(scales > none, scales, 0.0), counts)])
         gained, determinant, given_way = _linear_gain(
             gram * np.outer(wide, wide), moment * wide, pull, variances
         )
@@ -129,22 +133,17 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
         best = int(np.argmax(values))
         return float(values[best]) - _cost_of_scales(scales), scales, best, given_way(best) * wide
 
-    best = max((of(np.minimum(scale, most)) for scale in FORM_SCALES), key=lambda f: f[0])
-    for i in range(len(counts)) if len(counts) > 1 else ():
-        own = [np.where(np.arange(len(counts)) == i, scale, best[1]) for scale in FORM_SCALES]
-        best = max(
-            (best, *(of(s) for s in own if s[i] <= most[i] and s[i] != best[1][i])), key=lambda f: f[0]
-        )
+    together = [np.append(none, np.minimum(scale, most)) for scale in (FORM_SCALES if fit.forms else (1.0,))]
+    best = max((of(scales) for scales in together), key=lambda f: f[0])
+    tried = [DRIFT_SCALES, *([s for s in FORM_SCALES if s <= m] for m in most)]
+    for i, own in enumerate(tried):
+        changed = (np.where(np.arange(len(counts)) == i, s, best[1]) for s in own if s != best[1][i])
+        best = max((best, *map(of, changed)), key=lambda f: f[0])
     likelihood, scales, index, coefficients = best
-    beyond_forms, variance = fit.residual - columns @ coefficients, float(variances[index])
-    wide = np.concatenate([width, np.repeat(scales, counts)])
-    freedom = _freedom(gram * np.outer(wide, wide), variance)
-    return LaplaceEvidence(likelihood, variance, scales, beyond_forms, freedom, {})
-
-
-def _freedom(gram: FloatArray, variance: float) -> float:
-    curvatures = np.maximum(np.linalg.eigvalsh(gram), 0.0)
-    return float(np.sum(curvatures / (curvatures + variance)))
+    beyond_drift = fit.residual - columns @ coefficients
+    beyond_forms = beyond_drift + fit.drift @ coefficients[k : k + counts[0]]
+    variance, drift = float(variances[index]), float(scales[0]) if scales[0] > none else 0.0
+    return LaplaceEvidence(likelihood, variance, scales[1:], drift, beyond_forms, beyond_drift, {})
 
 
 def _linear_gain(

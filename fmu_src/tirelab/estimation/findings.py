@@ -68,19 +68,18 @@ def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
 
 
 def _with_form_errors(fit: Fit) -> NDArray[np.float64]:
-    """Return the columns (m, k + f) of the parameters and of the form errors, those of effects at least as declared.
+    """Return the columns (m, k + f) of the parameters, the drift and the form errors, those of effects at least as
+    declared.
 
     A part of an error looks like another value of a parameter, and the residual does not show it, however well the rest
     fits: an effect's response may be off by its form error as a whole, too. A refitted law has any strength anyway.
     """
-    if not fit.near.forms:
-        return fit.jacobian
     curves, found = fit.problem.curves(fit.positions), fit.scales.tolist()
     scales = [own if name == LAW else max(own, 1.0) for name, own in zip(curves, found, strict=True)]
     forms = [f * scale for f, scale in zip(fit.near.forms, scales, strict=True)]
     pairs = zip(curves.items(), scales, strict=True)
     wholes = [form_error(name) * scale * curve[:, None] for (name, curve), scale in pairs if name != LAW]
-    return np.concatenate([fit.jacobian, *forms, *wholes], axis=1)
+    return np.concatenate([fit.jacobian, fit.drift * fit.near.drift, *forms, *wholes], axis=1)
 
 
 def _covariance(slopes: NDArray[np.float64]) -> NDArray[np.float64]:

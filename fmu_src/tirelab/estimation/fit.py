@@ -16,10 +16,11 @@ from radialtire import CATALOGUE, TireModel
 from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
-from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
+from ..selection.search import PRIOR_ODDS, Discrepancy
 from .evidence import Linearised, laplace_evidence
+from .forms import drifts, form_errors, smooth_functions
 from .minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
-from .problem import EstimationProblem, Values, form_errors, law_start, problem_of, smooth_functions
+from .problem import EstimationProblem, Values, law_start, problem_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]
@@ -49,8 +50,8 @@ class Fit:
 
     positions (k,): of its free parameters; log_likelihood: marginal (Laplace); variance: V of the discrepancy
     residual (m,), jacobian (m, k): in units of the noise; near: the linearisation from which the evidence is computed
-    scales: of the form errors of each effect
-    beyond_forms: sum of squares that form errors and refitted parameters leave; slow: V of what is slow in it
+    scales: of the form errors of each effect; drift: scale of the drift of the force's zero
+    beyond_forms: sum of squares that form errors and refitted parameters leave; beyond_drift: that a drift leaves too
     sizes: root mean square of the response that each effect adds to the others, by its name
     evaluations: simulations of all dataset's blocks that it took, from all its starts
     law_scales: of the groups of the law's parameters, where not that of their priors
@@ -66,8 +67,9 @@ class Fit:
     jacobian: FloatArray
     near: Linearised
     scales: FloatArray
+    drift: float
     beyond_forms: float
-    slow: float
+    beyond_drift: float
     sizes: Mapping[str, float]
     evaluations: int
     law_scales: Mapping[int, float] = field(default_factory=dict)
@@ -107,9 +109,9 @@ class Fit:
 
     @property
     def slopes(self) -> FloatArray:
-        """Columns (m, k + f) of all linear coefficients: of the parameters and of the form errors."""
+        """Columns (m, k + f) of all linear coefficients: of the parameters, the form errors and the drift."""
         forms = (f * scale for f, scale in zip(self.near.forms, self.scales, strict=True))
-        return np.concatenate([self.jacobian, *forms], axis=1)
+        return np.concatenate([self.jacobian, *forms, self.drift * self.near.drift], axis=1)
 
     @property
     def power(self) -> float:
@@ -136,10 +138,9 @@ class Fit:
             log_likelihood=evidence.log_likelihood,
             variance=evidence.variance,
             scales=evidence.scales,
+            drift=evidence.drift,
             beyond_forms=float(evidence.beyond_forms @ evidence.beyond_forms),
-            slow=slow_variance(
-                self.problem.dataset.apart(evidence.beyond_forms), discrepancy.effective, evidence.freedom
-            ),
+            beyond_drift=float(evidence.beyond_drift @ evidence.beyond_drift),
             law_scales=evidence.law_scales,
         )
 
@@ -160,14 +161,21 @@ def fitted(
     has_optional = len(whole.parameters) > len(best.problem.parameters)
     if has_optional and best.log_likelihood >= wanted - OPTIONAL_GAIN:
         tried.append(_optimise(whole, best.values, discrepancy, best.variance))
-        best = max((best, tried[-1]), key=lambda f: f.log_likelihood)
+        best = _better(best, tried[-1])
         if LAW in best.values and dataset.tire.two_sided:
             anew = {**best.values, LAW: law_start(dataset)}
-            tried.append(_optimise(whole, anew, discrepancy, discrepancy.of_forms))
-            likely, less = sorted((best, tried[-1]), key=lambda f: -f.log_likelihood)
-            near = likely.log_likelihood - less.log_likelihood < BARE_MENTION
-            best = less if near and less.power < MAJORITY * likely.power else likely
+            tried.append(_optimise(whole, anew, discrepancy, discrepancy.usual))
+            best = _better(best, tried[-1])
     return replace(best, evaluations=sum(f.evaluations for f in tried))
+
+
+def _better(first: Fit, other: Fit) -> Fit:
+    """Return the likelier of two fits of one set; where neither is by more than BARE_MENTION, the first unless the
+    other leaves less than half: optional parameters of next to no size cost nothing, but would blur all others.
+    """
+    if abs(other.log_likelihood - first.log_likelihood) < BARE_MENTION:
+        return other if other.power < MAJORITY * first.power else first
+    return max((first, other), key=lambda f: f.log_likelihood)
 
 
 def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
@@ -209,6 +217,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         # Most of a fit's memory: seven digits are enough for what is known to one.
         tuple(f.astype(np.float32) for f in forms.values()),
         tuple(form_error(name, problem.dataset.tire) for name in forms),
+        drifts(problem.dataset).astype(np.float32),
         problem.groups[~held],
         problem.widths(found.positions)[~held],
     )
@@ -221,8 +230,9 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         found.jacobian,
         near,
         np.ones(len(forms)),
-        np.inf,
         1.0,
+        np.inf,
+        np.inf,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
         beyond=_beyond(problem, held, found.positions),

@@ -1,18 +1,7 @@
 """A set of effects as an estimation problem: from the values of its free parameters to a tire and its residual.
 
 The position of a free parameter is measured on the axis of its prior: 0 at the centre of the prior, 1 one standard
-deviation above it. The discrepancy that the form of a fitted effect may cause is its own response, modulated smoothly:
-
-    discrepancy = sum_e c_e f_e scale_e sum_j z_j phi_j,   z_j ~ N(0, 1)
-
-c_e: response of effect e as fitted; f_e: its form error, declared from measurements; phi_j: smooth functions of
-deflection, direction, path since the last reversal, speed, time and surface, of mean square 1 together. A second effect
-that would only correct the form of the first explains nothing that these functions do not. The discrepancy of the law
-is the law times functions of the deflection, on each surface. Each `scale` maximises the evidence under a half-Cauchy
-prior (A. Gelman, Bayesian Analysis 1 (2006) 515), since real forms may differ more from the catalogue's than those that
-were measured; the form error is at most the whole effect.
-
-M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
+deviation above it.
 """
 
 from __future__ import annotations
@@ -26,7 +15,6 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE, Parameter, Recalibrated, TireModel
 from radialtire.recalibrated import changed_at
 
-from ..preprocessing.motion import branches
 from ..preprocessing.samples import MOST_SURFACES
 from ..regressors.dataset import Dataset, Scales, arranged
 from ..regressors.draws import at_reading, centre_and_spread
@@ -35,20 +23,17 @@ from ..regressors.signature import (
     CURVE,
     EXPONENT,
     FACTOR,
-    HEIGHTS,
     KINK,
     LAW,
     PRELOAD,
     RAMPS,
     SHAPE,
     TWIST,
-    form_error,
     gap_of,
     gap_spread,
     kink_spread,
     preload_spread,
     reference_of,
-    size_of,
     span_of,
 )
 
@@ -316,84 +301,3 @@ def _heights(shape: str, kinks: Sequence[float]) -> list[float]:
     """Return the heights of a law's shape from its kinks, within their bounds."""
     last = CATALOGUE[shape].parameters[-1]
     return [min(max(float(h), last.minimum), last.maximum) for h in RAMPS @ kinks]
-
-
-DEFLECTION_HATS, SIGNED_HATS = HEIGHTS // 2 + 1, HEIGHTS // 4 + 1
-"""Numbers of hat functions of the deflection (a hat at every second height of a law's shape), and of those of the
-deflection times the sign of the direction and of the path since the last reversal."""
-
-
-def smooth_functions(dataset: Dataset) -> FloatArray:
-    """Return the functions phi (m, k) of the module's docstring at the counted blocks, of mean square 1 together."""
-    many, x = dataset.experiments, dataset.deflection
-    rate = dataset.gathered([e.rate for e in many])
-    time = dataset.gathered([(e.time - e.time[0]) / max(e.time[-1] - e.time[0], 1e-300) for e in many])
-    radius = dataset.gathered([e.surface_radius for e in many])
-    depth = (x - x.min()) / max(float(np.ptp(x)), 1e-300)
-    speed = np.log(np.maximum(np.abs(rate) / dataset.scales.rate, 1e-2))
-    since_turn = dataset.gathered([_since_turn(e.deflection, e.gauge) for e in many]) / max(
-        float(np.ptp(x)), 1e-300
-    )
-    groups = [_hats(depth, DEFLECTION_HATS), np.sign(rate)[:, None] * _hats(depth, SIGNED_HATS)]
-    groups += [
-        _hats(np.sqrt(np.minimum(since_turn, 1.0)), SIGNED_HATS),
-        _polynomial(time),
-        _polynomial(speed),
-    ]
-    if 1 < len(dataset.radii) <= DEFLECTION_HATS:
-        groups.append(np.column_stack([(radius == r).astype(float) for r in dataset.radii]))
-    parts = [g / np.sqrt(max(float(np.mean(np.sum(g**2, axis=1))), 1e-300)) for g in groups]
-    return np.asarray(np.concatenate(parts, axis=1) / np.sqrt(len(parts)))
-
-
-def form_errors(
-    curves: Mapping[str, FloatArray], dataset: Dataset, functions: FloatArray
-) -> dict[str, FloatArray]:
-    """Return for each effect the columns (m, k) of its discrepancy at scale 1, in units of the noise.
-
-    curves (m,): response that each effect adds to the others
-    """
-    return {
-        name: form_error(name, dataset.tire) * size_of(curve) * _of_law(dataset)
-        if name == LAW
-        else form_error(name) * curve[:, None] * functions
-        for name, curve in curves.items()
-    }
-
-
-def _of_law(dataset: Dataset) -> FloatArray:
-    """Return the law times hats over the deflection, common to all surfaces and on each, of mean square 1 together."""
-    many, x = dataset.experiments, dataset.deflection
-    radius = dataset.gathered([e.surface_radius for e in many])
-    force = dataset.stacked([e.baseline for e in many])
-    hats = force[:, None] * _hats((x - x.min()) / max(float(np.ptp(x)), 1e-300), DEFLECTION_HATS)
-    columns = [hats]
-    if 1 < len(dataset.radii) <= DEFLECTION_HATS:
-        columns += [hats * (radius == r)[:, None] for r in dataset.radii]
-    whole = np.concatenate(columns, axis=1)
-    return np.asarray(whole / np.sqrt(max(float(np.mean(np.sum(whole**2, axis=1))), 1e-300)))
-
-
-def _since_turn(deflection: FloatArray, noise: float) -> FloatArray:
-    """Return the distance (n,) [m] from the last reversal; noise [m]: of the deflection."""
-    direction, _ = branches(deflection, noise)
-    begin = np.append(0, np.flatnonzero(np.diff(direction)) + 1)
-    turn = begin[np.searchsorted(begin, np.arange(deflection.size), side="right") - 1]
-    return np.asarray(np.abs(deflection - deflection[turn]))
-
-
-def _hats(place: FloatArray, count: int) -> FloatArray:
-    knots = np.linspace(0.0, 1.0, count)
-    return np.column_stack([np.interp(place, knots, row) for row in np.eye(count)])
-
-
-def _polynomial(values: FloatArray) -> FloatArray:
-    """Return first and second power, each of mean 0 and mean square 1; one column of zeros where all values are
-    equal.
-    """
-    spread = float(np.std(values))
-    if spread < 1e-9:
-        return np.zeros((values.size, 1))
-    first = (values - values.mean()) / spread
-    second = first**2 - 1.0
-    return np.column_stack([first, second / max(float(np.std(second)), 1e-300)])

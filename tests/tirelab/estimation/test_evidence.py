@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
-from tirelab.estimation.evidence import FORM_SCALES, Linearised, laplace_evidence
+from tirelab.estimation.evidence import DRIFT_SCALES, FORM_SCALES, Linearised, laplace_evidence
 from tirelab.estimation.minimise import Objective, initial_iterate, minimise
 from tirelab.selection.search import Discrepancy
 
@@ -33,7 +33,8 @@ def linearised(*forms: np.ndarray) -> Linearised:
     found = minimise(objective(), initial_iterate(objective(), np.zeros(3)), 30, 1e-14)
     errors = (ERROR,) * len(forms)
     return Linearised(
-        found.residual, found.jacobian, found.positions, forms, errors, np.zeros(3, dtype=int), np.ones(3)
+        *(found.residual, found.jacobian, found.positions, forms, errors),
+        *(np.zeros((ROWS, 0)), np.zeros(3, dtype=int), np.ones(3)),
     )
 
 
@@ -88,7 +89,10 @@ def at_the_optimum(
     k = slopes.shape[1]
     q = np.linalg.solve(slopes.T @ slopes / variance + np.eye(k), slopes.T @ misfit / variance)
     errors = (ERROR,) * len(forms)
-    return Linearised(misfit - slopes @ q, -slopes, q, forms, errors, np.zeros(k, dtype=int), np.ones(k))
+    no_drift = np.zeros((N, 0))
+    return Linearised(
+        misfit - slopes @ q, -slopes, q, forms, errors, no_drift, np.zeros(k, dtype=int), np.ones(k)
+    )
 
 
 def dense(misfit: np.ndarray, columns: np.ndarray, variance: float) -> float:
@@ -186,13 +190,38 @@ def test_what_forms_cannot_explain_is_left(drawn: tuple[np.ndarray, np.ndarray, 
     np.testing.assert_allclose(found.beyond_forms, 5.0 * outside, atol=1e-9)
 
 
-def test_freedom_counts_what_the_data_determine(drawn: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
-    """Of columns of very unequal size those far above the noise count whole and those far below not at all."""
-    slopes, _, misfit = drawn
-    base = np.linalg.qr(slopes)[0]
-    unequal = base * np.array([1e3, 1e-3, *(1.0,) * (base.shape[1] - 2)])
-    found = laplace_evidence(at_the_optimum(unequal, (), misfit, 1.0), fixed(1.0))
-    assert found.freedom == pytest.approx(1.0 + 0.5 * (base.shape[1] - 2), abs=1e-4)
+def test_a_drift_is_one_more_covariance_beside_any_set_and_explains_nothing(
+    drawn: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> None:
+    """What drifts as far as a tenth of the misfit allows: its scale has the probability of so small a one."""
+    slopes, forms, _ = drawn
+    drift = 30.0 * np.random.default_rng(6).normal(size=(N, 4))
+    misfit = 0.1 * drift @ np.array([1.0, -1.0, 0.5, 1.0]) + np.random.default_rng(9).normal(size=N)
+    found = laplace_evidence(replace(at_the_optimum(slopes, (forms,), misfit, 1.0), drift=drift), fixed(1.0))
+    each = {
+        (s, d): dense(misfit, np.hstack([slopes, s * forms, d * drift]), 1.0) - cost(s) - cost(d)
+        for s in FORM_SCALES
+        for d in DRIFT_SCALES
+    }
+    scale, size = max(each, key=lambda pair: each[pair])
+    assert found.log_likelihood == pytest.approx(each[scale, size] + beside(1.0), rel=1e-9)
+    assert (found.scales[0], found.drift) == (scale, size)
+    assert size == pytest.approx(0.1)
+    # what drifts stays a remainder, and is no noise
+    assert found.beyond_drift @ found.beyond_drift < 2.0 * N
+    assert found.beyond_forms @ found.beyond_forms > 0.5 * (misfit @ misfit)
+
+
+def test_no_drift_costs_the_smallest_scale_and_no_coefficients(
+    drawn: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> None:
+    slopes, _, _ = drawn
+    misfit = np.random.default_rng(9).normal(size=N)
+    drift = 1e4 * np.random.default_rng(6).normal(size=(N, 4))
+    found = laplace_evidence(replace(at_the_optimum(slopes, (), misfit, 1.0), drift=drift), fixed(1.0))
+    assert found.drift == 0.0
+    expected = dense(misfit, slopes, 1.0) - cost(min(DRIFT_SCALES)) + beside(1.0)
+    assert found.log_likelihood == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_scale_of_the_laws_prior_is_found() -> None:
