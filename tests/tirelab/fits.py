@@ -38,12 +38,13 @@ def fit_of(
     positions = problem.positions(values)
     slopes = np.ones((dataset.misfit.size, positions.size))
     residual = problem.residual(positions)
-    no_drift = np.zeros((residual.size, 0))
+    none, forms = np.zeros((residual.size, 0)), len(values)
     near = Linearised(
-        residual, slopes, positions, (), (), no_drift, problem.groups, problem.widths(positions)
+        *(residual, slopes, positions, (none,) * forms, (1.0,) * forms),
+        *(none, problem.groups, problem.widths(positions)),
     )
     left = float(residual @ residual)
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.zeros(0), 0.0, left, left, {}, 1)
+    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.ones(forms), 0.0, left, left, {}, 1)
 
 
 def model_of(
