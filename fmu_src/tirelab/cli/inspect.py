@@ -70,7 +70,9 @@ def command(
         if not output.as_json:
             _show(console, found[-1])
             _flush(console)
-    written = _write(found, _given(output))
+    written, doubts = _write(found, _given(output))
+    for doubt in doubts:
+        output.note(f"DOUBTFUL: {doubt}")
     if picture is not None and found:
         _draw(found, picture)
     lines = [
@@ -95,21 +97,22 @@ def _given(output: Output) -> Path | None:
     return None if source is ParameterSource.DEFAULT else output.out
 
 
-def _write(found: list[Inspection], out: Path | None) -> dict[Path, bool]:
-    """Write the settings, each file whole; return each that was written, and whether it was there before."""
+def _write(found: list[Inspection], out: Path | None) -> tuple[dict[Path, bool], list[str]]:
+    """Write the settings, each file whole; return each that was written, whether it was there before, and doubts."""
     from ..computing.staging import staged
-    from ..recordings.settings_file import settings_text
+    from ..recordings.settings_file import opposite_signs, settings_text
 
     by_file: dict[Path, dict[str, Inspection]] = {}
     for one in found:
         by_file.setdefault(out or one.path.with_name(SETTINGS), {})[one.key] = one
-    written = {}
+    written, doubts = {}, []
     for target, ones in by_file.items():
         written[target] = target.exists()
         text = settings_text(target, {key: one.settings for key, one in ones.items()})
         with staged(target.parent) as folder:
             (folder / target.name).write_text(text, encoding="utf-8")
-    return written
+        doubts += [f"{target}, {doubt}" for doubt in opposite_signs(text)]
+    return written, doubts
 
 
 def _console() -> Console:

@@ -12,6 +12,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Table
 
 from .formats import RecordingError
+from .formats.table import listed, quoted
 
 HEAD = (
     "How the recordings beside this file are read, as `tirelab inspect` understood them.",
@@ -46,6 +47,25 @@ def settings_text(file: Path, understood: Mapping[str, Mapping[str, Any]]) -> st
         ) from None
     except OSError as error:
         raise RecordingError(f"{file} cannot be read ({error.strerror}); name another with --out") from None
+
+
+def opposite_signs(text: str) -> tuple[str, ...]:
+    """Return a sentence on each column that is counted both ways in the recordings of a text of settings.
+
+    A hold in which a gauge drifts, say, shows no sign: the one that it was read with may be the wrong one.
+    """
+    seen: dict[tuple[str, str], dict[str, list[str]]] = {}
+    for file, settings in tomlkit.parse(text).unwrap().get("files", {}).items():
+        columns = settings.get("columns", {})
+        for channel, column in columns.items() if isinstance(columns, dict) else ():
+            if isinstance(column, str) and column[:1] in ("+", "-"):
+                seen.setdefault((channel, column[1:]), {}).setdefault(column[0], []).append(file)
+    return tuple(
+        f"column {quoted(name)}, {channel}: counted positive in {listed(ways['+'])}, negative in {listed(ways['-'])}; "
+        "one gauge counts one way: correct the sign where the motion shows it least"
+        for (channel, name), ways in seen.items()
+        if len(ways) > 1
+    )
 
 
 def _table(settings: Mapping[str, Any]) -> Table:
