@@ -44,7 +44,9 @@ def fit_of(
         *(none, problem.groups, problem.widths(positions)),
     )
     left = float(residual @ residual)
-    return Fit(problem, positions, 0.0, 1.0, residual, slopes, near, np.ones(forms), 0.0, left, left, {}, 1)
+    return Fit(
+        problem, positions, 0.0, 1.0, residual, slopes, near, np.ones(forms), 0.0, left, left, 1.0, {}, 1
+    )
 
 
 def model_of(

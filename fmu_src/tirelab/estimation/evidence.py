@@ -56,6 +56,7 @@ class LaplaceEvidence:
     law_scales: those of the groups of the law's parameters, by their numbers
     beyond_forms (m,): residual minus what the form errors explain of it together with the parameters, refitted to them
     and to the drift; beyond_drift (m,): minus what the drift explains too
+    freedom: number of coefficients that the data determine, sum of c / (c + V) over the curvatures c
     """
 
     log_likelihood: float
@@ -64,6 +65,7 @@ class LaplaceEvidence:
     drift: float
     beyond_forms: FloatArray
     beyond_drift: FloatArray
+    freedom: float
     law_scales: Mapping[int, float]
 
 
@@ -143,7 +145,14 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
     beyond_drift = fit.residual - columns @ coefficients
     beyond_forms = beyond_drift + fit.drift @ coefficients[k : k + counts[0]]
     variance, drift = float(variances[index]), float(scales[0]) if scales[0] > none else 0.0
-    return LaplaceEvidence(likelihood, variance, scales[1:], drift, beyond_forms, beyond_drift, {})
+    wide = np.concatenate([width, np.repeat(scales, counts)])
+    freedom = _freedom(gram * np.outer(wide, wide), variance)
+    return LaplaceEvidence(likelihood, variance, scales[1:], drift, beyond_forms, beyond_drift, freedom, {})
+
+
+def _freedom(gram: FloatArray, variance: float) -> float:
+    curvatures = np.maximum(np.linalg.eigvalsh(gram), 0.0)
+    return float(np.sum(curvatures / (curvatures + variance)))
 
 
 def _linear_gain(

@@ -16,7 +16,7 @@ from radialtire import CATALOGUE, TireModel
 from ..preprocessing.data_checks import MAJORITY
 from ..regressors.dataset import Dataset
 from ..regressors.signature import LAW, form_error, size_of
-from ..selection.search import PRIOR_ODDS, Discrepancy
+from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
 from .evidence import Linearised, laplace_evidence
 from .forms import drifts, form_errors, smooth_functions
 from .minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
@@ -52,6 +52,7 @@ class Fit:
     residual (m,), jacobian (m, k): in units of the noise; near: the linearisation from which the evidence is computed
     scales: of the form errors of each effect; drift: scale of the drift of the force's zero
     beyond_forms: sum of squares that form errors and refitted parameters leave; beyond_drift: that a drift leaves too
+    slow: V of what is slow in that
     sizes: root mean square of the response that each effect adds to the others, by its name
     evaluations: simulations of all dataset's blocks that it took, from all its starts
     law_scales: of the groups of the law's parameters, where not that of their priors
@@ -70,6 +71,7 @@ class Fit:
     drift: float
     beyond_forms: float
     beyond_drift: float
+    slow: float
     sizes: Mapping[str, float]
     evaluations: int
     law_scales: Mapping[int, float] = field(default_factory=dict)
@@ -141,6 +143,9 @@ class Fit:
             drift=evidence.drift,
             beyond_forms=float(evidence.beyond_forms @ evidence.beyond_forms),
             beyond_drift=float(evidence.beyond_drift @ evidence.beyond_drift),
+            slow=slow_variance(
+                self.problem.dataset.apart(evidence.beyond_drift), discrepancy.effective, evidence.freedom
+            ),
             law_scales=evidence.law_scales,
         )
 
@@ -161,21 +166,22 @@ def fitted(
     has_optional = len(whole.parameters) > len(best.problem.parameters)
     if has_optional and best.log_likelihood >= wanted - OPTIONAL_GAIN:
         tried.append(_optimise(whole, best.values, discrepancy, best.variance))
-        best = _better(best, tried[-1])
+        best, _ = _likelier(best, tried[-1])
         if LAW in best.values and dataset.tire.two_sided:
             anew = {**best.values, LAW: law_start(dataset)}
-            tried.append(_optimise(whole, anew, discrepancy, discrepancy.usual))
-            best = _better(best, tried[-1])
+            tried.append(_optimise(whole, anew, discrepancy, discrepancy.of_forms))
+            likely, less = _likelier(best, tried[-1])
+            near = likely.log_likelihood - less.log_likelihood < BARE_MENTION
+            best = less if near and less.power < MAJORITY * likely.power else likely
     return replace(best, evaluations=sum(f.evaluations for f in tried))
 
 
-def _better(first: Fit, other: Fit) -> Fit:
-    """Return the likelier of two fits of one set; where neither is by more than BARE_MENTION, the first unless the
-    other leaves less than half: optional parameters of next to no size cost nothing, but would blur all others.
+def _likelier(first: Fit, other: Fit) -> tuple[Fit, Fit]:
+    """Return two fits of one set, the likelier one first; where that is not known, since a fit ends with steps that
+    gain as much, the first: optional parameters of next to no size cost nothing, but would blur all others.
     """
-    if abs(other.log_likelihood - first.log_likelihood) < BARE_MENTION:
-        return other if other.power < MAJORITY * first.power else first
-    return max((first, other), key=lambda f: f.log_likelihood)
+    gain = other.log_likelihood - first.log_likelihood
+    return (other, first) if gain > 0.5 * LEAST_GAIN else (first, other)
 
 
 def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepancy, variance: float) -> Fit:
@@ -233,6 +239,7 @@ def _with_evidence(problem: EstimationProblem, found: Iterate, discrepancy: Disc
         1.0,
         np.inf,
         np.inf,
+        1.0,
         {name: size_of(curve) for name, curve in curves.items()},
         found.evaluations,
         beyond=_beyond(problem, held, found.positions),

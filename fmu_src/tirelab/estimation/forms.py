@@ -77,12 +77,14 @@ def form_errors(
 def drifts(dataset: Dataset) -> FloatArray:
     """Return a drift of the force (m, k) in each recording, as large as the misfit together: hats over the time.
 
-    There are as many as strokes, since within one of them no time can be told from the deflection, and at most as many
-    as a refitted law has over the deflection.
+    There are as many as strokes, since within one of them, or in a hold, no time can be told from what the deflection
+    does, and at most as many as a refitted law has over the deflection.
     """
     many, columns = dataset.experiments, [np.zeros((dataset.misfit.size, 0))]
+    span = float(np.ptp(dataset.deflection))
     for own in many:
-        count = min(_strokes(own.deflection, own.gauge), HEIGHTS)
+        direction, _ = branches(own.deflection, own.gauge, span)
+        count = min(1 + int(np.count_nonzero(np.diff(direction))), HEIGHTS)
         if count > 1:
             hats = _hats((own.time - own.time[0]) / max(own.time[-1] - own.time[0], 1e-300), count)
             columns.append(
@@ -91,12 +93,6 @@ def drifts(dataset: Dataset) -> FloatArray:
     whole = np.concatenate(columns, axis=1)
     size = float(np.sqrt(np.mean(np.sum(whole**2, axis=1))))
     return np.asarray(whole * (size_of(dataset.misfit) / max(size, 1e-300)))
-
-
-def _strokes(deflection: FloatArray, noise: float) -> int:
-    """Return the number of times that a motion (n,) [m] goes on in one direction; noise [m]: of the deflection."""
-    direction, _ = branches(deflection, noise)
-    return 1 + int(np.count_nonzero(np.diff(direction)))
 
 
 def _of_law(dataset: Dataset) -> FloatArray:

@@ -55,7 +55,7 @@ CORRECTIONS = 3
 """Budget: number of times that a set is fitted again with the distortion by its blocks subtracted."""
 
 USUAL_MOVED = 1.2
-"""Factor between the usual form errors, old and new, from which on all evidence is computed again."""
+"""Factor between the usual form errors or slow variances, old and new, from which on all evidence is computed again."""
 
 GAIN_ERROR = 8.0
 """Error of a predicted gain, relative to another one: a candidate that is behind by more is not fitted."""
@@ -130,7 +130,8 @@ class FittedSets:
     times: Counter[frozenset[str]] = field(default_factory=Counter)
     followed: set[frozenset[str]] = field(default_factory=set)
     count: int = 0
-    assessed: float = 0.0
+    assessed: FloatArray = field(default_factory=lambda: np.zeros(2))
+    assessed_at: int = 0
     gained_at: int = 0
     work: int = 0
     most_work: float = MOST_WORK
@@ -147,14 +148,38 @@ class FittedSets:
 
     def update_discrepancy(self) -> bool:
         """Compute the evidence of all sets with the usual form error of the best one (their own would favour sets whose
-        forms are declared to be good); return whether it has changed.
+        forms are declared to be good), beside the slow noise that it leaves; return whether these have changed.
         """
-        found = self.best_fit.form_error
-        if self.assessed / USUAL_MOVED <= found <= self.assessed * USUAL_MOVED:
+        if self.assessed_at == self.count:
             return False
-        self.assessed, self.discrepancy = found, self.noise.above(found)
+        before, self.assessed_at = self.assessed, self.count
+        self._assess(self.best_fit)
+        # What is slow in the rest of the best set is no noise where another set explains it.
+        quieter = (fit for fit in self.fits.values() if self._would_win(fit))
+        least = min(quieter, key=lambda fit: fit.slow, default=None)
+        if least is not None:
+            self._assess(least)
+            self._assess(self.best_fit)
+        return self.assessed is not before
+
+    def _assess(self, by: Fit) -> None:
+        found = np.array([by.form_error, by.slow])
+        if np.all((self.assessed / USUAL_MOVED <= found) & (found <= self.assessed * USUAL_MOVED)):
+            return
+        self.assessed, self.discrepancy = found, self._beside(by)
         self.fits = {names: fit.with_discrepancy(self.discrepancy) for names, fit in self.fits.items()}
-        return True
+
+    def _beside(self, fit: Fit) -> Discrepancy:
+        return self.noise.above(fit.form_error).beside_slow(fit.slow)
+
+    def _would_win(self, fit: Fit) -> bool:
+        """Whether a set would be ahead of the best one beside the slow noise that it leaves itself."""
+        best, ratio = self.best_fit, self.assessed[1] / max(fit.slow, 1.0)
+        most = 0.5 * self.noise.effective * np.log(max(ratio, 1.0))
+        if ratio < USUAL_MOVED or best.log_posterior - fit.log_posterior > most:
+            return False
+        own = self._beside(fit)
+        return fit.with_discrepancy(own).log_posterior > best.with_discrepancy(own).log_posterior
 
     def posterior(self, names: frozenset[str]) -> float:
         return self.fits[names].log_posterior

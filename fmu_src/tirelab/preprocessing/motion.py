@@ -155,13 +155,13 @@ def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
     return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))
 
 
-def branches(deflection: FloatArray, noise: float) -> tuple[FloatArray, FloatArray]:
+def branches(deflection: FloatArray, noise: float, span: float = 0.0) -> tuple[FloatArray, FloatArray]:
     """Return direction (n,), +1 or -1, and number of the cycle (n,) of a deflection (n,) [m] with this noise [m].
 
-    A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of the span; it
-    counts from its turning point on.
+    A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of its span, or
+    of another `span` [m] that is longer; it counts from its turning point on.
     """
-    threshold = max(6.0 * noise, 0.02 * float(np.ptp(deflection)))
+    threshold = max(6.0 * noise, 0.02 * max(float(np.ptp(deflection)), span))
     turns, sign, best = [0], 1.0, 0
     extreme = deflection[0]
     values = deflection.tolist()

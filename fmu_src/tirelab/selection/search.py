@@ -17,7 +17,8 @@ with its maximum at V = (q - (n - e)) / e. A set is thus ranked by e ln(what it 
 The usual discrepancy f follows from the measured form errors. It may also be smaller: below f its prior density is
 constant, so that tau or less has the probability tau / f, by which a smaller V is penalised. A set that leaves far less
 than f is taken to have good forms, because wrong ones would hardly fit so well by chance. Discrepancies below the noise
-count alike.
+count alike. No V is tried below that of the slow noise, which the best set shows: its residual, summed over as many
+samples as one of the e stands for, would have the variance of white noise if V = 1 were right.
 
 M. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63, 425 (2001); J. Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014).
 """
@@ -48,6 +49,9 @@ that of pistons 100 to 200; with more than 30, larger sets often win over simple
 LIKE_NOISE = 1.0
 """Root mean square of a discrepancy, in units of the noise, up to which the forms of a set count as exact."""
 
+MOST_TAKEN = 0.5
+"""Largest part of a residual's slow sums that the parameters of its set are taken to have fitted away."""
+
 GRID = 40
 """Number of variances V that are tried."""
 
@@ -57,7 +61,8 @@ class Discrepancy:
     """The law of the discrepancy, see the docstring of the module.
 
     samples: n; effective: e; usual: V of the usual discrepancy f; highest: V of the whole misfit; exact: V of a
-    discrepancy as large as the noise, the lowest V where it is less than the usual one
+    discrepancy as large as the noise, the lowest V where it is less than the usual one; forms: the usual V without slow
+    noise
     """
 
     samples: int
@@ -65,6 +70,12 @@ class Discrepancy:
     usual: float
     highest: float
     exact: float = math.inf
+    forms: float = math.inf
+
+    @property
+    def of_forms(self) -> float:
+        """The usual V of the form errors alone, whatever slow noise lies beside them."""
+        return min(self.forms, self.usual)
 
     @property
     def lowest(self) -> float:
@@ -96,6 +107,17 @@ class Discrepancy:
         noise.
         """
         return replace(self.above(error), exact=self.exact + self._of(error))
+
+    def beside_slow(self, variance: float) -> Discrepancy:
+        """Return the discrepancy beside a slow noise of this V (see `slow_variance`), below which nothing is told."""
+        usual = max(self.usual, variance)
+        return replace(
+            self,
+            usual=usual,
+            exact=max(self.exact, variance),
+            highest=max(self.highest, 2.0 * usual),
+            forms=self.of_forms if usual > self.usual else self.forms,
+        )
 
     @cached_property
     def grid(self) -> FloatArray:
@@ -129,6 +151,20 @@ class Discrepancy:
     def _of(self, error: float) -> float:
         """Return the increase of V by an error, a root mean square in units of the noise."""
         return error**2 * self.samples / self.effective
+
+
+def slow_variance(residuals: Sequence[FloatArray], effective: float, freedom: float) -> float:
+    """Return the V of what is slow in residuals, in units of the noise: the mean square of their sums over as many
+    samples as one of `effective` stands for, over the root of that number; 1 for white noise.
+
+    freedom: of the model that left them: so many squares are missing from the mean, MOST_TAKEN of them at most
+    """
+    length = max(round(sum(r.size for r in residuals) / effective), 1)
+    every = np.concatenate(
+        [r[: r.size // length * length].reshape(-1, length).sum(axis=1) for r in residuals]
+    )
+    left = every.size - min(freedom, MOST_TAKEN * every.size)
+    return float(every @ every) / (length * left) if every.size else 1.0
 
 
 def beside_noise(samples: int) -> Discrepancy:

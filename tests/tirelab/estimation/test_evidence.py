@@ -224,6 +224,15 @@ def test_no_drift_costs_the_smallest_scale_and_no_coefficients(
     assert found.log_likelihood == pytest.approx(expected, rel=1e-9)
 
 
+def test_freedom_counts_what_the_data_determine(drawn: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+    """Of columns of very unequal size those far above the noise count whole and those far below not at all."""
+    slopes, _, misfit = drawn
+    base = np.linalg.qr(slopes)[0]
+    unequal = base * np.array([1e3, 1e-3, *(1.0,) * (base.shape[1] - 2)])
+    found = laplace_evidence(at_the_optimum(unequal, (), misfit, 1.0), fixed(1.0))
+    assert found.freedom == pytest.approx(1.0 + 0.5 * (base.shape[1] - 2), abs=1e-4)
+
+
 def test_a_scale_of_the_laws_prior_is_found() -> None:
     """One column of the law far beyond its prior: the largest scale is taken, and the evidence is that of its prior."""
     numbers = np.random.default_rng(3)

@@ -88,6 +88,18 @@ def test_in_one_stroke_no_drift_can_be_told_from_the_deflection() -> None:
     assert drifts(dataset_of([ramp], TireModel())).shape[1] == 0
 
 
+def test_in_a_hold_no_drift_can_be_told_from_what_relaxes() -> None:
+    """The gauge trembles by a thousandth of the stroke of the other recording."""
+    time = np.linspace(0.0, 20.0, 2000)
+    noise = np.random.default_rng(3)
+    ramp = Recording(
+        "ramp", time, 1e-3 * time, np.full(time.size, np.inf), 900.0 + noise.normal(size=time.size)
+    )
+    still = 0.02 + 2e-5 * np.sin(time) + 1e-6 * noise.normal(size=time.size)
+    hold = Recording("hold", time, still, np.full(time.size, np.inf), 900.0 + noise.normal(size=time.size))
+    assert drifts(dataset_of([ramp, hold], TireModel())).shape[1] == 0
+
+
 def test_a_drift_is_no_finer_than_a_law() -> None:
     time = 0.01 * np.arange(6000)
     x = 0.01 * (1.0 - np.cos(2.0 * np.pi * 0.5 * time))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
 from scipy.optimize import minimize_scalar
+from scipy.signal import lfilter
 from scipy.stats import multivariate_normal, norm
 from tirelab.regressors.signature import Signature
 from tirelab.selection.search import (
@@ -19,6 +20,7 @@ from tirelab.selection.search import (
     normal_equations,
     parts_of,
     search,
+    slow_variance,
     usual_form_error,
 )
 
@@ -82,6 +84,39 @@ def test_what_the_reading_adds_is_added_to_exact_forms_too() -> None:
     blurred = plain.blurred(2.0)
     assert blurred.size(blurred.usual) == pytest.approx(2.0)
     assert blurred.size(blurred.exact) == pytest.approx(np.sqrt(5.0))
+
+
+def test_what_is_slow_in_white_noise_is_white() -> None:
+    numbers = np.random.default_rng(11)
+    parts = [numbers.normal(size=2000), numbers.normal(size=1000)]
+    # the mean of 1000 squares is known to 0.045
+    assert slow_variance(parts, 1000.0, 0.0) == pytest.approx(1.0, abs=0.14)
+
+
+def test_what_is_slow_in_correlated_noise_is_its_density_at_low_frequencies() -> None:
+    """First-order noise e_i = k e_(i - 1) + w_i has at the frequency 0 the density of w over (1 - k)^2."""
+    white = np.random.default_rng(12).normal(size=300_000)
+    found = slow_variance([lfilter([1.0], [1.0, -0.8], white)], 600.0, 0.0)
+    assert found == pytest.approx(25.0, rel=0.18)  # three standard errors of the mean of 600 squares
+
+
+def test_what_a_model_takes_from_slow_noise_is_given_back() -> None:
+    """Ten of thirty sums fitted away: the others tell the variance."""
+    noise = np.random.default_rng(13).normal(size=(200, 30, 40))
+    noise -= noise.mean(axis=2, keepdims=True) * (np.arange(30) < 10)[None, :, None]
+    found = np.mean([slow_variance([one.ravel()], 30.0, 10.0) for one in noise])
+    assert found == pytest.approx(1.0, abs=0.07)  # 4000 squares
+
+
+def test_beside_slow_noise_no_smaller_variance_is_tried() -> None:
+    quiet = discrepancy_of(np.full(600, 1.01), 0.01)
+    assert quiet.grid[0] < 1.1
+    slow = quiet.beside_slow(9.0)
+    assert slow.grid[0] == pytest.approx(9.0)
+    assert slow.profile(600.0)[1] == pytest.approx(9.0)
+    assert slow.of_forms == slow.beside_slow(20.0).of_forms == quiet.of_forms == quiet.usual
+    loud = discrepancy_of(np.full(600, 100.0), 0.3)
+    assert loud.beside_slow(9.0) == loud
 
 
 def test_the_usual_error_lies_between_the_least_and_the_largest_declared() -> None:
