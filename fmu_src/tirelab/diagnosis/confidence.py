@@ -135,8 +135,8 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     chance). Else: the tempered odds, at most 1, of that law in place of all such effects
     beside_law: 1 where it depends on the deflection only, always or in this motion, and stands beside a refitted law,
     which may have another shape than the catalogue's
-    significance: two-sided normal probability of the difference from neutral, of the parameter for which it is largest;
-    the standard deviation includes the form errors
+    significance: two-sided normal probability of the difference from neutral, of the parameter for which it is largest,
+    or that of all of them together if it is larger; the standard deviations include the form errors
     """
     with_it = [e.log_evidence for e in explanation.evidence if effect.name in e.names]
     without = [e.log_evidence for e in explanation.evidence if effect.name not in e.names]
@@ -238,7 +238,7 @@ def _significance(effect: NamedEffect) -> float:
         for p, e in own
         if e is not None and p.neutral is not None
     ]
-    return max((math.erf(z / math.sqrt(2.0)) for z in apart), default=1.0)
+    return max((effect.together, *(math.erf(z / math.sqrt(2.0)) for z in apart))) if apart else 1.0
 
 
 def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder) -> dict[str, float]:

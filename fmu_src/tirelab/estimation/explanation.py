@@ -31,6 +31,7 @@ from .findings import (
     Remainder,
     estimates_of,
     remainder_of,
+    significances_of,
 )
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
@@ -299,17 +300,19 @@ def _explanation(
     own = ranking.posteriors[order[0]]
     included = ranking.inclusion()
     held = {effect.name for effect, _ in chosen.problem.dataset.tire.effects}
+    estimates, together = estimates_of(chosen), significances_of(chosen)
     effects = [
         NamedEffect(
             name,
             {
                 e.name: Estimate(e.value, e.deviation, e.unit, e.determined)
-                for e in estimates_of(chosen)
+                for e in estimates
                 if e.owner == name
             },
             _share(ranking, chosen, name),
             min(included[name], 1.0),
             in_baseline=name in held,
+            together=together[name],
         )
         for name in chosen.names
     ]

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 from radialtire.recalibrated import changed_at
+from scipy.special import chdtr
 
 from ..preprocessing.data_checks import spikes
 from ..regressors.dataset import Dataset
@@ -54,7 +55,7 @@ def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
     slopes = fit.jacobian
     if not slopes.shape[1]:
         return ()
-    covariance = _covariance(_with_form_errors(fit) / np.sqrt(fit.variance))
+    covariance = _covariance(_with_form_errors(fit))
     spread = np.sqrt(np.diag(covariance))[: slopes.shape[1]]
     found = []
     for p, position, own in zip(fit.problem.parameters, fit.positions, spread, strict=True):
@@ -67,9 +68,28 @@ def estimates_of(fit: Fit) -> tuple[FittedParameter, ...]:
     return (*_on_surfaces(fit, covariance), *found)
 
 
+def significances_of(fit: Fit) -> dict[str, float]:
+    """Return for each effect the probability that not all its parameters together are neutral (Wald's test).
+
+    It may be sure where no single one is: of a lag and a delay often the sum alone is known. 1 for a refitted law.
+    """
+    apart: dict[str, dict[int, float]] = {name: {} for name in fit.names}
+    for i, p in enumerate(fit.problem.parameters):
+        neutral = None if p.owner == LAW else CATALOGUE[p.owner].parameters[p.index].neutral
+        if neutral is not None:
+            value = p.value(float(fit.positions[i]))
+            apart[p.owner][i] = (value - neutral) / (p.spread * (value if p.logarithm else 1.0))
+    covariance = _covariance(_with_form_errors(fit))
+    found = dict.fromkeys(apart, 1.0)
+    for name, own in ((n, d) for n, d in apart.items() if d):
+        left, at = np.array(list(own.values())), list(own)
+        found[name] = float(chdtr(len(own), left @ np.linalg.solve(covariance[np.ix_(at, at)], left)))
+    return found
+
+
 def _with_form_errors(fit: Fit) -> NDArray[np.float64]:
     """Return the columns (m, k + f) of the parameters, the drift and the form errors, those of effects at least as
-    declared.
+    declared, in units of the noise and the discrepancy.
 
     A part of an error looks like another value of a parameter, and the residual does not show it, however well the rest
     fits: an effect's response may be off by its form error as a whole, too. A refitted law has any strength anyway.
@@ -79,7 +99,8 @@ def _with_form_errors(fit: Fit) -> NDArray[np.float64]:
     forms = [f * scale for f, scale in zip(fit.near.forms, scales, strict=True)]
     pairs = zip(curves.items(), scales, strict=True)
     wholes = [form_error(name) * scale * curve[:, None] for (name, curve), scale in pairs if name != LAW]
-    return np.concatenate([fit.jacobian, fit.drift * fit.near.drift, *forms, *wholes], axis=1)
+    columns = [fit.jacobian, fit.drift * fit.near.drift, *forms, *wholes]
+    return np.asarray(np.concatenate(columns, axis=1) / np.sqrt(fit.variance))
 
 
 def _covariance(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -294,7 +315,7 @@ class NamedEffect:
     parameters: its fitted parameters by their names; share: part of the misfit's power beyond the noise that comes back
     where it alone is removed; probability: that it is present; grounds: the numbers on which a calibrated probability
     rests, empty where the probability is that of the ranking; in_baseline: whether the baseline has it, with other
-    values
+    values; together: probability that its parameters together are not neutral (see `significances_of`)
     """
 
     name: str
@@ -303,6 +324,7 @@ class NamedEffect:
     probability: float
     grounds: Mapping[str, float] = field(default_factory=dict)
     in_baseline: bool = False
+    together: float = 0.0
 
 
 @dataclass(frozen=True)

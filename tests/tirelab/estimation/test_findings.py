@@ -11,12 +11,22 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drives import damped
+from drives import damped, flat_force
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.estimation.findings import Remainder, _covariance, of_the_written_tire, remainder_of
+from tirelab.estimation.findings import (
+    Remainder,
+    _covariance,
+    estimates_of,
+    of_the_written_tire,
+    remainder_of,
+    significances_of,
+)
+from tirelab.estimation.fit import Fit, fitted
+from tirelab.estimation.problem import with_readings
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import dataset_of
+from tirelab.selection.search import discrepancy_of
 
 
 def test_the_covariance_is_that_of_the_posterior() -> None:
@@ -162,3 +172,32 @@ def test_the_preload_of_a_part_is_no_factor_of_its_law() -> None:
     # The force of the spring is 71 N root mean square: the slope is known to 1 / 71 / 1000 ** 0.5.
     assert factor.value == pytest.approx(0.0, abs=0.005)
     assert factor.std < 0.01
+
+
+def fit_of_a_late_force() -> Fit:
+    """A force that follows 20 ms late by our own low-pass, on slow cycles beside 5 N of noise, fitted with a delay."""
+    time = np.arange(0.0, 20.0, 0.01)
+    deflection = 0.011 * (1.0 - np.cos(2.0 * np.pi * 0.2 * time))
+    force, late = flat_force(deflection), [0.0]
+    for value in force[1:]:
+        late.append(np.exp(-0.5) * late[-1] + (1.0 - np.exp(-0.5)) * value)
+    reading = np.array(late) + 5.0 * np.random.default_rng(4).normal(size=time.size)
+    flat = np.full(time.size, np.inf)
+    dataset = dataset_of([Recording("late", time, deflection, flat, reading)], TireModel())
+    start = {"force_lag": with_readings("force_lag", (0.01, 0.01, 0.5), dataset)}
+    discrepancy = discrepancy_of(dataset.misfit, 0.01)
+    return fitted(dataset, [start], discrepancy, discrepancy.usual, -np.inf)
+
+
+def test_a_sum_is_known_where_its_parts_are_not() -> None:
+    """A low-pass and a delay do the same to slow cycles: neither is known alone, that the force is late is sure."""
+    fit = fit_of_a_late_force()
+    own = {p.name: p for p in estimates_of(fit)}
+    assert all(own[name].value < 2.0 * own[name].deviation for name in ("lag", "delay"))
+    assert significances_of(fit)["force_lag"] > 0.999
+
+
+def test_parameters_that_are_neutral_are_not_significant() -> None:
+    """With V so large that the recording tells nothing, they differ from neutral as far as their prior lets them."""
+    fit = replace(fit_of_a_late_force(), variance=1e12)
+    assert significances_of(fit)["force_lag"] < 0.95

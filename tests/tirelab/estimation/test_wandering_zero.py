@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from drives import flat_force
 from radialtire import TireModel
+from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.explanation import catalogue_names, explain_misfit
 from tirelab.recordings.recording import Recording
 
@@ -31,3 +32,10 @@ def test_a_lag_beside_a_wandering_zero_is_named_and_the_zero_stays_a_remainder()
     # The fit follows the whole misfit, so that the lag's value is not known beside so large a drift; that it acts is.
     assert [effect.name for effect in found.effects] == ["force_lag"]
     assert found.remainder.unexplained
+
+
+def test_a_verdict_names_the_lag_though_neither_its_filter_nor_its_delay_is_known_alone() -> None:
+    verdict = diagnose([late("slow", 0.2, 1), late("fast", 0.5, 2)], TireModel())
+    assert [effect.name for effect in verdict.effects] == ["force_lag"]
+    assert verdict.effects[0].probability > 0.5
+    assert verdict.fit.after < verdict.fit.before
