@@ -87,6 +87,7 @@ def interpret(
     rows = complete_rows(plan.origin, plan.headers, read)
     backwards = "time" in rows.values and descends(rows.values["time"])
     rows = rows.reversed() if backwards else rows
+    rows = rows.evened()
     values = {name: _in_si(column, plan.conversions[name]) for name, column in rows.values.items()}
     samples = len(values["deflection"])
     time, time_notes = _time_from_first(values.get("time"), rows, plan, backwards)

@@ -14,6 +14,7 @@ from .formats.table import quoted
 from .held import held_readings
 from .jumps import false_readings, lost_readings, unevenly_read
 from .origin import Origin
+from .rounded_clock import evened
 
 FloatArray = NDArray[np.float64]
 
@@ -50,6 +51,18 @@ class Rows:
         whole = np.arange(len(next(iter(self.values.values())))) if self.kept is None else self.kept
         values = {name: column[::-1].copy() for name, column in self.values.items()}
         return replace(self, values=values, kept=whole[::-1])
+
+    def evened(self) -> Rows:
+        """Return the rows with even times where those of the file are these, rounded, and a note of it."""
+        written = self.values.get("time")
+        if written is None:
+            return self
+        whole = np.arange(written.size) if self.kept is None else self.kept
+        even = evened(written, whole)
+        if even is None:
+            return self
+        said = "the times are those of even samples, rounded: read as even, as before they were written"
+        return replace(self, values={**self.values, "time": even}, notes=(*self.notes, said))
 
     def error(self, index: int, channel: str, what: str) -> RecordingError:
         """The error for one value, with its place in the file."""
