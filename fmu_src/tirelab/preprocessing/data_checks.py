@@ -217,6 +217,9 @@ def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray
             spikes(residual) & motion_of(r.time, r.deflection, timed=is_timed([r])).resolved
         )
         lone = lone[(lone > 0) & (lone < residual.size - 1)]
+        # A sample that stands out in the simulated force and not in what was read is no false reading.
+        beyond, read = (v[lone] - 0.5 * (v[lone - 1] + v[lone + 1]) for v in (residual, r.force))
+        lone = lone[read * np.sign(beyond) > MAJORITY * np.abs(beyond)]
         if lone.size:
             first = f"{float(r.time[lone[0]]):.4g} s" if is_timed([r]) else f"sample {lone[0] + 1}"
             which = "sample stands" if lone.size == 1 else "samples stand"

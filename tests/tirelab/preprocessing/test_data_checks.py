@@ -271,11 +271,20 @@ def test_one_sample_far_off_is_an_outlier_also_at_an_end(place: int) -> None:
 def test_outliers_are_told_with_the_time_of_the_first() -> None:
     residual = np.random.default_rng(2).normal(0.0, 1.0, TIME.size)
     residual[[400, 1200]] += 25.0
-    (said,) = outliers_told([recording(), recording()], [residual, np.zeros(TIME.size)])
+    read = recording(force=FORCE + residual)
+    (said,) = outliers_told([read, recording()], [residual, np.zeros(TIME.size)])
     assert said.startswith("In ")
     assert f" 2 single samples stand out from both neighbours, the first at {TIME[400]:.4g} s: " in said
-    (said,) = outliers_told([replace(recording(), timed=False)], [np.where(TIME[400] == TIME, 0.0, residual)])
+    (said,) = outliers_told([replace(read, timed=False)], [np.where(TIME[400] == TIME, 0.0, residual)])
     assert " 1 single sample stands out from both neighbours, at sample 1201: " in said
+
+
+def test_what_stands_out_of_the_simulated_force_alone_is_told_as_no_outlier() -> None:
+    """A smooth reading beside a simulated force that jumps at two samples, as a mass whose acceleration does."""
+    residual = np.random.default_rng(2).normal(0.0, 1.0, TIME.size)
+    residual[[400, 1200]] += 25.0
+    assert np.flatnonzero(spikes(residual)).tolist() == [400, 1200]
+    assert outliers_told([recording()], [residual]) == ()
 
 
 def test_what_a_mass_does_in_a_reversal_within_a_sample_is_told_as_no_outlier() -> None:
