@@ -1,11 +1,13 @@
 """JSON files: a list of samples, {"time": 0.0, "force": 1.5} or [0.0, 1.5], one below the other or in brackets, or a
-list for each channel, {"time": [...], "force": [...]}; units stand in the names, as in a CSV header.
+list for each channel, {"time": [...], "force": [...]}, also inside other objects, {"test": {"time": [...], ...}}; units
+stand in the names, as in a CSV header.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -55,19 +57,34 @@ def _frame(path: Path) -> pl.DataFrame:
     if path.suffix.lower() in LINES:
         return pl.read_ndjson(path, infer_schema_length=None)
     held = json.loads(path.read_bytes())
-    lists = {name: v for name, v in held.items() if isinstance(v, list)} if isinstance(held, dict) else {}
-    tables = [v for v in ([held] if isinstance(held, list) else lists.values()) if _is_rows(v)]
+    lists = dict(_lists(held))
+    channels = {n: v for n, v in lists.items() if n and not any(isinstance(x, (dict, list)) for x in v)}
+    longest, many = max(Counter(map(len, channels.values())).items(), default=(0, 0))
+    # A list of sources or of settings beside the channels is shorter than they are.
+    least = longest if many > 1 else 0
+    tables = [v for v in lists.values() if _is_rows(v) and len(v) >= least]
     if len(tables) == 1 and isinstance(tables[0][0], dict):
         return pl.from_dicts(tables[0], infer_schema_length=None, strict=False)
     if len(tables) == 1:
         return _frame_of_lists(tables[0])
-    longest = max(map(len, lists.values()), default=0)
     if tables or longest < 2:
         raise RecordingError(
             f"{path.name}: {f'holds {len(tables)} tables' if tables else 'no table is found in it'}; write one list of "
             'samples, [{"time": 0.0, "deflection": 0.1, "force": 1.5}, ...], or one list for each channel'
         )
-    return pl.DataFrame({name: v for name, v in lists.items() if len(v) == longest}, strict=False)
+    chosen = {name: v for name, v in channels.items() if len(v) == longest}
+    own = Counter(name.rpartition(".")[2] for name in chosen)
+    short = {name: last if own[last := name.rpartition(".")[2]] == 1 else name for name in chosen}
+    return pl.DataFrame({short[name]: v for name, v in chosen.items()}, strict=False)
+
+
+def _lists(held: Any, name: str = "") -> Iterator[tuple[str, list[Any]]]:
+    """Yield the lists of a file, and those in its objects as `test.force`."""
+    if isinstance(held, list):
+        yield name, held
+    elif isinstance(held, dict):
+        for key, value in held.items():
+            yield from _lists(value, f"{name}.{key}" if name else key)
 
 
 def _frame_of_lists(rows: Sequence[Sequence[Any]]) -> pl.DataFrame:

@@ -17,6 +17,15 @@ WRITTEN: dict[str, Callable[[], str]] = {
     "rows.json": lambda: json.dumps(ROWS),
     "columns.json": lambda: json.dumps({"operator": "me", "short": [1, 2], **LISTS}),
     "named.json": lambda: json.dumps({"rig": {"load cell": 3}, "samples": ROWS}),
+    "inside.json": lambda: json.dumps({"source": {"year": 2014}, "test": {"name": "A", "read": LISTS}}),
+    "sources beside.json": lambda: json.dumps(
+        {
+            "source": [{"year": 2014, "page": 3}, {"year": 2015, "page": 8}],
+            "test": LISTS,
+            "steps": [[1, 2], [3, 4]],
+        }
+    ),
+    "rows inside.json": lambda: json.dumps({"test": {"read": ROWS}}),
     "names above.json": lambda: json.dumps([list(LISTS), *(list(row.values()) for row in ROWS)]),
     "lines.jsonl": lambda: "\n".join(map(json.dumps, ROWS)),
     "lines.ndjson": lambda: "\n".join(map(json.dumps, ROWS)) + "\n",
@@ -52,6 +61,7 @@ class TestJson:
         ("held", "said"),
         [
             ({"a": ROWS, "b": ROWS}, "holds 2 tables; write one list of samples"),
+            ({"a": {"b": ROWS}, "c": ROWS}, "holds 2 tables; write one list of samples"),
             ({"rig": 3}, "no table is found in it"),
             (5, "no table is found in it"),
             ([1.0] * SAMPLES, "no table is found in it"),
