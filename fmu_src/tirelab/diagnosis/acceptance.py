@@ -30,8 +30,9 @@ from radialtire import TireModel
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW
 from ..preprocessing.data_checks import compared
+from ..preprocessing.driven import FEWEST_EVENTS
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
-from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE, STILL
+from ..preprocessing.noise import NEGLIGIBLE, STILL
 from ..preprocessing.samples import (
     RawDataset,
     RawExperiment,

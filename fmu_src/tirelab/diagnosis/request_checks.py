@@ -19,7 +19,8 @@ from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
 from ..preprocessing.data_checks import MAJORITY
-from ..preprocessing.noise import FEWEST_EVENTS, NEGLIGIBLE
+from ..preprocessing.driven import FEWEST_EVENTS
+from ..preprocessing.noise import NEGLIGIBLE
 from ..preprocessing.samples import surface_numbers, within
 from ..recordings.pieces import split_piece
 from ..recordings.pulling import pull_of

@@ -9,16 +9,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.data_checks import compared
-from ..preprocessing.noise import NoiseFloor
+from ..preprocessing.levels import STAYS
+from ..preprocessing.noise import Noise, NoiseFloor, noise_left
 from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
 from ..regressors.excitation import Excitation, excitation_of, misread
+from ..regressors.experiment import driven_by
 from ..regressors.signature import LAW, candidates, constant, gap_of, single_valued
 from ..selection.search import discrepancy_of
 from ..simulation.simulate import simulate
@@ -208,6 +211,23 @@ def catalogue_names() -> tuple[str, ...]:
     return (LAW, *candidates())
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of `explain_misfit`; readings: noise of the force of each recording, None where it is not known."""
+
+    recordings: Sequence[Recorded]
+    baseline: TireModel
+    catalogue: Sequence[str]
+    progress: Progress
+    held_out: Sequence[Recorded]
+    most_work: float
+    readings: Sequence[Noise | None] | None = None
+
+    def again(self, done: float, **changed: Any) -> _Asked:
+        """Return the same with changes, and with what is left of the budget."""
+        return replace(self, most_work=max(self.most_work - done, FIRST_PART * self.most_work), **changed)
+
+
 def explain_misfit(
     recordings: Sequence[Recorded],
     baseline: TireModel,
@@ -222,7 +242,13 @@ def explain_misfit(
     catalogue: names of the effects that may be found, of `catalogue_names`; progress: called with a sentence for each
     stage; held_out: recordings to which nothing is fitted, which judge what is; most_work: budget in place of MOST_WORK
     """
-    dataset = dataset_of(recordings, baseline)
+    return _explained(_Asked(recordings, baseline, catalogue, progress, held_out, most_work))
+
+
+def _explained(asked: _Asked) -> Explanation:
+    recordings, baseline, catalogue = asked.recordings, asked.baseline, asked.catalogue
+    progress, most_work = asked.progress, asked.most_work
+    dataset = dataset_of(recordings, baseline, asked.readings)
     excitation = excitation_of(dataset, timed=is_timed(recordings))
     impossible = excitation.channels.impossible
     if not baseline.inflated:
@@ -241,7 +267,7 @@ def explain_misfit(
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
     samples = samples_of(recordings, baseline)
-    others = held_out_of(held_out, baseline, samples)
+    others = held_out_of(asked.held_out, baseline, samples)
     blocks = FirstSets(dataset, raw, samples, others, FIRST_PART * most_work)
     alike = partial(alike_in, excitation)
     sets = blocks.begun(quiet)
@@ -254,13 +280,30 @@ def explain_misfit(
     if beyond := _beyond_range(ranking):
         # What would have to be more than it can be is another effect's, which a search beside it does not find.
         others_of = [name for name in catalogue if name not in beyond]
-        left = max(most_work - sets.work, FIRST_PART * most_work)
-        return explain_misfit(recordings, baseline, others_of, progress, held_out=held_out, most_work=left)
+        return _explained(asked.again(sets.work, catalogue=others_of))
+    if asked.readings is None and (readings := _filtered_noises(ranking.best, samples)):
+        return _explained(asked.again(sets.work, readings=readings))
     signatures, misfit = tuple(sets.signatures.values()), sets.dataset.misfit
     del raw, quiet, blocks, again, sets  # they are large, and needed no more
     ranking = _read_best(corrected(ranking, samples), samples.recordings)
     like_law = followed_by_law(signatures, misfit, ranking.best.variance)
     return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+
+
+def _filtered_noises(fit: Fit, samples: Samples) -> list[Noise | None]:
+    """Return the noise of each recording, None where it is as it was read; nothing where it is so of all.
+
+    Beside the misfit of the baseline a noise with a memory passes for what the tire does, if the motion is as quick.
+    What the likeliest set leaves shows it.
+    """
+    found: list[Noise | None] = []
+    left = samples.residuals(fit.tire)
+    for e, motion, own in zip(fit.problem.dataset.experiments, samples.motions, left, strict=True):
+        noise = None
+        if float(np.sqrt(np.mean(own**2))) > STAYS * e.floor.level:
+            noise = noise_left(own, driven_by(motion, e.interval / e.size))
+        found.append(noise if noise is not None and noise.level > STAYS * e.reading.level else None)
+    return found if any(found) else []
 
 
 def _beyond_range(ranking: Ranking) -> tuple[str, ...]:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..preprocessing.driven import Driven
-from ..preprocessing.levels import white_level
-from ..preprocessing.noise import Noise, levels_by_state, noise_of, resting, white_noise_of
+from ..preprocessing.levels import levels_by_state, white_level
+from ..preprocessing.noise import Noise, noise_of, resting, white_noise_of
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (

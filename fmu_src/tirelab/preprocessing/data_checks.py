@@ -15,10 +15,11 @@ from radialtire.tracking import PAUSE
 from scipy.stats import binom, norm, t
 
 from ..errors import TirelabError
+from .driven import FEWEST_EVENTS
 from .gauge import deflection_noise
 from .levels import white_level
 from .motion import motion_of
-from .noise import FEWEST_EVENTS, STANDS_OUT
+from .noise import STANDS_OUT
 from .samples import RawDataset, Recorded, is_timed
 
 FloatArray = NDArray[np.float64]

@@ -18,6 +18,13 @@ FEWEST_LAGS = 20
 """Fewest lags in a recording: the level of noise that is independent a lag apart is then known to a sixth. A kink is
 tried in each of as many parts of it."""
 
+FEWEST_EVENTS = 10
+"""Fewest events that are no chance: samples of a hold, changes of a reading, memories of noise between two visits, or
+for each shape that a misfit may have."""
+
+KINDS = 4
+"""Number of kinds of `Driven.shapes`."""
+
 Visits = tuple[IntArray, IntArray, FloatArray]
 """Numbers of two samples of one place, pair by pair, and 1 where both go the same way, -1 where not: what depends on
 the place has third differences of the other sign on the way back."""
@@ -54,15 +61,18 @@ class Driven:
         each = _kinks(self.deflection, FEWEST_LAGS)
         return np.column_stack([each, each @ (-1.0) ** np.arange(FEWEST_LAGS)])
 
-    def shapes(self, memory: int) -> FloatArray:
+    def shapes(self, memory: int, *, coarser: bool = False) -> FloatArray:
         """Forces (n, k) of any shape over each place of `visits`: over the deflection, over the deflection with the
         other sign on the way back, and over the distance from the last reversal with the other sign on the way back.
 
         memory: of the noise beside them. Half as many parts of each place as `kinks` has: shapes have to be few beside
-        the memories of a recording, to tell whether it has something of them.
+        the memories of a recording, to tell whether it has something of them; coarser: as few as that needs.
         """
         inwards, turned = _inwards(self.deflection, memory), _from_turn(self.deflection, memory)
         way, parts = np.where(inwards, 1.0, -1.0)[:, None], FEWEST_LAGS // 2
+        if coarser:
+            told = (self.deflection.size / memory - 1.0) / (KINDS * FEWEST_EVENTS)
+            parts = int(min(max(told, 1.0), parts))
         over, after = _kinks(self.deflection, parts), _kinks(np.abs(turned), parts)
         return np.column_stack([over, way, way * over, way * after])
 

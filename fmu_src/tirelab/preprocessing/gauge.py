@@ -15,7 +15,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .noise import FEWEST_EVENTS, NEGLIGIBLE
+from .driven import FEWEST_EVENTS
+from .noise import NEGLIGIBLE
 from .spread import robust_sigma
 
 FloatArray = NDArray[np.float64]

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from .driven import FEWEST_LAGS
 from .spread import TRIMMED, trimmed_sigma
 
 FloatArray = NDArray[np.float64]
@@ -34,6 +35,11 @@ FEWEST = 0.5 * (2.0 * TRIMMED) ** 2
 
 OF_THIRD = float(np.sqrt(20.0))
 """Standard deviation of third differences of white noise of standard deviation 1: the squared weights 1 + 9 + 9 + 1."""
+
+
+FEWEST_IN_STATE = 5 * FEWEST_LAGS
+STATE_LAGS = (1, 2, 4, 8, 16)
+"""Fewest samples at rest, or moving, whose noise is then known to a tenth, and the lags over which it has to stay."""
 
 
 def white_level(residual: FloatArray) -> float:
@@ -82,6 +88,27 @@ def falls(levels: FloatArray, known: FloatArray) -> bool:
     noise do not. Third differences of a sine are up to 1.8 times its level at one lag, and next to none at others.
     """
     return bool(np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels)))
+
+
+def levels_by_state(
+    residual: FloatArray, rests: BoolArray, least: float, *, differ: bool = False
+) -> tuple[float, float]:
+    """Return the noise of a residual (n,) while the tire rests (n,) and while it moves, over its white part; 1 and 1
+    where their white parts are alike, one is hardly seen, or one keeps growing with the lag, as what follows a motion,
+    or falls, as an oscillation.
+    least: that counts; differ: whether they are known not to be alike
+    """
+    states = [state for state in (rests, ~rests) if state.sum() >= FEWEST_IN_STATE]
+    levels = [[max(level_of(residual, lag, s), least) for lag in STATE_LAGS] for s in states]
+    if len(levels) < 2 or not all(map(plateau_at, levels)):
+        return 1.0, 1.0
+    if any(falls(*known_levels(residual, finer(STATE_LAGS), s)) for s in states):
+        return 1.0, 1.0
+    white = [own[0] for own in levels]
+    if not differ and max(white) < STAYS**4 * min(white):
+        return 1.0, 1.0
+    at_rest, moving = (max(own) / max(white_level(residual), least) for own in levels)
+    return at_rest, moving
 
 
 def known_over(count: int, lag: int) -> BoolArray:

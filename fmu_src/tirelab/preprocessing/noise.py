@@ -28,15 +28,16 @@ believed if another one has a noise of this level and memory.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from .driven import FEWEST_LAGS, Driven, Visits
+from .driven import FEWEST_EVENTS, FEWEST_LAGS, Driven, Visits
 from .hum import mains_hum
 from .levels import (
+    FEWEST_IN_STATE,
     STAYS,
     falls,
     finer,
@@ -67,16 +68,8 @@ NEGLIGIBLE = 0.05
 STANDS_OUT = 8.0
 """Noise standard deviations: a gauge whose reading stays within them stands still, what is beyond them is no noise."""
 
-FEWEST_EVENTS = 10
-"""Fewest events that are no chance: samples of a hold, changes of a reading, memories of noise between two visits, or
-for each shape that a misfit may have."""
-
 SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
 """Root mean square error of a reading that is rounded to steps, in steps."""
-
-FEWEST_IN_STATE = 5 * FEWEST_LAGS
-STATE_LAGS = (1, 2, 4, 8, 16)
-"""Fewest samples at rest, or moving, whose noise is then known to a tenth, and the lags over which it has to stay."""
 
 LONGEST_PHASE = float(2.0 * np.pi / 3.0)
 """Phase p [rad] of the motion over the longest lag. Third differences of a sine are (2 sin(p / 2))^3 times it, at this
@@ -116,27 +109,6 @@ class Noise:
 def resting(rate: FloatArray) -> BoolArray:
     """Return at which samples (n,) the tire rests; rate (n,) [m/s]."""
     return np.asarray(np.abs(rate) <= STILL * float(np.abs(rate).max()))
-
-
-def levels_by_state(
-    residual: FloatArray, rests: BoolArray, least: float, *, differ: bool = False
-) -> tuple[float, float]:
-    """Return the noise of a residual (n,) while the tire rests (n,) and while it moves, over its white part; 1 and 1
-    where their white parts are alike, one is hardly seen, or one keeps growing with the lag, as what follows a motion,
-    or falls, as an oscillation.
-    least: that counts; differ: whether they are known not to be alike
-    """
-    states = [state for state in (rests, ~rests) if state.sum() >= FEWEST_IN_STATE]
-    levels = [[max(level_of(residual, lag, s), least) for lag in STATE_LAGS] for s in states]
-    if len(levels) < 2 or not all(map(plateau_at, levels)):
-        return 1.0, 1.0
-    if any(falls(*known_levels(residual, finer(STATE_LAGS), s)) for s in states):
-        return 1.0, 1.0
-    white = [own[0] for own in levels]
-    if not differ and max(white) < STAYS**4 * min(white):
-        return 1.0, 1.0
-    at_rest, moving = (max(own) / max(white_level(residual), least) for own in levels)
-    return at_rest, moving
 
 
 Left = Callable[[FloatArray], FloatArray]
@@ -188,6 +160,16 @@ def _noise_beside_motion(
         if not follows:
             return found
     return levels.white(driven)
+
+
+def noise_left(residual: FloatArray, driven: Driven) -> Noise | None:
+    """Return the noise with a memory that is all of a residual (n,) which a fitted tire leaves; None where it is not.
+
+    Such a residual has nothing of what the fit follows, so one more lag need not show that the level stays.
+    """
+    found = next(_noises_at_whole_variation(_levels_of(residual, driven), driven, (), fitted=True), None)
+    # A filter that overshoots makes differences at some lags larger than the whole.
+    return found and replace(found, level=min(found.level, float(np.std(residual))))
 
 
 def white_noise_of(residual: FloatArray, driven: Driven) -> Noise:
@@ -293,11 +275,14 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     return least if least.level > STAYS * white.level else white
 
 
-def _noises_at_whole_variation(levels: _Levels, driven: Driven, known: Sequence[Noise]) -> Iterator[Noise]:
+def _noises_at_whole_variation(
+    levels: _Levels, driven: Driven, known: Sequence[Noise], *, fitted: bool = False
+) -> Iterator[Noise]:
     """Return the noises whose level reaches the whole variation of the residual within a few lags, the longest first.
 
     Where no place is visited again, or where a signal of the motion would reach its variation too, one more lag has to
-    show that the level stays; of such signals the residual must have nothing, unless the noise is known.
+    show that the level stays, unless a tire was `fitted`; of such signals the residual must have nothing, unless the
+    noise is known.
     """
     residual, slow = levels.residual, levels.slow
     rises = rising(levels.values)
@@ -316,11 +301,11 @@ def _noises_at_whole_variation(levels: _Levels, driven: Driven, known: Sequence[
         if any(map(Noise(least, found.memory).is_like, known)):
             yield Noise(least, found.memory)
             continue
-        could = any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
-        if (could or not visits) and rises[min(last, len(rises) - 1)]:
+        could = fitted or any(_may_follow(s, lag, slow, visits) for s in driven.signals.T)
+        if (not visits or (could and not fitted)) and rises[min(last, len(rises) - 1)]:
             continue
         # Apart, since of all of them together a recording of a few hundred memories could not tell.
-        shapes = [driven.signals, driven.shapes(found.memory)]
+        shapes = [driven.signals, driven.shapes(found.memory, coarser=fitted)]
         if not (could and any(_follows(residual, own, found.memory) for own in shapes)):
             yield Noise(least, found.memory)
 

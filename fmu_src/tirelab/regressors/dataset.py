@@ -177,7 +177,7 @@ class Dataset:
 def dataset_of(
     recordings: Sequence[Recorded],
     tire: TireModel,
-    readings: Sequence[Noise] | None = None,
+    readings: Sequence[Noise | None] | None = None,
 ) -> Dataset:
     """Return the recordings in blocks, with the misfit of `tire`, the baseline.
 

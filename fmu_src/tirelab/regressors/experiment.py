@@ -174,7 +174,10 @@ def experiment_in_blocks(
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
     known = [in_blocks(noise, blocks.size) for noise in known if noise.memory > blocks.size]
     of_blocks = _noise_along(averaged, averaged_misfit, interval * blocks.size, known)
-    noise = min(reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0)), of_blocks.level)
+    noise = reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0))
+    # Blocks within one memory are not independent, so that a white noise of theirs is a part of it only.
+    if reading.memory <= blocks.size or of_blocks.memory > 1:
+        noise = min(noise, of_blocks.level)
     force_step = staircase_step(recording.force) or gauge_step(recording.force)
     least_noise, resting = _rounding(recording.force, force_step, blocks.size)
     # The recorded one: where the believed law is stiffer, it would make noise of what the part does.
@@ -232,9 +235,13 @@ def _noise_along(moved: SmoothedMotion, misfit: FloatArray, interval: float, kno
 
     interval [s]: between its samples; known: noises that it may have
     """
+    return noise_of(misfit, driven_by(moved, interval), known=known)
+
+
+def driven_by(moved: SmoothedMotion, interval: float) -> Driven:
+    """Return a motion as what a misfit may follow; interval [s]: between its samples."""
     (surface,) = surface_numbers([moved.surface_radius])
-    driven = Driven(interval, moved.deflection, moved.rate, moved.acceleration, surface)
-    return noise_of(misfit, driven, known=known)
+    return Driven(interval, moved.deflection, moved.rate, moved.acceleration, surface)
 
 
 def in_blocks(noise: Noise, size: float) -> Noise:

@@ -7,10 +7,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
 from tirelab.preprocessing.driven import Driven
-from tirelab.preprocessing.levels import white_level
+from tirelab.preprocessing.levels import levels_by_state, white_level
 from tirelab.preprocessing.noise import (
     Noise,
-    levels_by_state,
     noise_floor,
     noise_of,
     resting,
