@@ -23,6 +23,11 @@ MOST_DATASETS = 2000
 UNIT_KEYS = ("unit", "units", "unit_string")
 """Attributes of a dataset that state its unit, in small letters."""
 
+BLANKS = ("_FillValue", "missing_value")
+SCALE, OFFSET = "scale_factor", "add_offset"
+PACKED = (*BLANKS, SCALE, OFFSET)
+"""Attributes of a dataset whose values are packed, as netCDF files have them."""
+
 
 @dataclass(frozen=True)
 class _Place:
@@ -83,6 +88,7 @@ class Hdf5Table:
     def read(self, wanted: Sequence[Wanted]) -> Columns:
         """The vectors wanted; refused when their lengths differ."""
         values: list[FloatArray] = []
+        notes: list[str] = []
         headers = [self.headers[want.index] for want in wanted]
         with reading_with(self.path, "HDF5"), self.library.File(self.path, "r") as file:
             for want, header in zip(wanted, headers, strict=True):
@@ -92,9 +98,30 @@ class Hdf5Table:
                 if array.ndim == 2:
                     along = array if array.shape[0] == max(array.shape) else array.T
                     array = along[:, int(place.part or 0)]
-                values.append(numbers(Origin(self.path.name), header, array, want.channel))
+                column = numbers(Origin(self.path.name), header, array, want.channel)
+                column, said = _unpacked(column, dataset.attrs)
+                values.append(column)
+                notes += [f"{header.text}: {said}"] if said else []
         of_one_length(Origin(self.path.name), headers, values)
-        return Columns(tuple(values), sample_place)
+        return Columns(tuple(values), sample_place, tuple(notes))
+
+
+def _unpacked(values: FloatArray, attributes: Any) -> tuple[FloatArray, str]:
+    """Return the values that packed ones stand for, blanks as NaN, and what was done: CF Conventions 1.11, 2.5 and 8.1.
+
+    A blank is what `_FillValue` or `missing_value` says; a value is the packed one times `scale_factor` plus
+    `add_offset`.
+    """
+    stated = {name: np.asarray(attributes[name]).reshape(-1) for name in PACKED if name in attributes}
+    told = {n: float(v[0]) for n, v in stated.items() if v.size == 1 and v.dtype.kind in "fiu"}
+    blank = np.zeros(values.size, dtype=bool)
+    for name in BLANKS:
+        blank |= values == told.pop(name, np.nan)
+    said = f"{int(blank.sum())} blanks by its attributes" if blank.any() else ""
+    if told:
+        values = values * told.get(SCALE, 1.0) + told.get(OFFSET, 0.0)
+        said = ", ".join([*(f"{n} {v:g} applied" for n, v in told.items()), *([said] if said else [])])
+    return np.where(blank, np.nan, values), said
 
 
 def _note(found: list[str], name: str, item: Any) -> None:
