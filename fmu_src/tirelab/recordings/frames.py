@@ -67,7 +67,15 @@ class ColumnTable:
 
 
 def array_table(origin: Origin, arrays: Mapping[str, ArrayLike]) -> ColumnTable:
-    """Return the table of arrays, each named like the channel that it is."""
+    """Return the table of arrays, each named like the channel that it is.
+
+    Errors: RecordingError for what is one value, or gives its values one by one only, as a generator does.
+    """
+    for name, values in arrays.items():
+        if np.ndim(values) == 0:
+            raise RecordingError(
+                f"{origin}, {name}: is {type(values).__name__}, not one value per sample; give an array or a list"
+            )
     return ColumnTable(origin, [Header(name, None, name) for name in arrays], list(arrays.values()))
 
 
