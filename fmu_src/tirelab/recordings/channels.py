@@ -82,7 +82,9 @@ CHANNELS = (
         "pressure",
         "Pa",
         _names(
-            "pressure, inflation pressure, gauge pressure, absolute pressure, tire pressure, tyre pressure"
+            "pressure, inflation pressure, gauge pressure, absolute pressure, tire pressure, tyre pressure, "
+            "abs pressure, abs. pressure, pressure abs, pressure absolute, pressure gauge, air pressure, "
+            "internal pressure, tire inflation pressure, tyre inflation pressure"
         ),
         "p",
         largest=1e9,
@@ -209,7 +211,7 @@ def units_stated(lines: Iterable[str]) -> dict[str, str]:
 
 def says_absolute(header: Header) -> bool:
     """Whether the name of a pressure column says that it is absolute."""
-    return bool({"abs", "absolute"} & set(_words(header.name).split()))
+    return bool({"abs", "abs.", "absolute", "absolut", "absolutdruck"} & set(_words(header.name).split()))
 
 
 def may_be(header: Header, channel: Channel) -> bool:

@@ -104,10 +104,8 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
     ),
     "pressure": (
-        "druck",
-        "luftdruck",
-        "reifendruck",
-        "innendruck",
+        *("druck", "luftdruck", "reifendruck", "innendruck", "fulldruck", "fuelldruck", "reifenfulldruck"),
+        *("reifenfuelldruck", "uberdruck", "ueberdruck", "relativdruck", "absolutdruck", "druck absolut"),
         "pression",
         "presion",
         "pressione",

@@ -51,14 +51,26 @@ class TestReading:
         assert recording.temperature[0] == pytest.approx(293.15)
         assert recording.speed[0] == pytest.approx(10.0)
 
-    def test_an_absolute_pressure_is_told(self, tmp_path: Path) -> None:
+    @pytest.mark.parametrize(
+        "name", ["absolute pressure", "pressure abs", "abs. pressure", "Absolutdruck", "Druck absolut"]
+    )
+    def test_an_absolute_pressure_is_told(self, name: str, tmp_path: Path) -> None:
         time, deflection, force = loading()
-        header = "time [s],deflection [cm],force [N],absolute pressure [kPa]"
+        header = f"time [s],deflection [cm],force [N],{name} [kPa]"
         path = write_rows(tmp_path / "p.csv", header, time, deflection, force, [446.025] * 101)
         recording = read_recording(path, radius="flat")
         assert recording.pressure is not None
         assert recording.pressure[0] == pytest.approx(344700.0)
         assert any("absolute" in note for note in recording.notes)
+
+    @pytest.mark.parametrize("name", ["Reifenfülldruck", "Überdruck", "air pressure"])
+    def test_a_gauge_pressure_is_read_by_the_names_it_has(self, name: str, tmp_path: Path) -> None:
+        header = f"time [s],deflection [cm],force [N],{name} [kPa]"
+        recording = read_recording(
+            write_rows(tmp_path / "p.csv", header, *loading(), [344.7] * 101), radius="flat"
+        )
+        assert recording.pressure is not None
+        assert recording.pressure[0] == pytest.approx(344700.0)
 
     def test_every_concealed_recording_is_what_numpy_reads(self, shared: Path) -> None:
         files = sorted((shared / "recordings" / "concealed").glob("*/*.csv"))
