@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from .plausibility import YEAR_2001, YEAR_2096, Doubts, doubts_of, too_deep
 from .reading_plan import Plan
 from .rows import Rows, complete_rows
 from .samples import descends, gap_notes, over_midnight
+from .thousands_doubt import thousands_doubt
 from .units import STANDARD_ATMOSPHERE, Conversion
 
 FloatArray = NDArray[np.float64]
@@ -123,6 +124,7 @@ def interpret(
 
     part_alone = plan.settings.part
     doubts = Doubts() if counted.fault else doubts_of(counted.gauges, values, units, where, part_alone)
+    doubts = replace(doubts, sentences=(*_thousands_doubts(rows), *doubts.sentences))
     notes += [f"doubtful: {sentence}" for sentence in doubts.sentences]
     return Interpreted(values, rows, tuple(notes), counted, units, doubts, before, part_alone)
 
@@ -153,6 +155,16 @@ def _time_from_first(
     if since_1970:
         notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
     return time, notes
+
+
+def _thousands_doubts(rows: Rows) -> list[str]:
+    """Return a sentence for each column whose mark may stand between thousands."""
+    found = ((name, thousands_doubt(column)) for name, column in rows.values.items() if name in rows.headers)
+    return [
+        f"{rows.place(doubt[0])}, column {quoted(rows.headers[name].text)}: {doubt[1]}"
+        for name, doubt in found
+        if doubt is not None
+    ]
 
 
 def _part_text(piece: Piece) -> str:
