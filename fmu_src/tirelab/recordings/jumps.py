@@ -207,14 +207,18 @@ def _alone(values: NDArray[np.float64]) -> NDArray[np.intp]:
     edges = np.flatnonzero(sizes > LOST * usual)
     near = np.unique(np.clip(edges[:, None] + np.arange(1 - AROUND, AROUND + 1), 0, values.size - 1))
     # Where several are lost one after the other, or a good one stands between them, the median is of those around.
-    around = values[np.clip(near[:, None] + np.arange(-AROUND, AROUND + 1), 0, values.size - 1)]
-    far = np.abs(values[near] - np.median(around, axis=1))
+    # At an end those on its one side count twice, the two next to it: more of them would be far off on a ramp.
+    last, beside = values.size - 1, np.arange(-AROUND, AROUND + 1)
+    around = values[last - np.abs(last - np.abs(near[:, None] + beside))]
+    wide = np.clip(np.minimum(near, last - near), AROUND // 2, AROUND)
+    around = np.where(np.abs(beside) <= wide[:, None], around, np.nan)
+    far = np.abs(values[near] - np.nanmedian(around, axis=1))
     likely, far = near[far > LOST * usual], far[far > LOST * usual]
     order = np.argsort(-far, kind="stable")[:most]
     # Each step goes with the first sample beside it that is left out; what stays then are the steps of higher rank.
     rank = np.full(sizes.size, order.size)
     for side in (likely[order] - 1, likely[order]):
-        np.minimum.at(rank, side, np.arange(order.size))
+        np.minimum.at(rank, np.clip(side, 0, sizes.size - 1), np.arange(order.size))
     largest = np.zeros(order.size + 1)
     np.maximum.at(largest, rank, sizes)
     stays = np.maximum.accumulate(largest[::-1])[::-1][1:]

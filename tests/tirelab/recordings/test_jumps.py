@@ -138,6 +138,13 @@ def test_a_camera_that_follows_something_else_for_a_few_samples_lost_its_reading
     assert lost_readings(lost_at(*run, value=0.15), force).tolist() == run
 
 
+@pytest.mark.parametrize("place", [0, 1, 2, -3, -2, -1])
+def test_at_an_end_the_reading_is_lost_and_not_those_beside_it(place: int) -> None:
+    at = place % CYCLES.size
+    force = 100.0 * CYCLES
+    assert lost_readings(lost_at(at, value=0.5), force).tolist() == [at]
+
+
 def test_what_the_force_follows_or_stays_or_is_frequent_was_not_lost() -> None:
     tapped = lost_at(222, 525)
     assert lost_readings(tapped, 100.0 * tapped).size == 0
