@@ -21,8 +21,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import TirelabError
+from ..recordings.sampling import parse_interval
 from ..recordings.toml_text import parse_toml
-from ..recordings.units import UnitError, conversion, parse_interval, parse_radius
+from ..recordings.units import UnitError, conversion, parse_radius
 from .waveforms import Limits
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")

@@ -223,4 +223,25 @@ def _alone(values: NDArray[np.float64]) -> NDArray[np.intp]:
     np.maximum.at(largest, rank, sizes)
     stays = np.maximum.accumulate(largest[::-1])[::-1][1:]
     alone = np.flatnonzero((far[order] > LOST * stays) & (stays > 0.0))
-    return np.sort(likely[order[: alone[-1] + 1]]) if alone.size else nothing
+    return (
+        _come_back(values, np.sort(likely[order[: alone[-1] + 1]]), LOST * usual) if alone.size else nothing
+    )
+
+
+def _come_back(values: NDArray[np.float64], alone: NDArray[np.intp], most: float) -> NDArray[np.intp]:
+    """Return those of the samples (k,) to which the readings jump, and from which they jump back to where they were; at
+    an end one of the two is enough.
+
+    most: of the way in the time between two samples. Before a pause of the recording the readings do not jump, and
+    after it the motion is elsewhere.
+    """
+    runs = np.split(alone, np.flatnonzero(np.diff(alone) > 1) + 1)
+    steps = np.abs(np.diff(values, prepend=np.inf, append=np.inf))
+    good = []
+    for run in runs:
+        first, last = int(run[0]), int(run[-1])
+        inside = first > 0 and last < values.size - 1
+        away = abs(values[min(last + 1, values.size - 1)] - values[max(first - 1, 0)]) if inside else 0.0
+        if min(steps[first], steps[last + 1]) > most and away <= most * (run.size + 1):
+            good.append(run)
+    return np.concatenate(good) if good else np.empty(0, dtype=np.intp)

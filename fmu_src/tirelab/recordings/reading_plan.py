@@ -15,16 +15,15 @@ from .matching import Match, match_channels, option_name, recognised
 from .metadata import Settings
 from .origin import Origin
 from .rows import OPTIONAL
+from .sampling import parse_interval, sampling_said
 from .units import (
     Conversion,
     UnitError,
     conversion,
     given_conversion,
     measures,
-    parse_interval,
     parse_quantity,
     parse_radius,
-    sampling_said,
 )
 
 MOST_LOOKED_AT = 8

@@ -3,7 +3,6 @@
 import difflib
 import math
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
@@ -87,18 +86,14 @@ _DOT = re.compile(r"(?<=[Nf])\.(?=(?:[cm]?m|s|in|ft)\b)")
 _GAUGE = re.compile(
     r"^(?P<unit>psi|bar|mbar|Pa|hPa|kPa|MPa|atm)[\s_]*(?:\(?(?P<kind>g|ga|gauge|a|abs|absolute)\)?)$"
 )
-_MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
+_SO_MANY = re.compile(
+    r"x?\s*(?P<value>\d+(?:\.\d+)?)(?:\s*/\s*(?P<by>[1-9]\d*))?\s*\*?\s*(?P<unit>[^\W\d].*)", re.ASCII
+)
+_PART_OF_ONE = re.compile(r"(?P<value>)(?P<unit>[^\W\d]\w*)\s*/\s*(?P<by>[1-9]\d*)", re.ASCII)
+MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
 _WITHIN_A_NAME = re.compile(r"(?P<name>[^()]*)\((?P<unit>[^()]*)\)(?P<more>[^()]+)")
-_RATE = re.compile(
-    r"\bsamp(?:l\w*)?[ _](?:frequency|rate)\b\W*(?:(?P<unit>k?Hz)\W+)?(?P<value>\d+(?:\.\d+)?)\W*(?P<behind>k?Hz\b)?",
-    re.I,
-)
-_STEP = re.compile(r"\ADelta_X\s+(?P<value>\d+(?:\.\d+)?(?:E[+-]?\d+)?)\b", re.I)
-"""The time between samples [s] in the header of a LabVIEW measurement file (NI, "Specification for the LabVIEW
-Measurement File (.lvm)")."""
-
 _LIKELY = {
     **{("N", word): "lbf" for word in ("lb", "lbs", "pound", "pounds")},
     **{("N", word): "kgf" for word in ("kg", "kgs", "kilogram", "kilograms")},
@@ -216,7 +211,7 @@ def given_conversion(text: str, si: str) -> Conversion:
     A header says how much a load cell bears in this form (`Load (500 N)`), so its unit is read by `conversion`.
     Errors: as `conversion`; UnitError for a calibration that is not positive, or in a unit with a zero of its own.
     """
-    found = _MAGNITUDE.match(text.strip())
+    found = MAGNITUDE.match(text.strip())
     if found is None or not found["unit"].strip():
         return conversion(text, si)
     one, value = conversion(found["unit"].strip(), si), float(found["value"])
@@ -307,7 +302,7 @@ def parse_radius(text: str | float) -> float:
     elif text.strip().lower() in FLAT_WORDS:
         return math.inf
     else:
-        found = _MAGNITUDE.match(text.strip().replace("\N{MINUS SIGN}", "-"))
+        found = MAGNITUDE.match(text.strip().replace("\N{MINUS SIGN}", "-"))
         if found is None:
             raise UnitError(
                 f"radius {text[:40]!r} cannot be read; write flat, 25.4cm (convex) or -50.8cm (concave)"
@@ -328,50 +323,10 @@ def parse_quantity(text: str, si: str) -> float:
 
     Errors: UnitError for what has no number, no unit, or a unit of something else.
     """
-    found = _MAGNITUDE.match(text.strip().replace("\N{MINUS SIGN}", "-"))
+    found = MAGNITUDE.match(text.strip().replace("\N{MINUS SIGN}", "-"))
     if found is None or not found["unit"].strip():
         raise UnitError(f"{text[:40]!r} is no {QUANTITIES[si]}; write a number and {_advice('', si)[6:]}")
     return float(conversion(found["unit"].strip(), si).to_si(np.array([float(found["value"])]))[0])
-
-
-def parse_interval(text: str | float) -> float:
-    """The time between samples [s] from a rate or an interval: "10 Hz", "0.1s", "100 ms", or a number of hertz.
-
-    Errors: UnitError for what is neither, or not positive.
-    """
-    found = _MAGNITUDE.match(str(text).strip())
-    unit = found["unit"].strip() if found else ""
-    if found is None or (not unit and isinstance(text, str)):
-        raise UnitError(
-            f"sampling {str(text)[:40]!r} cannot be read; write a rate or an interval: 10Hz, 0.1s"
-        )
-    value = float(found["value"])
-    if unit.lower() in ("", "hz", "khz", "1/s", "s^-1"):
-        rate = value * (1e3 if unit.lower() == "khz" else 1.0)
-        interval = 1.0 / rate if rate > 0.0 else 0.0
-    else:
-        interval = float(conversion(unit, "s").to_si(np.array([value]))[0])
-    if not (0.0 < interval < math.inf):
-        raise UnitError(
-            f"sampling {str(text)[:40]!r} is not positive; write a rate or an interval: 10Hz, 0.1s"
-        )
-    return interval
-
-
-def sampling_said(lines: Iterable[str]) -> str:
-    """Return the rate or the interval that some lines of text state, as "Sample Frequency (Hz): 100": 100Hz; "" where
-    none does.
-
-    A number without a unit is none, but for the interval of a LabVIEW measurement file, which is in seconds.
-    """
-    for line in lines:
-        rate, step = _RATE.search(line), _STEP.match(line)
-        unit = (rate["unit"] or rate["behind"]) if rate else ""
-        if rate and unit:
-            return f"{rate['value']}{'kHz' if unit.lower() == 'khz' else 'Hz'}"
-        if step and float(step["value"]) > 0.0:
-            return f"{float(step['value']):.12g}s"
-    return ""
 
 
 def _likely(unit: str, si: str, known: bool = False) -> str:
@@ -379,13 +334,30 @@ def _likely(unit: str, si: str, known: bool = False) -> str:
     hint = _LIKELY.get((si, unit.lower()), "")
     if hint or known:
         return hint if hint and measures(hint, si) else ""
+    smaller = unit[:1].lower() + unit[1:]
+    if smaller != unit and measures(smaller, si):
+        return smaller  # DaN
+    if any(map(str.isdigit, unit)):
+        many = _so_many(unit)
+        return many if many and measures(many.split(" ", 1)[1], si) else ""
     names = {name.lower(): name for name in _COMMON[si]}
     near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)
     return names[near[0]] if near else ""
 
 
+def _so_many(unit: str) -> str:
+    """Return a unit that stands for so many of another one as a calibration, `10 ms`, of `1/100 mm` and `ms/10` too."""
+    found = _SO_MANY.fullmatch(unit) or _PART_OF_ONE.fullmatch(unit)
+    if found is None:
+        return ""
+    value = float(found["value"] or 1.0) / float(found["by"] or 1.0)
+    return f"{value:g} {found['unit']}"
+
+
 def _advice(unit: str, si: str, known: bool = False) -> str:
     meant = _LIKELY.get((si, unit.lower())) or _likely(unit, si, known)
+    if meant and meant == _so_many(unit):
+        return f"does 1 in the column stand for {meant}?"
     if meant:
         return f"did you mean {meant}?"
     return f"write {', '.join(_COMMON[si][:-1])} or {_COMMON[si][-1]}"

@@ -145,6 +145,14 @@ def test_at_an_end_the_reading_is_lost_and_not_those_beside_it(place: int) -> No
     assert lost_readings(lost_at(at, value=0.5), force).tolist() == [at]
 
 
+@pytest.mark.parametrize(("begin", "missing"), [(295, 129), (1317, 149), (2263, 147), (651, 36), (1939, 119)])
+def test_the_readings_before_a_pause_of_the_recording_were_not_lost(begin: int, missing: int) -> None:
+    """Triangles of which some samples are missing: the motion goes on elsewhere, or where it was by chance."""
+    triangles = 1.0 - np.abs(np.linspace(0.0, 9.0, 3000) % 2.0 - 1.0)
+    kept = np.delete(triangles, np.arange(begin, begin + missing))
+    assert lost_readings(kept, np.full(kept.size, 3.0)).size == 0
+
+
 def test_what_the_force_follows_or_stays_or_is_frequent_was_not_lost() -> None:
     tapped = lost_at(222, 525)
     assert lost_readings(tapped, 100.0 * tapped).size == 0

@@ -7,7 +7,8 @@ import pytest
 from house_form import loading, refusal, write_rows
 from tirelab.recordings.asking import IncompleteRecording
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
-from tirelab.recordings.units import UnitError, parse_interval
+from tirelab.recordings.sampling import parse_interval
+from tirelab.recordings.units import UnitError
 
 
 @pytest.fixture

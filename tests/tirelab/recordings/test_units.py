@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tirelab.recordings.sampling import sampling_said
 from tirelab.recordings.units import (
     QUANTITIES,
     STANDARD_ATMOSPHERE,
@@ -17,7 +18,6 @@ from tirelab.recordings.units import (
     meant_unit,
     measures,
     parse_radius,
-    sampling_said,
     split_header,
 )
 
@@ -252,3 +252,32 @@ def test_a_dot_within_words_joins_nothing() -> None:
     assert not is_unit("a.u.")
     assert not is_unit("S.D")
     assert conversion("mm.", "m").divide == 1000.0
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "offered", "one"),
+    [
+        ("DaN", "N", "daN", 10.0),
+        ("10 ms", "s", "10 ms", 0.01),
+        ("ms/10", "s", "0.1 ms", 1e-4),
+        ("1/100 mm", "m", "0.01 mm", 1e-5),
+        ("0.01 mm", "m", "0.01 mm", 1e-5),
+        ("x10 N", "N", "10 N", 10.0),
+    ],
+)
+def test_the_unit_that_is_offered_is_as_large_as_the_one_that_is_written(
+    unit: str, si: str, offered: str, one: float
+) -> None:
+    """Ten milliseconds are not a millisecond: who copies what is offered must not be wrong by a factor."""
+    with pytest.raises(UnitError) as caught:
+        conversion(unit, si)
+    assert caught.value.likely == offered
+    assert offered in str(caught.value)
+    assert float(given_conversion(offered, si).to_si(np.array([1.0]))[0]) == pytest.approx(one, rel=1e-12)
+
+
+@pytest.mark.parametrize("unit", ["10 apples", "1/0 mm", "7"])
+def test_no_unit_is_offered_for_what_counts_nothing(unit: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        conversion(unit, "m")
+    assert caught.value.likely == ""
