@@ -54,6 +54,7 @@ KINDS: dict[str, str] = {
 }
 
 DERIVED = (
+    "diagnosis/simulation_correction.FAR_OFF",
     "estimation/fit.BARE_MENTION",
     "preprocessing/data_checks.BY_CHANCE",
     "preprocessing/data_checks.FEWEST_BESIDE",

@@ -149,9 +149,32 @@ def simulated_by(
     with_force = [
         replace(r, believed_force=replay_foreign(model, r, r.name, timeout, report)) for r in (*fitted, *kept)
     ]
+    _refuse_other_units(model, with_force)
     found = believed_of(with_force[: len(fitted)], with_force[len(fitted) :])
     assert found is not None
     return replace(found, model=model, timeout=timeout)
+
+
+FAR_OFF = 1000.0**0.5
+"""Factor between recorded and simulated force from which their units are in doubt: the root of that from N to kN."""
+
+
+def _refuse_other_units(model: ForeignFmu, recordings: Sequence[Recording]) -> None:
+    """Refuse a force of another size than the recorded one, of a model that does not say its units."""
+    if model.deflection.unit and model.force.unit:
+        return
+    recorded, simulated = (
+        float(np.sqrt(np.mean(np.concatenate(forces) ** 2)))
+        for forces in ([r.force for r in recordings], [believed_force(r) for r in recordings])
+    )
+    if simulated * FAR_OFF > recorded and recorded * FAR_OFF > simulated:
+        return
+    x, force = model.deflection, model.force
+    raise TirelabError(
+        f"{model.path}: its force is {newtons(simulated)} RMS where {newtons(recorded)} were recorded, and it does not "
+        f"say all its units; say them with --variables 'deflection={x.name} [{x.unit or 'mm'}],force={force.name} "
+        f"[{force.unit or 'kN'}]', or [m] and [N] if they are right"
+    )
 
 
 def believed_force(recording: Recording) -> FloatArray:

@@ -19,7 +19,8 @@ from radialtire.tirefile import from_text
 
 from ..errors import TirelabError
 from ..recordings.assignments import assignments
-from ..recordings.channels import CHANNELS, assignments_text
+from ..recordings.channels import CHANNELS, assignments_text, unit_of_column
+from ..recordings.formats.table import Header
 from ..recordings.units import UnitError, conversion, measures
 from ..recordings.vocabulary import foreign_channel, plain
 from .unpacking import description_in, text_in
@@ -62,11 +63,15 @@ class Simulation:
 
 @dataclass(frozen=True)
 class Terminal:
-    """A variable of an FMU, its value reference, and by what its value is multiplied to be SI, compression positive."""
+    """A variable of an FMU, its value reference, and by what its value is multiplied to be SI, compression positive.
+
+    unit: in which it is, as the user or the FMU says, or the end of its name; "" where nothing does: then it is SI
+    """
 
     name: str
     reference: int
     factor: float
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -143,7 +148,8 @@ def read_foreign(asked: Simulation) -> ForeignFmu:
     tool = description.generationTool or "an unknown tool"
     said = [
         f"{path.name} (FMI {description.fmiVersion}, {kind}, of {tool}): its {deflection.name} is "
-        f"taken for the deflection, its {force.name} for the force"
+        f"taken for the deflection [{deflection.unit or 'm'}], its {force.name} for the force [{force.unit or 'N'}]"
+        + ("" if deflection.unit and force.unit else ", SI where it states no unit")
         + ("" if radius is None else f", its {radius.name} for the surface's radius")
         + (f"; left at their start: {', '.join(left)}" if left else "")
     ]
@@ -187,6 +193,9 @@ class _Chooser:
             rivals = [n for n, v in among.items() if v.unit and measures(v.unit, QUANTITIES[quantity])]
         if not rivals and needed and len(among) == 1:
             rivals = list(among)
+        if len(rivals) == 1 and needed and quantity == "force":
+            # One of several forces may be a part of the whole.
+            rivals += [n for n in among if n not in rivals and _words(n)[-1:] == ["force"]]
         if len(rivals) == 1:
             return self._terminal(quantity, among[rivals[0]], 1.0, None)
         if not needed:
@@ -213,14 +222,17 @@ class _Chooser:
 
     def _terminal(self, quantity: str, variable: ScalarVariable, sign: float, unit: str | None) -> Terminal:
         si = QUANTITIES[quantity]
+        last = variable.name.rpartition(".")[2]
+        known = unit or variable.unit or unit_of_column(Header(last, None, last), quantity) or ""
         try:
-            way = conversion(unit or variable.unit or si, si)
+            way = conversion(known or si, si)
         except UnitError as error:
             raise TirelabError(
                 f"{self.path}: {error}; say the unit of {variable.name} with "
                 f'--variables {quantity}="{variable.name} [{si}]"'
             ) from None
-        return Terminal(variable.name, variable.valueReference, sign * float(way.to_si(np.array([1.0]))[0]))
+        factor = sign * float(way.to_si(np.array([1.0]))[0])
+        return Terminal(variable.name, variable.valueReference, factor, known)
 
     @staticmethod
     def _unit_fits(variable: ScalarVariable, quantity: str) -> bool:
@@ -229,9 +241,17 @@ class _Chooser:
 
 def _is_called(name: str, quantity: str) -> bool:
     """Whether the last part of a variable's name is a word for a quantity, as for columns of recordings."""
-    last = plain(re.split(r"[.]", name)[-1])
+    last = " ".join(_words(name))
     words = {plain(w) for channel in CHANNELS if channel.name == quantity for w in channel.words}
     return last in words or last in SHORT[quantity] or foreign_channel(last) == quantity
+
+
+def _words(name: str) -> list[str]:
+    """Return the words of the last part of a variable's name, without a unit behind them: `rig.piston_force_kN`."""
+    last = name.rpartition(".")[2]
+    units = (unit_of_column(Header(last, None, last), quantity) for quantity in QUANTITIES)
+    unit = next((u for u in units if u), "")
+    return plain(last.removesuffix(unit).rstrip("_ ") or last).split()
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -17,11 +17,13 @@ from rivals import looking_for, rivals
 from tirelab.cli import main
 from tirelab.diagnosis.outcome import Replayed
 from tirelab.diagnosis.simulation_correction import (
+    _refuse_other_units,
     believed_of,
     write_corrected,
 )
 from tirelab.errors import TirelabError
 from tirelab.fmu import replay as fmu_replay
+from tirelab.fmu.foreign import ForeignFmu, Terminal
 from tirelab.recordings.recording import Recording, read_recording
 from tirelab.simulation.simulate import simulate
 
@@ -30,6 +32,27 @@ FloatArray = NDArray[np.float64]
 
 SHAPE = 700.0
 DAMPING = 500.0
+
+
+def of_size(factor: float) -> Recording:
+    """A recorded force beside a simulated one of another size."""
+    values = np.linspace(0.0, 0.01, 40)
+    flat = np.full(40, np.inf)
+    return Recording("a", values, values, flat, 1e5 * values, believed_force=factor * 1e5 * values)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1e3, 1e-6])
+def test_a_simulation_without_units_is_refused_where_its_force_is_of_another_size(factor: float) -> None:
+    """Kilonewtons and millimetres are a factor of a thousand each; a believed simulation is not so far off."""
+    silent = ForeignFmu(
+        Path("a.fmu"), "2.0", "CoSimulation", False, Terminal("x", 0, 1.0), Terminal("f", 1, 1.0), None, ()
+    )
+    with pytest.raises(TirelabError, match="does not say all its units") as refused:
+        _refuse_other_units(silent, [of_size(factor)])
+    assert "--variables 'deflection=x [mm],force=f [kN]'" in str(refused.value)
+    _refuse_other_units(silent, [of_size(3.0), of_size(0.1)])
+    said = replace(silent, deflection=Terminal("x", 0, 1.0, "m"), force=Terminal("f", 1, 1.0, "N"))
+    _refuse_other_units(said, [of_size(factor)])
 
 
 @pytest.mark.parametrize(

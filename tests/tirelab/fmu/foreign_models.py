@@ -106,12 +106,16 @@ def damper(folder: Path) -> Path:
     return Path(FmuBuilder.build_FMU(script, dest=folder))
 
 
-def spring_damper(folder: Path, misbehave: str = "pass") -> Path:
-    """Write SpringDamper.fmu of pythonfmu (FMI 2.0 Co-Simulation); misbehave: a statement for each step."""
+def spring_damper(folder: Path, misbehave: str = "pass", **renamed: str) -> Path:
+    """Write SpringDamper.fmu of pythonfmu (FMI 2.0 Co-Simulation); misbehave: a statement for each step; renamed: its
+    variables.
+    """
     from pythonfmu import FmuBuilder
 
-    script = folder / "springdamper.py"
-    script.write_text(SPRING_DAMPER.replace("{misbehave}", misbehave), encoding="utf-8")
+    script, text = folder / "springdamper.py", SPRING_DAMPER.replace("{misbehave}", misbehave)
+    for name, other in renamed.items():
+        text = text.replace(name, other)
+    script.write_text(text, encoding="utf-8")
     return Path(FmuBuilder.build_FMU(script, dest=folder))
 
 

@@ -82,6 +82,27 @@ def test_names_tell_the_variables_and_what_is_taken_is_said(spring: Path) -> Non
     assert "left at their start: temperature" in said
 
 
+def test_units_that_a_name_ends_in_are_taken_and_those_that_nothing_says_are_si(
+    spring: Path, tmp_path: Path
+) -> None:
+    found = read_foreign(Simulation(spring_damper(tmp_path, displacement="travel_mm", wheel_load="load_kN")))
+    assert (found.deflection.unit, found.force.unit) == ("mm", "kN")
+    assert found.deflection.factor == pytest.approx(1e-3, rel=1e-12)
+    assert found.force.factor == pytest.approx(1e3, rel=1e-12)
+    assert (
+        "travel_mm is taken for the deflection [mm], its load_kN for the force [kN]; left" in found.notes[0]
+    )
+    silent_of_units = read_foreign(Simulation(spring, FORCE))
+    assert (silent_of_units.deflection.unit, silent_of_units.force.unit) == ("", "")
+    assert "SI where it states no unit" in silent_of_units.notes[0]
+
+
+def test_one_force_beside_another_may_be_a_part_of_it(tmp_path: Path) -> None:
+    with pytest.raises(TirelabError, match="which variable is the force") as refused:
+        read_foreign(Simulation(spring_damper(tmp_path, wheel_load="spring_force", power="piston_force")))
+    assert "More than one may be it: spring_force, piston_force" in str(refused.value)
+
+
 def test_units_and_signs_are_taken_as_said(spring: Path) -> None:
     named = parse_variables('deflection="-displacement [mm]",force="wheel_load [kN]"')
     found = read_foreign(Simulation(spring, named))
