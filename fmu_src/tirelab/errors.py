@@ -1,6 +1,8 @@
-"""The one kind of failure that the user can correct."""
+"""The one kind of failure that the user can correct, and arguments of another kind than a function takes."""
 
 import json
+from collections.abc import Iterable
+from pathlib import Path
 
 
 class TirelabError(ValueError):
@@ -19,3 +21,25 @@ def what_is_wrong(error: Exception) -> str:
     if isinstance(error, KeyError):
         return f"it has no entry {error}"
     return str(error) if isinstance(error, ValueError) else "an entry is of another kind than it should be"
+
+
+def check_recordings_given(given: Iterable[object]) -> None:
+    """Raise TypeError, in one sentence, where one of several recordings is none, such as the path of a file."""
+    for one in given:
+        if not hasattr(one, "deflection"):
+            how = f"read it first: read_recording({str(one)!r})" if isinstance(one, (str, Path)) else _ARRAYS
+            raise TypeError(f"{str(one)[:60]!r} is of type {type(one).__name__}, not a recording; {how}")
+
+
+_ARRAYS = "make one of arrays with Recording.from_arrays, of a data frame with Recording.from_dataframe"
+
+
+def check_tire_given(given: object) -> None:
+    """Raise TypeError, in one sentence, where a tire is none, such as the path of its file."""
+    if not hasattr(given, "law"):
+        how = (
+            f"read_tire({str(given)!r})"
+            if isinstance(given, (str, Path))
+            else "read_tire(FILE) or TireModel()"
+        )
+        raise TypeError(f"{str(given)[:60]!r} is of type {type(given).__name__}, not a tire; give {how}")

@@ -10,6 +10,7 @@ import numpy as np
 from radialtire import TireModel
 
 from ..computing.threads import one_thread
+from ..errors import check_recordings_given, check_tire_given
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..estimation.ranking import MOST_WORK
@@ -68,8 +69,11 @@ def diagnose(
     unknown); limits: of the rig that would drive the next test; progress: called with a sentence for each stage
 
     Raises PoorRecording where recordings, also held-out ones, are too short or too poor, RecordingError where the zero
-    of a gauge is so far off that no effect holds it, ValueError for an unknown name in `catalogue`.
+    of a gauge is so far off that no effect holds it, ValueError for an unknown name in `catalogue`, TypeError for
+    what is no recording or no tire, such as the path of one.
     """
+    check_tire_given(baseline)
+    check_recordings_given((*_several(recordings), *_several(held_out)))
     fitted, kept = [alone(r) for r in _several(recordings)], _several(held_out)
     report = progress or (lambda sentence: None)
     allowed = catalogue_names() if catalogue is None else tuple(catalogue)
@@ -276,7 +280,7 @@ def _renamed(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorde
 
 
 def _several(given: Recorded | Sequence[Recorded]) -> Sequence[Recorded]:
-    return given if isinstance(given, Sequence) else (given,)
+    return given if isinstance(given, Sequence) and not isinstance(given, str) else (given,)
 
 
 def _check_names(catalogue: Sequence[str]) -> None:

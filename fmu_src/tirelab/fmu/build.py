@@ -24,7 +24,7 @@ from pythonfmu import FmuBuilder
 from radialtire import FLAT_RADIUS, TireModel
 from radialtire.tirefile import to_text
 
-from ..errors import TirelabError
+from ..errors import TirelabError, check_tire_given
 from . import documentation
 from .archive import MODEL, check_fmu, content_guid, named_for_xml, write_archive, xml_text
 from .loader import Compiler, compile_loader
@@ -70,16 +70,20 @@ class Correction:
         }
 
 
-def build_fmu(tire: TireModel, folder: Path, *, with_loader: bool = True) -> BuiltFmu:
+def build_fmu(tire: TireModel, folder: Path | str, *, with_loader: bool = True) -> BuiltFmu:
     """Write `folder`/BicycleTire.fmu for `tire` and return what was written.
 
     with_loader: compile the Linux binary for hosts that are not Python, if there is a compiler; an FMU without it has
     pythonfmu's, which runs in Python hosts only
-    Raises TirelabError where the folder cannot be written, a compiler fails, or the FMU is not valid FMI 2.0.
+    Raises TirelabError where the folder cannot be written, a compiler fails, or the FMU is not valid FMI 2.0, TypeError
+    for what is no tire.
     """
+    check_tire_given(tire)
     tire = named_for_xml(tire)
     content = _Content(SHELL, MODEL, "tire.json", to_text(tire))
-    return _built(content, folder, with_loader, lambda d: documentation.pages(tire, d, _wrapper_license()))
+    return _built(
+        content, Path(folder), with_loader, lambda d: documentation.pages(tire, d, _wrapper_license())
+    )
 
 
 def build_correction(correction: Correction, folder: Path) -> BuiltFmu:

@@ -19,7 +19,7 @@ from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 from radialtire import CHANNELS
 
-from ..errors import TirelabError
+from ..errors import TirelabError, check_recordings_given
 from ..simulation.channels import Sampled, begun, measured_of
 from .unpacking import description_in, unpack
 
@@ -156,8 +156,9 @@ def replay(fmu: Path, motion: Sampled, *, most: int | None = None) -> NDArray[np
 
     A channel that the motion holds and the FMU has an input for, such as the pressure, is set at every sample. A part
     of a file starts with what was recorded before it. most: number of samples after which the replay ends
-    Raises TirelabError where the FMU lacks a variable or refuses a sample.
+    Raises TirelabError where the FMU lacks a variable or refuses a sample, TypeError for what is no motion.
     """
+    check_recordings_given([motion])
     motion, before = begun(motion)
     measured = measured_of(motion)
     inputs = dict(zip(INPUTS, (motion.deflection, motion.surface_radius), strict=True))

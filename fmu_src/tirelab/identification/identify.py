@@ -12,7 +12,7 @@ from radialtire.curvature_law import SURFACES_MAX, CurvatureLaw
 from radialtire.model import Law
 from radialtire.tirefile import LAWS
 
-from ..errors import TirelabError
+from ..errors import TirelabError, check_recordings_given
 from ..recordings.recording import Recording
 from ..recordings.zero import refuse_far_zeros
 from ..simulation.simulate import simulate
@@ -47,12 +47,13 @@ def identify(
     law: "hull1996", "curvature_law", "power_law", or "auto": what the number of surfaces allows
     name: of the tire; progress: see Progress
 
-    Raises TirelabError where the recordings do not determine that law.
+    Raises TirelabError where the recordings do not determine that law, TypeError for what is no recording.
 
     Reference: Hull, Wang & Moore, Cycling Science, Spring 1996, section Methods.
     """
     if law not in ("auto", *LAWS):
         raise TirelabError(f"no law is named {law!r}; known are auto, {', '.join(LAWS)}")
+    check_recordings_given([recordings] if isinstance(recordings, str) else recordings)
     refuse_far_zeros(recordings)
     surfaces = surfaces_of(recordings)
     chosen, why = _law_for(surfaces, law)

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ..errors import TirelabError, check_recordings_given
 from .thinning import COLUMNS, envelope
 
 PIXELS, FEW = 1000, 20_000
@@ -51,7 +52,22 @@ class Comparison:
 
 
 def compare(recording: Recording, simulated: NDArray[np.float64]) -> Comparison:
-    """Return how `simulated` [N], one value for each sample, differs from the recorded force."""
+    """Return how `simulated` [N] (n,), one number for each sample, differs from the recorded force.
+
+    Raises TypeError where `recording` is none, TirelabError where there are not as many numbers, or one is not finite.
+    """
+    check_recordings_given([recording])
+    simulated = np.asarray(simulated, dtype=np.float64)
+    if simulated.shape != recording.force.shape:
+        raise TirelabError(
+            f"the simulated force has the shape {simulated.shape}, and {recording.name} has {recording.force.size} "
+            "samples; give one number for each of them"
+        )
+    if not np.isfinite(simulated).all():
+        at = int(np.argmin(np.isfinite(simulated)))
+        raise TirelabError(
+            f"the simulated force is {simulated[at]} at sample {at + 1}; simulate it anew, or cut it off"
+        )
     residual = recording.force - simulated
     at = int(np.argmax(np.abs(residual)))
     rmse = float(np.sqrt(np.mean(residual**2)))
