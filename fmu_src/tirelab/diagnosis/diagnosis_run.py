@@ -230,6 +230,7 @@ def _delivered(
         corrected = deliver(folder, believed, verdict.tire, report)
         on_fitted, more = corrected.replayed(fitted, report), corrected.notes()
         on_kept, warnings = corrected.replayed(kept, report), []
+        verdict = corrected.told(verdict, on_fitted, on_kept)
         write_corrected(folder, on_fitted)
         write_corrected(folder, on_kept)
         of_correction = {"corrected_fmu": CORRECTION, "correction": corrected.to_dict()}

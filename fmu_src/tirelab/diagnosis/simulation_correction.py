@@ -48,6 +48,8 @@ from ..report.titles import newtons
 from ..simulation.simulate import UPSTREAM, SmoothedMotion, simulate
 from .acceptance import rmse
 from .outcome import Replayed
+from .summary import errors_told
+from .verdict import Verdict
 
 FloatArray = NDArray[np.float64]
 
@@ -243,6 +245,22 @@ class Corrected:
             force = known[r.name] if r.name in known else self.force(r, report)
             after.append(force - believed_force(r) + law)
         return Replayed(tuple(recordings), tuple(before), tuple(after))
+
+    @staticmethod
+    def told(verdict: Verdict, fitted: Replayed, held_out: Replayed) -> Verdict:
+        """Return the verdict with the errors [N] that the correction has in replays of the FMUs: the diagnosis itself
+        knows the simulation by its law alone.
+        """
+        errors = {
+            f"{of}{when}": one.rmse(forces)
+            for of, one in (("", fitted), ("held_out_", held_out))
+            for when, forces in (("before", one.before), ("after", one.after))
+        }
+        known: dict[str, Any] = {name: error for name, error in errors.items() if error is not None}
+        fit = replace(verdict.fit, **known)
+        named, unexplained = bool(verdict.effects), bool(verdict.residual_models)
+        told, anew = (errors_told(named, unexplained, errors) for errors in (verdict.fit, fit))
+        return replace(verdict, fit=fit, summary=verdict.summary.replace(told, anew))
 
     def force(self, recording: Recording, report: Progress) -> FloatArray:
         """Return the force [N] of the simulation with its correction, from the FMUs themselves."""

@@ -63,7 +63,7 @@ def summarise(
         changed = [e.name for e in effects if e.in_baseline]
         said.append(headline(names, bool(regressions), doubted, left, changed))
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
-    said += _errors(bool(names), bool(regressions), fit)
+    said.append(errors_told(bool(names), bool(regressions), fit))
     if regressions:
         said.append(_remainder(regressions))
     said.append(sure(confidence))
@@ -145,7 +145,7 @@ AMPLIFIED = 1.1
 """The noise of the deflection is mentioned where it raises the held-out error by more than this factor."""
 
 
-def _errors(corrected: bool, unexplained: bool, fit: FitErrors) -> list[str]:
+def errors_told(corrected: bool, unexplained: bool, fit: FitErrors) -> str:
     """Return what the correction does to the error, or what would reduce it and is not named."""
     noise = f"the noise is {newtons(fit.noise)}"
     if not corrected:
@@ -156,13 +156,13 @@ def _errors(corrected: bool, unexplained: bool, fit: FitErrors) -> list[str]:
             there = f", and of the held-out data {newtons(other.held_out)} in place of {newtons(other.held_out_before)}"
             stays = f", and {why}; {set_title(other.names)} would leave {newtons(other.left)}"
             stays += there if other.refused else ""
-        return [f"The RMS error is {newtons(fit.before)}{stays}; {noise}."]
+        return f"The RMS error is {newtons(fit.before)}{stays}; {noise}."
     verb = "reduces" if fit.after < fit.before else "does not reduce, it changes"
     found = [
         f"The correction {verb} the RMS error from {newtons(fit.before)} to {newtons(fit.after)}; {noise}."
     ]
     if not math.isfinite(fit.held_out_after):
-        return found
+        return " ".join(found)
     verb = "falls" if fit.held_out_after < fit.held_out_before else "does not fall: it goes"
     change = f"{verb} from {newtons(fit.held_out_before)} to {newtons(fit.held_out_after)}"
     found.append(f"On held-out data it {change}.")
@@ -171,7 +171,7 @@ def _errors(corrected: bool, unexplained: bool, fit: FitErrors) -> list[str]:
             f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the rest "
             "comes of rates that are tracked as the readings come: their delay, and the noise that is left in them."
         )
-    return found
+    return " ".join(found)
 
 
 def _remainder(regressions: Sequence[ResidualModel]) -> str:

@@ -30,6 +30,7 @@ from tirelab.diagnosis.simulation_correction import (
 from tirelab.fmu.build import build_fmu
 from tirelab.fmu.foreign import Simulation, read_foreign
 from tirelab.recordings.recording import Recording
+from tirelab.report.titles import newtons
 from tirelab.simulation.simulate import simulate
 
 FloatArray = NDArray[np.float64]
@@ -194,6 +195,13 @@ def test_what_is_printed_says_what_was_taken_and_that_it_is_native_code(shifted:
     assert "is native code" in printed
     assert printed.index("is native code") < printed.index("replaying SpringDamper.fmu")
     assert "Corrected.ssp" in printed
+
+
+def test_the_sentences_have_the_errors_of_the_table(shifted: Done) -> None:
+    """Both are those of the replayed FMUs, which the law of the simulation alone does not give."""
+    fit, told = shifted.content["fit"], " ".join(shifted.content["verdict"]["summary"].split())
+    assert f"the RMS error from {newtons(fit['before'])} to {newtons(fit['after'])}" in told
+    assert f"from {newtons(fit['held_out_before'])} to {newtons(fit['held_out_after'])}" in told
 
 
 def test_the_file_follows_its_schema(shifted: Done, repository: Path) -> None:

@@ -47,6 +47,10 @@ class _Row:
     numeric: bool
 
 
+END_OF_HEADER = "***End_of_Header***"
+"""Above it a LabVIEW measurement file has its settings, one for each channel: no names of columns."""
+
+
 def find_table(lines: Sequence[str], start: int, separator: str | None) -> TablePlace | None:
     """Return where the table below any lines about the test begins; None where no line looks like a row of numbers.
 
@@ -70,6 +74,8 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     width = len(rows[first].cells)
     texts = [row for row in rows[:first] if not row.numeric and any(row.cells) and not is_units(row.cells)]
     texts = [row for row in texts if _SETTING.match(row.cells[0]) is None]
+    ends = [number for number, row in enumerate(texts) if row.cells[0].strip() == END_OF_HEADER]
+    texts = texts[ends[-1] + 1 :] if ends else texts
     above = [row for row in texts if len(row.cells) == width]
     header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
     named = _named(header.cells) if header is not None else 0

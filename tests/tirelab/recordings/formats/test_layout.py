@@ -362,3 +362,23 @@ def test_a_switch_beside_numbers_makes_no_header_of_the_first_row(tmp_path: Path
     found = read_recording(path, radius="flat", columns=columns, units=units)
     assert "the file has no header row: its columns are known by number only" in found.notes
     np.testing.assert_allclose(found.force, 0.5 * np.arange(40))
+
+
+def test_the_settings_above_the_end_of_a_header_name_no_columns(tmp_path: Path) -> None:
+    """X_Dimension of a LabVIEW measurement file names the time once for each channel, and is as wide as the names."""
+    head = (
+        "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\nChannels\t2\t\t\nSamples\t50\t50\t\n"
+        "X_Dimension\tTime\tTime\t\nX0\t0.0\t0.0\t\nDelta_X\t0.1\t0.1\t\n***End_of_Header***\t\t\t\n"
+        "X_Value\tDisplacement\tForce\tComment\n"
+    )
+    rows = "".join(f"{0.1 * i:.1f}\t{0.2 * i:.3f}\t{5.0 * i:.2f}\t\n" for i in range(50))
+    (tmp_path / "a.lvm").write_text(head + rows)
+    with pytest.raises(RecordingError, match="no column for time; its columns are 'X_Value'"):
+        read_recording(tmp_path / "a.lvm", radius="flat")
+    found = read_recording(
+        tmp_path / "a.lvm",
+        columns={"time": "#1"},
+        units={"time": "s", "deflection": "mm", "force": "N"},
+        radius="flat",
+    )
+    assert found.force[-1] == 245.0
