@@ -50,7 +50,30 @@ def sudden_doubts(
     """Return for each sudden event the channel, the sample and a sentence; arrays (n,) [m], [N]."""
     jumps = (("deflection", at, said) for at, said in jump_doubt(deflection))
     breaks = (("force", at, said) for at, said in break_doubt(deflection, force))
-    return (*jumps, *breaks)
+    marks = (("force", at, said) for at, said in mark_doubt(deflection, force))
+    return (*jumps, *breaks, *marks)
+
+
+def mark_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
+    """Return the first sample at which a logger may have written a mark for no reading, such as -999, and a sentence;
+    none without one. Arrays (n,) [m], [N].
+
+    The force goes there for a few samples and comes back, always to one number exactly, beyond all others, while the
+    deflection goes on.
+    """
+    with np.errstate(all="ignore"):
+        alone = np.setdiff1d(_alone(force), _alone(deflection))
+    if alone.size < 2 or np.ptp(force[alone]) > 0.0:
+        return ()
+    others = np.delete(force, alone)
+    mark = float(force[alone[0]])
+    if others.min() <= mark <= others.max():
+        return ()
+    said = (
+        f"the force is {mark:.6g} N at {alone.size} samples, beyond all others, and comes back each time: if that is a "
+        "mark for no reading, write nothing there, and the rows are skipped"
+    )
+    return ((int(alone[0]), said),)
 
 
 def break_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from house_form import write_rows
 from tirelab.recordings.choices import Choices
-from tirelab.recordings.jumps import break_doubt, false_readings, jump_doubt, lost_readings, unevenly_read
+from tirelab.recordings.jumps import (
+    break_doubt,
+    false_readings,
+    jump_doubt,
+    lost_readings,
+    mark_doubt,
+    unevenly_read,
+)
 from tirelab.recordings.recording import understand
 
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -301,3 +308,37 @@ def test_a_row_that_was_read_falsely_is_skipped_and_named(tmp_path: Path) -> Non
     (said,) = [note for note in found.notes if "false readings" in note]
     assert said.endswith(": row 335, row 779")  # the header is row 1
     assert len(found) == TIME.size - 2
+
+
+def marked(*samples: int, mark: float) -> np.ndarray:
+    force = 100.0 * CYCLES
+    force[list(samples)] = mark
+    return force
+
+
+@pytest.mark.parametrize("mark", [-999.0, 9999.9, 32767.0])
+def test_a_mark_for_no_reading_in_the_force_is_doubted_at_its_first_row(mark: float) -> None:
+    ((at, said),) = mark_doubt(CYCLES, marked(300, 711, 1200, mark=mark))
+    assert at == 300
+    assert f"{mark:.6g} N at 3 samples" in said
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        100.0 * CYCLES,
+        marked(300, mark=-999.0),
+        marked(300, 711, mark=0.5),
+        marked(300, mark=-999.0) - np.where(np.arange(CYCLES.size) == 711, 998.0, 0.0),
+        marked(*range(300, 420), mark=-999.0),
+    ],
+    ids=["none", "once", "within the others", "not one number", "it stays"],
+)
+def test_what_is_no_mark_is_not_doubted(force: np.ndarray) -> None:
+    assert mark_doubt(CYCLES, force) == ()
+
+
+def test_marks_that_the_deflection_has_too_are_a_motion() -> None:
+    taps = CYCLES.copy()
+    taps[[300, 711, 1200]] = 0.5
+    assert mark_doubt(taps, marked(300, 711, 1200, mark=-999.0)) == ()
