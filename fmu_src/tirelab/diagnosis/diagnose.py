@@ -25,6 +25,7 @@ from ..preprocessing.data_checks import (
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_timed, raw_dataset_of
 from ..recordings.zero import refuse_far_zeros
+from ..selection.search import LIKE_NOISE
 from ..simulation.simulate import simulate
 from .acceptance import (
     NO_WORSE,
@@ -44,7 +45,7 @@ from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .missed import Missed, missed_held_out
 from .residual_model import residual_models, unexplained_by
-from .summary import not_seen, other_law, slow_noise, summarise
+from .summary import before_simulation, not_seen, other_law, slow_noise, summarise
 from .verdict import FitErrors, NotNamed, Verdict
 
 MOST_TESTED = 3
@@ -112,7 +113,10 @@ def diagnose(
     contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
     contradiction = contradiction or _contradicted_by(candidates, accepted, fitted, kept)
     confidence = confidence_of(grounds, named, doubted, explanation.share)
-    confidence = min(confidence, EITHER) if isinstance(contradiction, Missed) else confidence
+    of_law = _left_by_law(fitted, baseline) if remainder.size > LIKE_NOISE else 0.0
+    may_be_before = of_law > fit.left
+    most = EITHER if isinstance(contradiction, Missed) or may_be_before else 1.0
+    confidence = min(confidence, most)
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:
@@ -127,6 +131,7 @@ def diagnose(
     missing = not_compared(fitted)
     sentences = [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(effects, alternatives, models, confidence, fit, test))
+    sentences += before_simulation(of_law) if may_be_before else []
     sentences += not_seen(remainder.uncompared, models) if unexplained else []
     noises = [e.reading for e in explanation.model.fit.problem.dataset.experiments]
     sentences += slow_noise(fitted, explanation.noise_free, noises)
@@ -289,6 +294,15 @@ def _check_names(catalogue: Sequence[str]) -> None:
         raise ValueError(
             f"no effect is named {', '.join(sorted(unknown))}; known are {', '.join(catalogue_names())}"
         )
+
+
+def _left_by_law(fitted: Sequence[Recorded], baseline: TireModel) -> float:
+    """Return the root mean square [N] of what the baseline, its law, leaves of a simulation in the recordings; 0 where
+    there is none.
+    """
+    forces = [(r, getattr(r, "believed_force", None)) for r in fitted]
+    left = [believed - simulate(baseline, r) for r, believed in forces if believed is not None]
+    return rmse(left) if left else 0.0
 
 
 def _recommend(

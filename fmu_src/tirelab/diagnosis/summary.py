@@ -15,7 +15,18 @@ from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.levels import white_level
 from ..preprocessing.noise import Noise
 from ..preprocessing.samples import Recorded, is_timed
-from ..report.titles import dependence, headline, listed, more_than_noise, newtons, replaced, set_title, sure
+from ..regressors.signature import candidates
+from ..report.titles import (
+    dependence,
+    headline,
+    listed,
+    more_than_noise,
+    newtons,
+    replaced,
+    set_title,
+    short_title,
+    sure,
+)
 from ..report.words import (
     LIKELIEST,
     OTHER_LIKELIER,
@@ -24,6 +35,7 @@ from ..report.words import (
     confidence_word,
     is_undecided,
 )
+from ..simulation.simulate import UPSTREAM
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -124,6 +136,21 @@ def slow_noise(
             "there, something acts that was not recorded."
         )
     return told
+
+
+def before_simulation(left: float) -> list[str]:
+    """Return the sentence that an effect before a simulation may be what is missing.
+
+    left [N]: what the law that stands for the simulation leaves of it. Such an effect changes the deflection that the
+    simulation is given, and what it makes of that is known for the law alone.
+    """
+    names = [name for name in candidates() if CATALOGUE[name].place in UPSTREAM]
+    return [
+        f"Its law leaves {newtons(left)} of the simulation, more than is left here: an effect before the simulation "
+        f"({listed([short_title(name) for name in names], 'or')}) is judged by that law alone, and may be what is "
+        "missing. That nothing else is missing is stated at 50 % at most: give the simulation the other deflection "
+        "yourself, and compare."
+    ]
 
 
 def other_law(left: float, regressions: Sequence[ResidualModel]) -> list[str]:

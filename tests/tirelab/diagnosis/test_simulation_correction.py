@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE
 from rivals import looking_for, rivals
 from tirelab.cli import main
+from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.outcome import Replayed
 from tirelab.diagnosis.simulation_correction import (
     _refuse_other_units,
@@ -80,6 +82,43 @@ def driven(seed: int) -> Recording:
     return Recording(
         f"ride{seed}", time, deflection, np.full(time.size, np.inf), force, believed_force=simulated
     )
+
+
+def late(seed: int) -> Recording:
+    """A spring beside a spring in series with a damper, which the simulation has; the gauge reads 12 ms late."""
+    step, count = 2e-3, 10_000
+    time = step * np.arange(count)
+    x = 0.01 * np.sin(2.0 * np.pi * 0.7 * time) + 0.004 * np.sin(2.0 * np.pi * 2.3 * time + seed)
+
+    def simulated(deflection: FloatArray) -> FloatArray:
+        held, force = 0.0, [1e5 * float(deflection[0])]
+        for before, now in itertools.pairwise(deflection.tolist()):
+            held = (held + 6e4 * (now - before)) * float(np.exp(-step / 0.05))
+            force.append(1e5 * now + held)
+        return np.array(force)
+
+    noise = 3.0 * np.random.default_rng(seed).standard_normal(count)
+    read = np.interp(time - 0.012, time, x)
+    flat = np.full(count, np.inf)
+    return Recording("late", time, read, flat, simulated(x) + noise, believed_force=simulated(read))
+
+
+def test_a_verdict_beside_a_simulation_that_no_law_stands_for_says_what_it_could_not_try() -> None:
+    found = believed_of([late(1)], [])
+    assert found is not None
+    verdict = diagnose(found.fitted, found.tire)
+    assert verdict.remainder.size > 1.0
+    assert verdict.confidence <= 0.5
+    assert "of the simulation, more than is left here: an effect before the simulation" in verdict.summary
+
+
+def test_where_no_more_than_noise_is_left_nothing_is_doubted_of_the_simulation() -> None:
+    found = believed_of([driven(1)], [])
+    assert found is not None
+    verdict = diagnose(found.fitted, found.tire)
+    assert [effect.name for effect in verdict.effects] == ["viscous_damping"]
+    assert verdict.confidence > 0.5
+    assert "before the simulation" not in verdict.summary
 
 
 def test_what_is_diagnosed_has_the_misfit_of_the_simulation() -> None:
