@@ -338,7 +338,8 @@ def _likely(unit: str, si: str, known: bool = False) -> str:
     if smaller != unit and measures(smaller, si):
         return smaller  # DaN
     if any(map(str.isdigit, unit)):
-        many = _so_many(unit)
+        # Behind a force it may be what the load cell bears: Load (500 N).
+        many = _so_many(unit) if si != "N" or unit.startswith("x") else ""
         return many if many and measures(many.split(" ", 1)[1], si) else ""
     names = {name.lower(): name for name in _COMMON[si]}
     near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)

@@ -276,8 +276,8 @@ def test_the_unit_that_is_offered_is_as_large_as_the_one_that_is_written(
     assert float(given_conversion(offered, si).to_si(np.array([1.0]))[0]) == pytest.approx(one, rel=1e-12)
 
 
-@pytest.mark.parametrize("unit", ["10 apples", "1/0 mm", "7"])
-def test_no_unit_is_offered_for_what_counts_nothing(unit: str) -> None:
+@pytest.mark.parametrize(("unit", "si"), [("10 apples", "m"), ("1/0 mm", "m"), ("7", "m"), ("500 N", "N")])
+def test_no_unit_is_offered_for_what_counts_nothing_or_what_a_load_cell_bears(unit: str, si: str) -> None:
     with pytest.raises(UnitError) as caught:
-        conversion(unit, "m")
+        conversion(unit, si)
     assert caught.value.likely == ""
