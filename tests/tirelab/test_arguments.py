@@ -1,0 +1,62 @@
+"""What is no recording, no tire or no simulated force is told in one sentence with what to give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from drives import damped
+from radialtire import TireModel
+from tirelab import build_fmu, compare, diagnose, identify, replay
+from tirelab.errors import TirelabError, check_recordings_given, check_tire_given
+
+RECORDING = damped(1, samples=200)
+TIRE = TireModel()
+
+CALLS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], str]] = {
+    "diagnose a path": (diagnose, ("a.csv", TIRE), "read it first: read_recording('a.csv')"),
+    "diagnose paths": (diagnose, ([Path("a.csv")], TIRE), "read it first: read_recording('a.csv')"),
+    "diagnose arrays": (diagnose, ([np.zeros(9)], TIRE), "Recording.from_arrays"),
+    "diagnose beside a path": (diagnose, (RECORDING, "t.json"), "give read_tire('t.json')"),
+    "identify a path": (identify, ("a.csv",), "read_recording('a.csv')"),
+    "identify paths": (identify, (["a.csv"],), "read_recording('a.csv')"),
+    "compare a path": (compare, ("a.csv", np.zeros(9)), "read_recording('a.csv')"),
+    "replay several": (replay, (Path("a.fmu"), [RECORDING]), "is of type list, not a recording"),
+    "build of nothing": (build_fmu, (None, "out"), "give read_tire(FILE) or TireModel()"),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_an_argument_of_another_kind_is_told_in_one_sentence(name: str) -> None:
+    function, arguments, told = CALLS[name]
+    with pytest.raises(TypeError) as caught:
+        function(*arguments)
+    assert told in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_recordings_and_tires_pass() -> None:
+    check_recordings_given([RECORDING, RECORDING])
+    check_recordings_given([])
+    check_tire_given(TIRE)
+
+
+@pytest.mark.parametrize(
+    ("simulated", "told"),
+    [
+        (np.zeros(199), "the simulated force has the shape (199,), and ride 1 has 200 samples"),
+        (np.zeros((200, 1)), "has the shape (200, 1)"),
+        (0.0, "has the shape ()"),
+        (np.where(np.arange(200) == 3, np.nan, 0.0), "the simulated force is nan at sample 4"),
+    ],
+)
+def test_a_simulated_force_that_cannot_be_compared_is_told(simulated: Any, told: str) -> None:
+    with pytest.raises(TirelabError, match=told.replace("(", r"\(").replace(")", r"\)")):
+        compare(RECORDING, simulated)
+
+
+def test_a_list_of_numbers_is_compared() -> None:
+    assert compare(RECORDING, RECORDING.force.tolist()).rmse == 0.0  # type: ignore[arg-type]
