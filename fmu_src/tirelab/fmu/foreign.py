@@ -19,8 +19,7 @@ from radialtire.tirefile import from_text
 
 from ..errors import TirelabError
 from ..recordings.assignments import assignments
-from ..recordings.channels import CHANNELS, assignments_text, unit_of_column
-from ..recordings.formats.table import Header
+from ..recordings.channels import CHANNELS, assignments_text
 from ..recordings.units import UnitError, conversion, measures
 from ..recordings.vocabulary import foreign_channel, plain
 from .unpacking import description_in, text_in
@@ -39,6 +38,9 @@ SHORT = MappingProxyType(
     }
 )
 """Names that models have for a quantity, besides those of columns in recordings."""
+
+ENDINGS = ("m", "cm", "mm", "um", "N", "kN", "mN", "daN", "lbf", "kgf")
+"""Units that a variable's name may end in: x_mm."""
 
 IN_BRACKETS = re.compile(r"(?P<name>.+?)\s+\[(?P<unit>[^\[\]]+)\]")
 
@@ -222,8 +224,8 @@ class _Chooser:
 
     def _terminal(self, quantity: str, variable: ScalarVariable, sign: float, unit: str | None) -> Terminal:
         si = QUANTITIES[quantity]
-        last = variable.name.rpartition(".")[2]
-        known = unit or variable.unit or unit_of_column(Header(last, None, last), quantity) or ""
+        behind = _unit_behind(variable.name)
+        known = unit or variable.unit or (behind if behind and measures(behind, si) else "")
         try:
             way = conversion(known or si, si)
         except UnitError as error:
@@ -248,10 +250,13 @@ def _is_called(name: str, quantity: str) -> bool:
 
 def _words(name: str) -> list[str]:
     """Return the words of the last part of a variable's name, without a unit behind them: `rig.piston_force_kN`."""
-    last = name.rpartition(".")[2]
-    units = (unit_of_column(Header(last, None, last), quantity) for quantity in QUANTITIES)
-    unit = next((u for u in units if u), "")
-    return plain(last.removesuffix(unit).rstrip("_ ") or last).split()
+    return plain(name.rpartition(".")[2].removesuffix(f"_{_unit_behind(name)}")).split()
+
+
+def _unit_behind(name: str) -> str:
+    """Return the unit that a variable's name ends in, "" without one; in `x_rod` and `F_dyn` the word is none."""
+    tail = name.rpartition("_")[2]
+    return tail if tail in ENDINGS else ""
 
 
 def _listed(names: Iterable[str]) -> str:

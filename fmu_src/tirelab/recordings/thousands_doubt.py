@@ -32,10 +32,10 @@ def thousands_doubt(written: FloatArray) -> tuple[int, str] | None:
     changes = np.flatnonzero(whole[1:] != whole[:-1])
     pairs = np.stack([size[changes], size[changes + 1]])
     low, high = np.where(whole[changes], pairs, pairs[::-1])
-    decimal, between = (_follow(low, factor * high) for factor in (1.0, THOUSAND))
-    if between <= decimal:
+    decimal, between = (_near(low, factor * high) for factor in (1.0, THOUSAND))
+    if between.sum() <= decimal.sum():
         return None
-    beside = changes[np.argmax(_near(low, THOUSAND * high))]
+    beside = changes[np.argmax(between)]
     first = int(beside) + int(whole[beside])
     other = int(beside) + int(not whole[beside])
     return first, (
@@ -46,7 +46,3 @@ def thousands_doubt(written: FloatArray) -> tuple[int, str] | None:
 
 def _near(one: FloatArray, other: FloatArray) -> NDArray[np.bool_]:
     return np.asarray((one < NEAR * other) & (other < NEAR * one))
-
-
-def _follow(one: FloatArray, other: FloatArray) -> int:
-    return int(np.count_nonzero(_near(one, other)))

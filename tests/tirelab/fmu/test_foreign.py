@@ -97,6 +97,16 @@ def test_units_that_a_name_ends_in_are_taken_and_those_that_nothing_says_are_si(
     assert "SI where it states no unit" in silent_of_units.notes[0]
 
 
+def test_a_word_that_is_a_unit_elsewhere_is_none(tmp_path: Path) -> None:
+    """A rod of 5 m, and a dyne: the deflection of a rod, and a dynamic force, are SI."""
+    named = {"deflection": "x_rod", "force": "load_dyn"}
+    found = read_foreign(
+        Simulation(spring_damper(tmp_path, displacement="x_rod", wheel_load="load_dyn"), named)
+    )
+    assert (found.deflection.factor, found.force.factor) == (1.0, 1.0)
+    assert (found.deflection.unit, found.force.unit) == ("", "")
+
+
 def test_one_force_beside_another_may_be_a_part_of_it(tmp_path: Path) -> None:
     with pytest.raises(TirelabError, match="which variable is the force") as refused:
         read_foreign(Simulation(spring_damper(tmp_path, wheel_load="spring_force", power="piston_force")))

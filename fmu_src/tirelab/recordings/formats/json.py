@@ -58,7 +58,7 @@ def _frame(path: Path) -> pl.DataFrame:
         return pl.read_ndjson(path, infer_schema_length=None)
     held = json.loads(path.read_bytes())
     lists = dict(_lists(held))
-    channels = {n: v for n, v in lists.items() if n and not any(isinstance(x, (dict, list)) for x in v)}
+    channels = {k: v for k, v in lists.items() if k and not any(isinstance(x, (dict, list)) for x in v)}
     longest, many = max(Counter(map(len, channels.values())).items(), default=(0, 0))
     # A list of sources or of settings beside the channels is shorter than they are.
     least = longest if many > 1 else 0
@@ -72,19 +72,19 @@ def _frame(path: Path) -> pl.DataFrame:
             f"{path.name}: {f'holds {len(tables)} tables' if tables else 'no table is found in it'}; write one list of "
             'samples, [{"time": 0.0, "deflection": 0.1, "force": 1.5}, ...], or one list for each channel'
         )
-    chosen = {name: v for name, v in channels.items() if len(v) == longest}
-    own = Counter(name.rpartition(".")[2] for name in chosen)
-    short = {name: last if own[last := name.rpartition(".")[2]] == 1 else name for name in chosen}
-    return pl.DataFrame({short[name]: v for name, v in chosen.items()}, strict=False)
+    chosen = {keys: v for keys, v in channels.items() if len(v) == longest}
+    own = Counter(keys[-1] for keys in chosen)
+    names = {keys: keys[-1] if own[keys[-1]] == 1 else ".".join(keys) for keys in chosen}
+    return pl.DataFrame({names[keys]: v for keys, v in chosen.items()}, strict=False)
 
 
-def _lists(held: Any, name: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Yield the lists of a file, and those in its objects as `test.force`."""
+def _lists(held: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], list[Any]]]:
+    """Yield the lists of a file with the keys of the objects that they stand in; the file itself may be one."""
     if isinstance(held, list):
-        yield name, held
+        yield keys, held
     elif isinstance(held, dict):
         for key, value in held.items():
-            yield from _lists(value, f"{name}.{key}" if name else key)
+            yield from _lists(value, (*keys, key))
 
 
 def _frame_of_lists(rows: Sequence[Sequence[Any]]) -> pl.DataFrame:

@@ -49,6 +49,18 @@ class TestJson:
         np.testing.assert_allclose(found.time, TIME, atol=1e-12)
         assert found.force.size == SAMPLES
 
+    def test_a_point_in_a_key_belongs_to_it_and_keys_of_one_name_are_told_apart(self, tmp_path: Path) -> None:
+        time, deflection, force = (np.asarray(values).tolist() for values in COLUMNS.values())
+        both = {
+            "t.": {"time [s]": time, "Displ. [mm]": deflection},
+            "a": {"load": force},
+            "b": {"load": force},
+        }
+        (tmp_path / "a.json").write_text(json.dumps(both), encoding="utf-8")
+        columns = {"deflection": "Displ.", "force": "a.load"}
+        found = read_recording(tmp_path / "a.json", columns=columns, units={"force": "N"}, radius="flat")
+        assert found.deflection.max() == pytest.approx(1e-3 * max(deflection))
+
     def test_what_a_sample_does_not_have_is_blank(self, tmp_path: Path) -> None:
         force = next(name for name in LISTS if "orce" in name)
         rows = [{n: v for n, v in row.items() if i != 8 or n != force} for i, row in enumerate(ROWS)]
