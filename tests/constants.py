@@ -104,6 +104,7 @@ DERIVED = (
     "selection/search.LIKE_NOISE",
     "estimation/findings.DETERMINED",
     "estimation/findings.SENSITIVITY_STEP",
+    "diagnosis/moved_simulation.TRIED",
     "estimation/minimise.DAMPING",
     "estimation/first_sets.LEAST_LEFT",
     "estimation/evidence.DRIFT_SCALES",
@@ -129,6 +130,8 @@ PRIOR = tuple(f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND"
 
 EFFORT = (
     "preprocessing/gauge.CANDIDATES",
+    "diagnosis/moved_simulation.MOST_REPLAYS",
+    "diagnosis/moved_simulation.SETTLED",
     "preprocessing/motion.CUTOFFS",
     "preprocessing/motion.LEVERAGE",
     "preprocessing/motion.KEPT",

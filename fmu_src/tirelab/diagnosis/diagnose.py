@@ -25,6 +25,7 @@ from ..preprocessing.data_checks import (
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_timed, raw_dataset_of
 from ..recordings.zero import refuse_far_zeros
+from ..regressors.dataset import arranged
 from ..selection.search import LIKE_NOISE
 from ..simulation.simulate import simulate
 from .acceptance import (
@@ -38,6 +39,7 @@ from .acceptance import (
     without_unlikely,
 )
 from .alternatives import USUAL_SPEED, Alternative, alternatives_of, no_surer_than_alternatives
+from .asked import Asked
 from .between_recordings import difference_between
 from .confidence import EITHER, confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of, driven
@@ -52,7 +54,6 @@ MOST_TESTED = 3
 """Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
 
 
-@one_thread()
 def diagnose(
     recordings: Recorded | Sequence[Recorded],
     baseline: TireModel = TireModel(),  # noqa: B008
@@ -75,8 +76,16 @@ def diagnose(
     """
     check_tire_given(baseline)
     check_recordings_given((*_several(recordings), *_several(held_out)))
-    fitted, kept = [alone(r) for r in _several(recordings)], _several(held_out)
-    report = progress or (lambda sentence: None)
+    several = _several(recordings), baseline, _several(held_out)
+    return diagnosed(Asked(*several, catalogue, limits, progress))
+
+
+@one_thread()
+def diagnosed(asked: Asked) -> Verdict:
+    """Return the verdict that is asked for; see `diagnose`."""
+    baseline, catalogue, limits = asked.baseline, asked.catalogue, asked.limits
+    fitted, kept = [alone(r) for r in asked.recordings], asked.held_out
+    report = asked.progress or (lambda sentence: None)
     allowed = catalogue_names() if catalogue is None else tuple(catalogue)
     _check_names(allowed)
     refuse_far_zeros(fitted)
@@ -121,6 +130,9 @@ def diagnose(
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
     if not accepted.effects:
         fit = replace(fit, not_named=_not_named(candidates, validate, fit.before))
+    before = asked.before.judged(fit)
+    confidence *= before.probability
+    effects, alternatives, fit = before.beside(effects, alternatives, fit)
     model = explanation.model
     located = law_corrected(fitted, data.before, model.baseline, model.tire, model.names)
     noise = None if unexplained else explanation.residuals
@@ -131,7 +143,7 @@ def diagnose(
     missing = not_compared(fitted)
     sentences = [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(effects, alternatives, models, confidence, fit, test))
-    sentences += before_simulation(of_law) if may_be_before else []
+    sentences += [*before.told(fit), *(before_simulation(of_law, before.tried) if may_be_before else [])]
     sentences += not_seen(remainder.uncompared, models) if unexplained else []
     noises = [e.reading for e in explanation.model.fit.problem.dataset.experiments]
     sentences += slow_noise(fitted, explanation.noise_free, noises)
@@ -148,15 +160,15 @@ def diagnose(
         summary=" ".join([*sentences, *missing, *outliers_told(fitted, explanation.noise_free)]),
         not_compared=missing,
         contradiction=contradiction,
-        where=where,
+        where=before.where or where,
         fit=fit,
-        tire=_renamed(explanation.model.tire, baseline, fitted),
+        tire=_renamed(arranged(explanation.model.tire, before.values), baseline, fitted),
         evidence=explanation.evidence,
         test=test if test is not None and test.sufficient else None,
         compared=len(explanation.evidence),
         evaluations=explanation.model.fit.evaluations,
-        recordings=tuple(fitted),
-        held_out=tuple(kept),
+        recordings=before.recordings or tuple(fitted),
+        held_out=before.held_out or tuple(kept),
         baseline=baseline,
     )
 

@@ -32,6 +32,7 @@ from ..recordings.recording import Recording
 from ..report.page import write_report
 from ..simulation.simulate import simulate
 from .diagnose import PoorRecording, diagnose
+from .moved_simulation import diagnose_beside
 from .outcome import (
     DATA,
     DIAGNOSIS,
@@ -134,9 +135,13 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
     fitted, kept = read.fitted, read.kept
     believed = _simulation(asked, model, fitted, [alone(r) for r in kept], report)
     if believed is not None:
-        baseline, fitted, kept = believed.tire, believed.fitted, believed.kept
+        fitted, kept = believed.fitted, believed.kept
     try:
-        verdict = diagnose(fitted, baseline, held_out=kept, limits=limits, progress=report)
+        verdict = (
+            diagnose(fitted, baseline, held_out=kept, limits=limits, progress=report)
+            if believed is None
+            else diagnose_beside(believed, limits, report)
+        )
     except PoorRecording as error:
         doubts = [f"{r.name}: {doubt}" for r in fitted for doubt in r.doubts]
         raise PoorRecording("; ".join([str(error), *doubts])) from None

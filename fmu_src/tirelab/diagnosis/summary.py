@@ -15,7 +15,6 @@ from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.levels import white_level
 from ..preprocessing.noise import Noise
 from ..preprocessing.samples import Recorded, is_timed
-from ..regressors.signature import candidates
 from ..report.titles import (
     dependence,
     headline,
@@ -35,7 +34,7 @@ from ..report.words import (
     confidence_word,
     is_undecided,
 )
-from ..simulation.simulate import UPSTREAM
+from ..simulation.simulate import upstream_names
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
 from .residual_model import ResidualModel
@@ -138,18 +137,23 @@ def slow_noise(
     return told
 
 
-def before_simulation(left: float) -> list[str]:
+def before_simulation(left: float, tried: bool) -> list[str]:
     """Return the sentence that an effect before a simulation may be what is missing.
 
     left [N]: what the law that stands for the simulation leaves of it. Such an effect changes the deflection that the
-    simulation is given, and what it makes of that is known for the law alone.
+    simulation is given, and what it makes of that is known for the law alone; tried: unless it was replayed
     """
-    names = [name for name in candidates() if CATALOGUE[name].place in UPSTREAM]
+    names = listed([short_title(name) for name in upstream_names()], "or")
+    told = f"Its law leaves {newtons(left)} of the simulation, more than is left here: an effect before the simulation"
+    capped = "That nothing else is missing is stated at 50 % at most"
+    if tried:
+        return [
+            f"{told} ({names}) was tried with the simulation itself, and none explains what is left; but a series "
+            f"spring gave way by the force of that law alone. {capped}."
+        ]
     return [
-        f"Its law leaves {newtons(left)} of the simulation, more than is left here: an effect before the simulation "
-        f"({listed([short_title(name) for name in names], 'or')}) is judged by that law alone, and may be what is "
-        "missing. That nothing else is missing is stated at 50 % at most: give the simulation the other deflection "
-        "yourself, and compare."
+        f"{told} ({names}) is judged by that law alone, and may be what is missing. {capped}: give the simulation the "
+        "other deflection yourself, and compare."
     ]
 
 

@@ -17,7 +17,7 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CHANNELS, FLAT_RADIUS, Effect, State, TireModel
+from radialtire import CATALOGUE, CHANNELS, FLAT_RADIUS, Effect, State, TireModel
 from radialtire.effect import Response
 from radialtire.flat_step import AHEAD
 from radialtire.model import Law
@@ -32,6 +32,11 @@ T = TypeVar("T")
 
 UPSTREAM = ("deflection", "series")
 """Places that change the deflection."""
+
+
+def upstream_names() -> tuple[str, ...]:
+    """Return the names of the effects that change the deflection."""
+    return tuple(name for name, effect in CATALOGUE.items() if effect.place in UPSTREAM)
 
 
 class Kinematics(Protocol):
@@ -120,6 +125,12 @@ def simulate(tire: TireModel, recording: Sampled, kinematics: Kinematics | None 
     if tire.remainder is not None:
         force = force + learned_force(tire, recording, kinematics)
     return force[before:]
+
+
+def deflection_of(tire: TireModel, recording: Sampled) -> FloatArray:
+    """Return the tire's own deflection [m] at every sample, after the effects that change what was read."""
+    recording, before = begun(recording)
+    return elastic_stage(tire, recording)[0].deflection[before:]
 
 
 class Stages:

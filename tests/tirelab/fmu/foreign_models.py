@@ -97,6 +97,45 @@ class Damper(Fmi2Slave):
 """F = 1500 N s/m dx/dt and no spring, the rate from the last step: FMI 2.0, Co-Simulation."""
 
 
+PLAY = """
+import math
+from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
+
+class Play(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.travel = 0.0
+        self.load = 0.0
+        self.before = None
+        continuous = Fmi2Variability.continuous
+        self.register_variable(Real("travel", causality=Fmi2Causality.input, variability=continuous))
+        self.register_variable(Real("load", causality=Fmi2Causality.output, variability=continuous))
+
+    def exit_initialization_mode(self):
+        self.before = self.travel
+        self.respond(0.0)
+
+    def respond(self, rate):
+        beyond = max(abs(self.travel) - 0.002, 0.0)
+        self.load = math.copysign(1.5e5 * beyond, self.travel) + (800.0 * rate if beyond else 0.0)
+
+    def do_step(self, current_time, step_size):
+        self.respond((self.travel - self.before) / step_size)
+        self.before = self.travel
+        return True
+"""
+"""150 kN/m and 800 N s/m beyond a play of 2 mm on both sides: FMI 2.0, Co-Simulation."""
+
+
+def play(folder: Path) -> Path:
+    """Write Play.fmu of pythonfmu (FMI 2.0 Co-Simulation)."""
+    from pythonfmu import FmuBuilder
+
+    script = folder / "play.py"
+    script.write_text(PLAY, encoding="utf-8")
+    return Path(FmuBuilder.build_FMU(script, dest=folder))
+
+
 def damper(folder: Path) -> Path:
     """Write Damper.fmu of pythonfmu (FMI 2.0 Co-Simulation)."""
     from pythonfmu import FmuBuilder
