@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 
 from ..preprocessing.driven import Driven
-from ..preprocessing.levels import levels_by_state, white_level
+from ..preprocessing.levels import NoiseProfile, levels_by_load, levels_by_state, white_level
 from ..preprocessing.noise import Noise, noise_of, resting, white_noise_of
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
@@ -122,7 +122,7 @@ def _in_saturated_noise(dataset: Dataset, signatures: Sequence[Signature]) -> Da
     """
     quiet = _left_by_saturated(dataset, signatures)
     if all(
-        e.uneven == before.uneven for e, before in zip(quiet.experiments, dataset.experiments, strict=True)
+        e.profile == before.profile for e, before in zip(quiet.experiments, dataset.experiments, strict=True)
     ):
         return quiet
     return _left_by_saturated(quiet, [in_other_noise(s, dataset, quiet) for s in signatures], white=True)
@@ -139,15 +139,17 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
         noises = [n if n.memory > 1 else noise_left(i, series) for i, n in enumerate(noises)]
     found, states = [], []
     for e, own, noise in zip(dataset.experiments, left, noises, strict=True):
-        level, uneven, louder = _by_state(e, own, noise)
+        level, profile, louder = _profiled(e, own, noise)
         found.append(replace(noise, level=level))
-        states.append((uneven, replace(e.floor, amplifier=louder * e.floor.amplifier)))
+        states.append((profile, replace(e.floor, amplifier=louder * e.floor.amplifier)))
     read, levels = np.array([e.noise for e in dataset.experiments]), np.array([n.level for n in found])
     more = np.average(np.maximum(levels**2 - read**2, 0.0), weights=[own.size for own in left])
     shared = np.sqrt(np.minimum(levels, read) ** 2 + more)
     quiet = dataset.with_noise([replace(n, level=float(s)) for n, s in zip(found, shared, strict=True)])
     pairs = zip(quiet.experiments, states, strict=True)
-    return replace(quiet, experiments=tuple(replace(e, uneven=own, floor=floor) for e, (own, floor) in pairs))
+    return replace(
+        quiet, experiments=tuple(replace(e, profile=own, floor=floor) for e, (own, floor) in pairs)
+    )
 
 
 def _noise_left(
@@ -174,29 +176,35 @@ def _noise_left(
     return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT))
 
 
-def _by_state(
-    experiment: Experiment, left: FloatArray, noise: Noise
-) -> tuple[float, tuple[float, float], float]:
-    """Return the noise [N] of all counted blocks, that of blocks at rest and of moving ones over it, and by how much
-    all samples are louder than most of them: a machine that moves may be louder than one that rests.
+def _profiled(experiment: Experiment, left: FloatArray, noise: Noise) -> tuple[float, NoiseProfile, float]:
+    """Return the noise [N] of all counted blocks, that of each over it, and by how much all samples are louder than
+    most of them.
 
     left (m,): what is left of the counted blocks, in units of the noise; noise [N]: of most of it; only of a white one
-    differences between neighbours show both parts. At rest the steps of gauge and force err alike in neighbouring
+    differences between neighbours show the parts. At rest the steps of gauge and force err alike in neighbouring
     blocks, which no difference shows.
     """
-    rests, before = resting(experiment.rate)[experiment.counts], experiment.uneven
-    parts = levels_by_state(left, rests, LEAST_LEFT, differ=before[0] != before[1])
-    if noise.memory > 1 or parts == (1.0, 1.0):
+    e, before = experiment, experiment.profile
+    if noise.memory > 1:
         return noise.level, before, 1.0
-    own = [part * known for part, known in zip(parts, before, strict=True)]
-    lasting = np.gradient(experiment.time)[experiment.counts]  # a long rest has few blocks for its samples
-    usual = float(np.average(np.where(rests, *own) ** 2, weights=lasting))
-    louder = max(white_level(left) * math.sqrt(usual), 1.0)
-    at_rest, moving = (noise.level * part for part in own)
+    rests, load = resting(e.rate)[e.counts], e.baseline[e.counts]
+    constant, growth = levels_by_load(left, load, LEAST_LEFT, before)
+    by_load = NoiseProfile(constant=constant, growth=growth).of_load(load)
+    even = left * before.of_load(load) / by_load
+    parts = levels_by_state(even, rests, LEAST_LEFT, differ=before.at_rest != before.moving)
+    if parts == (1.0, 1.0) and (constant, growth) == (before.constant, before.growth):
+        return noise.level, before, 1.0
+    own = [part * known for part, known in zip(parts, (before.at_rest, before.moving), strict=True)]
+    lasting = np.gradient(e.time)[e.counts]  # a long rest has few blocks for its samples
+    usual = float(np.average((by_load * np.where(rests, *own)) ** 2, weights=lasting))
+    white, of_sample = e.noise * white_level(even), e.noise * math.sqrt(e.size)
+    louder = white * math.sqrt(usual * e.size) / max(e.reading.level, of_sample, e.floor.amplifier)
+    at_rest, moving = (white * part for part in own)
     if at_rest < moving:
-        at_rest = max(at_rest, math.hypot(STEPS_LEFT * experiment.floor.steps, experiment.resting))
-    whole = size_of(np.where(rests, at_rest, moving))
-    return whole, (at_rest / whole, moving / whole), louder
+        at_rest = max(at_rest, math.hypot(STEPS_LEFT * e.floor.steps, e.resting))
+    whole = size_of(by_load * np.where(rests, at_rest, moving))
+    profile = NoiseProfile(at_rest / whole, moving / whole, constant, growth)
+    return whole, profile, max(louder, 1.0)
 
 
 def _left_by_all(equations: NormalEquations, values: FloatArray) -> FloatArray:

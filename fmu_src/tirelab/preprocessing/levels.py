@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -90,6 +91,34 @@ def falls(levels: FloatArray, known: FloatArray) -> bool:
     return bool(np.any(levels < np.minimum(known, 1.0 / STAYS) * np.maximum.accumulate(levels)))
 
 
+@dataclass(frozen=True)
+class NoiseProfile:
+    """How a white noise differs between the samples of a recording: a machine that moves may be louder than one that
+    rests, and a load cell or a stiff part under load louder than without.
+
+        factor = (at_rest or moving) sqrt(constant^2 + (growth F)^2)
+
+    growth [1/N]: of the load F; the factor of all samples together is 1
+    """
+
+    at_rest: float = 1.0
+    moving: float = 1.0
+    constant: float = 1.0
+    growth: float = 0.0
+
+    def of_load(self, load: FloatArray) -> FloatArray:
+        """Return the factor of the load [N] alone."""
+        return np.hypot(self.constant, self.growth * load)
+
+    def of_state(self, rests: BoolArray) -> FloatArray:
+        """Return the factor of rest and motion alone."""
+        return np.where(rests, self.at_rest, self.moving)
+
+    def of(self, rests: BoolArray, load: FloatArray) -> FloatArray:
+        """Return the factors of samples (n,); load [N]: without sign or with."""
+        return np.asarray(self.of_state(rests) * self.of_load(load))
+
+
 def levels_by_state(
     residual: FloatArray, rests: BoolArray, least: float, *, differ: bool = False
 ) -> tuple[float, float]:
@@ -98,17 +127,54 @@ def levels_by_state(
     or falls, as an oscillation.
     least: that counts; differ: whether they are known not to be alike
     """
-    states = [state for state in (rests, ~rests) if state.sum() >= FEWEST_IN_STATE]
-    levels = [[max(level_of(residual, lag, s), least) for lag in STATE_LAGS] for s in states]
-    if len(levels) < 2 or not all(map(plateau_at, levels)):
-        return 1.0, 1.0
-    if any(falls(*known_levels(residual, finer(STATE_LAGS), s)) for s in states):
-        return 1.0, 1.0
+    levels = _levels_in(residual, (rests, ~rests), least)
     white = [own[0] for own in levels]
-    if not differ and max(white) < STAYS**4 * min(white):
+    if not levels or (not differ and max(white) < STAYS**4 * min(white)):
         return 1.0, 1.0
     at_rest, moving = (max(own) / max(white_level(residual), least) for own in levels)
     return at_rest, moving
+
+
+def levels_by_load(
+    residual: FloatArray, load: FloatArray, least: float, before: NoiseProfile
+) -> tuple[float, float]:
+    """Return constant and growth [1/N] of the noise of a residual (n,) with the load (n,) [N]; those of `before` where
+    its halves of less and of more load are alike, or one is hardly seen or not white (see `levels_by_state`).
+
+    residual: over the noise of the profile before; least: that counts
+    """
+    more = np.abs(load) > np.median(np.abs(load))
+    levels = _levels_in(residual, (~more, more), least)
+    if not levels:
+        return before.constant, before.growth
+    white = [own[0] for own in levels]
+    known = [float(known_part(half.sum())) for half in (~more, more)]
+    if min(white) * STAYS > max(white) or min(white) > known[0] * known[1] * max(white):
+        return before.constant, before.growth
+    less_power, more_power = (float(np.mean(load[half] ** 2)) for half in (~more, more))
+    own = [
+        np.mean(before.of_load(load[half]) ** 2) * level**2
+        for half, level in zip((~more, more), white, strict=True)
+    ]
+    growth = max(float(own[1] - own[0]), 0.0) / max(more_power - less_power, 1e-300)
+    constant = max(float(own[0]) - growth * less_power, least**2)
+    whole = constant + growth * float(np.mean(load**2))
+    return float(np.sqrt(constant / whole)), float(np.sqrt(growth / whole))
+
+
+def _levels_in(residual: FloatArray, parts: Sequence[BoolArray], least: float) -> list[list[float]]:
+    """Return the levels of a residual over STATE_LAGS in each of its parts; nothing where one is hardly seen, keeps
+    growing with the lag or falls.
+    """
+    seen = [part for part in parts if part.sum() >= FEWEST_IN_STATE]
+    if len(seen) < len(parts):
+        return []
+    levels = [[max(level_of(residual, lag, part), least) for lag in STATE_LAGS] for part in seen]
+    if not all(map(plateau_at, levels)):
+        return []
+    if any(falls(*known_levels(residual, finer(STATE_LAGS), part)) for part in seen):
+        return []
+    return levels
 
 
 def known_over(count: int, lag: int) -> BoolArray:

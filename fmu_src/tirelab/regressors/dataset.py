@@ -224,9 +224,9 @@ class Samples:
         return tuple(r.force - simulate(tire, m, m) for r, m in pairs)
 
     def noises(self, dataset: Dataset) -> tuple[FloatArray, ...]:
-        """Return the noise floor [N] of every sample (n,), at rest and moving as in the blocks of the dataset."""
-        pairs = zip(self.motions, dataset.experiments, strict=True)
-        return tuple(e.floor.level * np.where(resting(m.rate), *e.uneven) for m, e in pairs)
+        """Return the noise floor [N] of every sample (n,), with the profile of the blocks of the dataset."""
+        several = zip(self.motions, self.baselines, dataset.experiments, strict=True)
+        return tuple(e.floor.level * e.profile.of(resting(m.rate), load) for m, load, e in several)
 
     def left_out(self, dataset: Dataset, tire: TireModel) -> tuple[FloatArray, ...]:
         """Return the distortion [N] of `tire`'s response by averaging: its mean over the samples of a block minus the

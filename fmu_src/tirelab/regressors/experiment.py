@@ -23,7 +23,7 @@ from radialtire.model import READING_NOISE
 from ..preprocessing.data_checks import are_rare, compared, spikes
 from ..preprocessing.driven import Driven
 from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_step
-from ..preprocessing.levels import Scalar
+from ..preprocessing.levels import NoiseProfile, Scalar
 from ..preprocessing.motion import Motion, followed_turns, motion_of, runs, through_turns
 from ..preprocessing.noise import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, resting
 from ..preprocessing.samples import Recorded, is_timed, surface_numbers
@@ -86,7 +86,7 @@ class Experiment:
     time [s], deflection [m], rate [m/s], acceleration [m/s^2], surface_radius [m]: in the middle of each block
     baseline [N]: force of the baseline tire there; misfit [N]: recorded force minus that of the baseline, averaged over
     the block; counts: whether a block is compared; noise [N]: standard deviation of the noise of the averaged misfit,
-    of all blocks together; uneven: that of blocks at rest and of moving ones over it
+    of all blocks together; profile: that of each over it
     least_noise [N]: noise that the steps of the force reading cause at least; resting [N]: the part of it that
     neighbouring blocks have in common, where the force rests on a step for longer than a block
     floor: noise floor of the samples; gauge [m]: noise of the deflection reading; blocks: of the samples
@@ -114,7 +114,7 @@ class Experiment:
     reading: Noise
     measured: Mapping[str, FloatArray] = field(default_factory=dict)
     left_out: FloatArray | float = 0.0
-    uneven: tuple[float, float] = (1.0, 1.0)
+    profile: NoiseProfile = NoiseProfile()  # noqa: RUF009
 
     @property
     def size(self) -> int:
@@ -124,7 +124,7 @@ class Experiment:
     @cached_property
     def noises(self) -> FloatArray:
         """Standard deviation of the noise of each block (n,) [N]."""
-        return self.noise * np.where(resting(self.rate), *self.uneven)
+        return self.noise * self.profile.of(resting(self.rate), self.baseline)
 
     def noises_over(self, interval: float, size: int = 1) -> tuple[Noise, Noise]:
         """Return the noise of its readings as that of another recording may be in blocks of so many samples, an

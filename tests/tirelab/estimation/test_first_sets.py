@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from drives import damped
 from radialtire import TireModel
+from tirelab.diagnosis.diagnose import diagnose
 from tirelab.estimation.first_sets import FirstSets, in_quiet_units, with_signatures
 from tirelab.estimation.ranking import MOST_WORK, FittedSets
 from tirelab.recordings.recording import Recording
@@ -52,6 +53,26 @@ def test_noise_that_is_louder_in_motion_is_that_of_moving_blocks() -> None:
     assert float(np.mean(dataset.misfit**2)) == pytest.approx(1.0, rel=0.2)
     (along,) = samples_of([holds], TireModel()).noises(dataset)
     assert np.median(along[noise == 20.0]) == pytest.approx(20.0, rel=0.15)
+
+
+def test_noise_that_grows_with_the_load_counts_where_it_is() -> None:
+    """2 N and 1 % of a force of up to 1.9 kN: a tenth of them at the top, and no misfit there."""
+    time = np.arange(0.0, 40.0, 0.01)
+    x = 0.02 * (1.0 - np.abs(2.0 * (time / 8.0 % 1.0) - 1.0))
+    silent = Recording("slow", time, x, np.full(time.size, np.inf), np.zeros(time.size))
+    force = simulate(TireModel(), silent)
+    loud = np.hypot(2.0, 0.01 * force)
+    given = replace(silent, force=force + loud * np.random.default_rng(5).normal(size=time.size))
+    dataset = in_quiet_units(dataset_of([given], TireModel()))
+    (e,) = dataset.experiments
+    (along,) = samples_of([given], TireModel()).noises(dataset)
+    # The two halves give two levels, of which the law of the noise has two constants.
+    np.testing.assert_allclose(along, loud, rtol=0.25)
+    np.testing.assert_allclose(e.noises * np.sqrt(e.size), np.hypot(2.0, 0.01 * e.baseline), rtol=0.25)
+    assert e.floor.level == pytest.approx(float(np.sqrt(np.mean(loud**2))), rel=0.1)
+    verdict = diagnose([given])
+    assert verdict.names == ()
+    assert verdict.where == ()
 
 
 def test_nothing_and_what_the_signatures_find_are_fitted_first() -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tirelab.preprocessing.levels import (
+    NoiseProfile,
     falls,
     finer,
     known_levels,
@@ -12,6 +14,7 @@ from tirelab.preprocessing.levels import (
     known_part,
     level_between,
     level_of,
+    levels_by_load,
     local_rms,
     most_along,
     most_apart,
@@ -19,6 +22,8 @@ from tirelab.preprocessing.levels import (
     rising,
     white_level,
 )
+
+FloatArray = NDArray[np.float64]
 
 TIME = np.linspace(0.0, 10.0, 4001)
 WHITE = np.random.default_rng(5).normal(0.0, 1.0, 8000)
@@ -104,3 +109,44 @@ def test_a_ripple_over_the_place_does_not_differ_between_visits_at_another_speed
     slow = 9.0 * np.sin(2.0 * np.pi * np.arange(8000) / 1500.0)
     assert level_between(WHITE + slow, 16, *visits) == pytest.approx(1.0, rel=0.06)
     assert most_apart(WHITE + slow, 1, *visits[:2]) > 2.0
+
+
+LOAD = 1000.0 * np.abs(np.sin(2.0 * np.pi * np.arange(8000) / 900.0))
+EVEN = NoiseProfile()
+
+
+def loud_under(share: float) -> FloatArray:
+    """White noise of 1 at rest, and of this share of the load."""
+    return np.hypot(1.0, share * LOAD) * np.random.default_rng(9).standard_normal(8000)
+
+
+@pytest.mark.parametrize("share", [0.003, 0.01, 0.1])
+def test_noise_that_grows_with_the_load_is_told_with_its_growth(share: float) -> None:
+    """The levels of the two halves are those at their root mean square loads; trimmed, they are known to a tenth."""
+    constant, growth = levels_by_load(loud_under(share), LOAD, 1e-3, EVEN)
+    whole = np.sqrt(1.0 + share**2 * np.mean(LOAD**2))
+    assert growth == pytest.approx(share / whole, rel=0.1)
+    assert np.sqrt(
+        np.mean(NoiseProfile(constant=constant, growth=growth).of_load(LOAD) ** 2)
+    ) == pytest.approx(1.0)
+
+
+def test_over_the_noise_that_is_known_nothing_more_is_told() -> None:
+    """What is left over the right profile has one level, so that profile stays."""
+    known = NoiseProfile(constant=0.2, growth=0.00138)
+    even = np.random.default_rng(9).standard_normal(8000)
+    assert levels_by_load(even, LOAD, 1e-3, known) == (known.constant, known.growth)
+    assert levels_by_load(even, LOAD, 1e-3, EVEN) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("period", [3.0, 6.25, 31.0])
+def test_a_force_that_swings_under_load_is_no_noise(period: float) -> None:
+    swings = 0.02 * LOAD * np.sin(2.0 * np.pi * np.arange(8000) / period)
+    assert levels_by_load(loud_under(0.0) + swings, LOAD, 1e-3, EVEN) == (1.0, 0.0)
+
+
+def test_noise_that_falls_with_the_load_is_not_told() -> None:
+    falling = np.random.default_rng(9).standard_normal(8000) / np.hypot(1.0, 0.01 * LOAD)
+    constant, growth = levels_by_load(falling, LOAD, 1e-3, EVEN)
+    assert growth == 0.0
+    assert constant == pytest.approx(1.0)
