@@ -6,7 +6,7 @@ t is the time since the start; s below 1 stretches the rise over several time co
 rim warm one after the other. By the gas law near 40 psi of gauge pressure 10 degF are about 1 psi: g = 0.03 is 10 K.
 
 Where the temperature T is measured, the rise follows it and no course of time is assumed: F = A x^B (1 + g (T - Ts) /
-10 K), with Ts that at the start.
+10 K), with Ts the first one that was measured.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ WARMING = 10.0
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
-    """Multiply the factor by the rise of the pressure; the state is the temperature [K] at the start."""
+    """Multiply the factor by the rise of the pressure; the state is the first measured temperature [K], 0 before it."""
     gain, tau, stretch = values
     if is_measured(instant.temperature):
-        start = instant.temperature if instant.first else state[0]
+        start = state[0] if state[0] > 0.0 else instant.temperature
         return signal * max(1.0 + gain * (instant.temperature - start) / WARMING, 0.0), (start,)
     return signal * (1.0 - gain * math.expm1(-((instant.time / tau) ** stretch))), state
 

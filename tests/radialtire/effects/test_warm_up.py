@@ -42,3 +42,12 @@ def test_a_measured_temperature_takes_the_place_of_time() -> None:
 def test_a_tire_that_cools_presses_less() -> None:
     force = drive(only("warm_up", gain=0.03), [0.0, 1.0], [0.02] * 2, temperature=[300.0, 295.0])
     assert force[1] / force[0] == pytest.approx(0.985, rel=1e-14)
+
+
+def test_a_temperature_that_comes_later_counts_from_its_first_value() -> None:
+    """An FMU's input that is set after its initialization: no kelvin was measured before, and none was risen."""
+    tire = only("warm_up", gain=0.03, time_constant=1e6)
+    unknown = float("nan")
+    force = drive(tire, [0.0, 1.0, 2.0, 3.0], [0.02] * 4, temperature=[unknown, unknown, 293.0, 303.0])
+    assert force[:3] / force[0] == pytest.approx(1.0, abs=1e-6)
+    assert force[3] / force[2] == pytest.approx(1.03, rel=1e-14)

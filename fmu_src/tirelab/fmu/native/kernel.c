@@ -758,14 +758,14 @@ static inline Tuple8 pressure_leak_respond(double signal, Instant instant, Nothi
     return (Tuple8){signal * (1.0 + (1.0 - structural) * expm1(-lost)), state};
 }
 
-/* effects.warm_up.py: Multiply the factor by the rise of the pressure; the state is the temperature [K] at the
-   start. */
+/* effects.warm_up.py: Multiply the factor by the rise of the pressure; the state is the first measured temperature
+   [K], 0 before it. */
 static inline Tuple11 warm_up_respond(double signal, Instant instant, Vector1 state, Vector3 values)
 {
     double start;
     double gain = values.v[0], tau = values.v[1], stretch = values.v[2];
     if (effect_is_measured(instant.temperature)) {
-        start = instant.first ? instant.temperature : state.v[0];
+        start = state.v[0] > 0.0 ? state.v[0] : instant.temperature;
         return (Tuple11){signal * greater(1.0 + gain * (instant.temperature - start) / WARMING, 0.0),
             (Vector1){{start}}};
     }
