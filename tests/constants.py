@@ -130,6 +130,7 @@ PRIOR = tuple(f"regressors/signature.{n}" for n in ("FACTOR", "EXPONENT", "BEND"
 
 EFFORT = (
     "preprocessing/gauge.CANDIDATES",
+    "preprocessing/levels.LOADS",
     "diagnosis/moved_simulation.MOST_REPLAYS",
     "diagnosis/moved_simulation.SETTLED",
     "preprocessing/motion.CUTOFFS",

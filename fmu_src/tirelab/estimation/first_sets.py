@@ -188,11 +188,11 @@ def _profiled(experiment: Experiment, left: FloatArray, noise: Noise) -> tuple[f
     if noise.memory > 1:
         return noise.level, before, 1.0
     rests, load = resting(e.rate)[e.counts], e.baseline[e.counts]
-    constant, growth = levels_by_load(left, load, LEAST_LEFT, before)
-    by_load = NoiseProfile(constant=constant, growth=growth).of_load(load)
+    loaded = levels_by_load(left, load, LEAST_LEFT, before)
+    by_load = loaded.of_load(load)
     even = left * before.of_load(load) / by_load
     parts = levels_by_state(even, rests, LEAST_LEFT, differ=before.at_rest != before.moving)
-    if parts == (1.0, 1.0) and (constant, growth) == (before.constant, before.growth):
+    if parts == (1.0, 1.0) and loaded == before:
         return noise.level, before, 1.0
     own = [part * known for part, known in zip(parts, (before.at_rest, before.moving), strict=True)]
     lasting = np.gradient(e.time)[e.counts]  # a long rest has few blocks for its samples
@@ -203,7 +203,7 @@ def _profiled(experiment: Experiment, left: FloatArray, noise: Noise) -> tuple[f
     if at_rest < moving:
         at_rest = max(at_rest, math.hypot(STEPS_LEFT * e.floor.steps, e.resting))
     whole = size_of(by_load * np.where(rests, at_rest, moving))
-    profile = NoiseProfile(at_rest / whole, moving / whole, constant, growth)
+    profile = replace(loaded, at_rest=float(at_rest / whole), moving=float(moving / whole))
     return whole, profile, max(louder, 1.0)
 
 

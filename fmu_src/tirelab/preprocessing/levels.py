@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -94,28 +94,27 @@ def falls(levels: FloatArray, known: FloatArray) -> bool:
 @dataclass(frozen=True)
 class NoiseProfile:
     """How a white noise differs between the samples of a recording: a machine that moves may be louder than one that
-    rests, and a load cell or a stiff part under load louder than without.
+    rests, and a load cell or a stiff part louder under some load than under another.
 
-        factor = (at_rest or moving) sqrt(constant^2 + (growth F)^2)
-
-    growth [1/N]: of the load F; the factor of all samples together is 1
+    at_rest, moving: factors of the state; loads [N], by_load: factors of the load, whatever its sign; between these
+    loads the variance is linear in the square of the load. The factor of all samples together is 1.
     """
 
     at_rest: float = 1.0
     moving: float = 1.0
-    constant: float = 1.0
-    growth: float = 0.0
+    loads: tuple[float, ...] = (0.0,)
+    by_load: tuple[float, ...] = (1.0,)
 
     def of_load(self, load: FloatArray) -> FloatArray:
-        """Return the factor of the load [N] alone."""
-        return np.hypot(self.constant, self.growth * load)
+        """Return the factor of the load (n,) [N] alone."""
+        return np.sqrt(np.interp(load**2, np.square(self.loads), np.square(self.by_load)))
 
     def of_state(self, rests: BoolArray) -> FloatArray:
         """Return the factor of rest and motion alone."""
         return np.where(rests, self.at_rest, self.moving)
 
     def of(self, rests: BoolArray, load: FloatArray) -> FloatArray:
-        """Return the factors of samples (n,); load [N]: without sign or with."""
+        """Return the factors of samples (n,)."""
         return np.asarray(self.of_state(rests) * self.of_load(load))
 
 
@@ -135,31 +134,49 @@ def levels_by_state(
     return at_rest, moving
 
 
+LOADS = (2, 4, 8)
+"""Numbers of loads for which the level of a noise is told, one after the other: as many samples have each."""
+
+
 def levels_by_load(
     residual: FloatArray, load: FloatArray, least: float, before: NoiseProfile
-) -> tuple[float, float]:
-    """Return constant and growth [1/N] of the noise of a residual (n,) with the load (n,) [N]; those of `before` where
-    its halves of less and of more load are alike, or one is hardly seen or not white (see `levels_by_state`).
+) -> NoiseProfile:
+    """Return how the noise of a residual (n,) differs with the load (n,) [N], in addition to the profile `before`;
+    `before` where it does not differ, or is not white at the loads (see `levels_by_state`).
 
     residual: over the noise of the profile before; least: that counts
+    Where a cycle passes all loads within a few lags, differences at one see the noise of others; so a few loads come
+    first, and then more of what is left over the noise at these.
     """
-    more = np.abs(load) > np.median(np.abs(load))
-    levels = _levels_in(residual, (~more, more), least)
-    if not levels:
-        return before.constant, before.growth
-    white = [own[0] for own in levels]
-    known = [float(known_part(half.sum())) for half in (~more, more)]
-    if min(white) * STAYS > max(white) or min(white) > known[0] * known[1] * max(white):
-        return before.constant, before.growth
-    less_power, more_power = (float(np.mean(load[half] ** 2)) for half in (~more, more))
-    own = [
-        np.mean(before.of_load(load[half]) ** 2) * level**2
-        for half, level in zip((~more, more), white, strict=True)
-    ]
-    growth = max(float(own[1] - own[0]), 0.0) / max(more_power - less_power, 1e-300)
-    constant = max(float(own[0]) - growth * less_power, least**2)
-    whole = constant + growth * float(np.mean(load**2))
-    return float(np.sqrt(constant / whole)), float(np.sqrt(growth / whole))
+    size, found = np.abs(load), before
+    for count in LOADS:
+        parts = _parts_of(size, count)
+        even = residual * before.of_load(load) / found.of_load(load)
+        levels = _levels_in(even, parts, least)
+        white = np.array([own[0] for own in levels])
+        known = known_part(np.array([part.sum() for part in parts]))
+        if len(levels) < 2 or not _differ(white, known):
+            continue
+        loads = np.array([np.median(size[part]) for part in _parts_of(size, LOADS[-1])])
+        at = np.array([np.sqrt(np.mean(size[part] ** 2)) for part in parts])
+        more = np.sqrt(np.interp(loads**2, at**2, white**2))
+        shape = replace(found, loads=tuple(loads.tolist()), by_load=tuple(found.of_load(loads) * more))
+        whole = float(np.sqrt(np.mean(shape.of_load(load) ** 2)))
+        found = replace(shape, by_load=tuple(float(factor) / whole for factor in shape.by_load))
+    return found
+
+
+def _parts_of(size: FloatArray, count: int) -> list[BoolArray]:
+    """Return which of so many parts, with as many samples each, the samples of a size are in; equal ones in one."""
+    edges = np.unique(np.quantile(size, np.linspace(0.0, 1.0, count + 1)[1:-1]))
+    which = np.searchsorted(edges, size, side="right")
+    return [which == i for i in np.unique(which)]
+
+
+def _differ(levels: FloatArray, known: FloatArray) -> bool:
+    """Return whether levels differ by more than those of one noise, and than chance; known: the part that is known."""
+    quiet, loud = int(np.argmin(levels)), int(np.argmax(levels))
+    return bool(levels[quiet] < min(1.0 / STAYS, float(known[quiet] * known[loud])) * levels[loud])
 
 
 def _levels_in(residual: FloatArray, parts: Sequence[BoolArray], least: float) -> list[list[float]]:

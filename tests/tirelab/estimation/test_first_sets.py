@@ -66,7 +66,7 @@ def test_noise_that_grows_with_the_load_counts_where_it_is() -> None:
     dataset = in_quiet_units(dataset_of([given], TireModel()))
     (e,) = dataset.experiments
     (along,) = samples_of([given], TireModel()).noises(dataset)
-    # The two halves give two levels, of which the law of the noise has two constants.
+    # At the ends the level is that of the outermost eighth of the loads.
     np.testing.assert_allclose(along, loud, rtol=0.25)
     np.testing.assert_allclose(e.noises * np.sqrt(e.size), np.hypot(2.0, 0.01 * e.baseline), rtol=0.25)
     assert e.floor.level == pytest.approx(float(np.sqrt(np.mean(loud**2))), rel=0.1)
