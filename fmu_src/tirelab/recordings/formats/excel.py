@@ -19,7 +19,7 @@ from ..vocabulary import any_channel
 from .cell_units import row_without_units, without_unit
 from .libraries import reading_with
 from .number_style import NumberStyle, with_plain_marks
-from .sheet import DATES, NUMBER, Sheet, cell_text, holds_any, tables_of
+from .sheet import DATES, NUMBER, Sheet, cell_text, holds_any, length, tables_of
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, listed, not_a_number, quoted
 from .table_search import is_value
 from .text_rows import TextRows
@@ -46,16 +46,16 @@ class ExcelTable:
     def __init__(self, path: Path, sheet: str = "") -> None:
         self.path = path
         self.one = sheet
+        version = Version.of(path)
         with reading_with(path, "a workbook"):
-            found = tables_of(Version.of(path), sheet)
+            found = tables_of(version, sheet)
         if not found:
             what = f", sheet {quoted(sheet)}" if sheet else ""
             raise RecordingError(
                 f"{path.name}{what}: holds no header and no numbers; export the workbook anew"
             )
-        # of sheets with the same channels the longest: one of results has a row for each specimen, or a single one
-        chosen = max(found, key=lambda sheet: (sheet.rows > 1, _channels(sheet.headers), sheet.rows))
-        names = _names(chosen)
+        with reading_with(path, "a workbook"):
+            names = _names(_chosen(found, version))
         alike = [sheet for sheet in found if _names(sheet) == names]
         # columns without a name behind the last one that has one: of these sheets, some may have them, others not
         width = min(len(sheet.headers) for sheet in alike)
@@ -173,6 +173,18 @@ class ExcelTable:
         if NUMBER.fullmatch(text) is None:
             return None
         return float(text)
+
+
+def _chosen(found: Sequence[Sheet], version: Version) -> Sheet:
+    """Return the sheet that holds the recording; of several with its channels the longest.
+
+    One of results has a row for each specimen, or a single one; one of a preload has fewer than the test.
+    """
+    best = max((sheet.rows > 1, _channels(sheet.headers)) for sheet in found)
+    same = [sheet for sheet in found if (sheet.rows > 1, _channels(sheet.headers)) == best]
+    if all(_names(sheet) == _names(same[0]) for sheet in same):
+        return same[0]
+    return max(same, key=lambda sheet: length(version, sheet.title))
 
 
 def _names(sheet: Sheet) -> list[str]:

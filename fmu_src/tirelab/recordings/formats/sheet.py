@@ -63,6 +63,12 @@ def tables_of(version: Version, sheet: str) -> tuple[Sheet, ...]:
     return tuple(_sheet(title, head) for title, head in heads.items() if any(map(holds_any, head)))
 
 
+@lru_cache(maxsize=MOST_SHEETS)
+def length(version: Version, title: str) -> int:
+    """Return how many rows of a sheet hold anything; the whole sheet is read."""
+    return sum(map(holds_any, opened(version).rows(title)))
+
+
 def _titled(path: Path, titles: Sequence[str], name: str) -> str:
     """Return the title of the sheet that is named, whatever its case. Errors: RecordingError where there is none."""
     for same in (

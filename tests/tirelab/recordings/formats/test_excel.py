@@ -126,6 +126,22 @@ class TestExcel:
         others = "sheets of other columns: 'Sheet'; one is read by its name, as a.xlsx@Sheet"
         assert_the_recording(recording, f"read from sheet 'readings'; {others}", digits=1e-15)
 
+    def test_of_sheets_with_other_columns_the_longest_is_read(self, tmp_path: Path) -> None:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        book.remove(book.active)
+        for title, force, samples in (("preload", "force", 310), ("test", "load", 500), ("after", "F", 320)):
+            sheet = book.create_sheet(title)
+            if title == "test":
+                sheet.append(["Operator", "B"])
+            sheet.append(["time [s]", "stroke [mm]", f"{force} [N]"])
+            for i in range(samples):
+                sheet.append([0.1 * i, 0.2 * i, 10.0 * i])
+        book.save(tmp_path / "a.xlsx")
+        recording = read_recording(tmp_path / "a.xlsx", radius="flat")
+        assert len(recording) == 500
+        assert any(note.startswith("read from sheet 'test'; sheets of") for note in recording.notes)
+
     def test_sheets_of_the_same_columns_are_tests_side_by_side(self, tmp_path: Path) -> None:
         openpyxl = pytest.importorskip("openpyxl")
         book = openpyxl.Workbook()
