@@ -11,7 +11,7 @@ from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect
-from ..planning.waveforms import Limits, second_pressure
+from ..planning.waveforms import Limits, another_pressure
 from ..preprocessing.motion import BoolArray, FloatArray
 from ..preprocessing.noise import STILL
 from ..preprocessing.samples import RawDataset
@@ -142,7 +142,8 @@ def reason_of(
     if "static" in common:
         if not explanation.model.baseline.inflated:
             return OF_DEFLECTION
-        return f"they depend on deflection and surface only: {second_pressure(limits)}"
+        several = "pressure" in explanation.excitation.channels.varied
+        return f"they depend on deflection and surface only: {another_pressure(limits, several)}"
     if between and all("static" in _traits(n) or explanation.excitation.of_deflection(n) for n in between):
         return (
             "they depend on the deflection only in this motion: load and unload to two depths, at two speeds"

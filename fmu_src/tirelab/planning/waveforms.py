@@ -29,8 +29,13 @@ class Limits:
     start: float = 0.0
 
 
-def second_pressure(limits: Limits | None) -> str:
-    """Return the advice to record at another pressure, with those that the rig can hold where they are known."""
+def another_pressure(limits: Limits | None, recorded: bool) -> str:
+    """Return the advice to record at another pressure, with those that the rig can hold where they are known.
+
+    recorded: whether several pressures were recorded already
+    """
+    if recorded:
+        return "repeat at a pressure further from those recorded"
     held = () if limits is None or len(limits.pressures) < 2 else limits.pressures
     figures = [f"{1e-5 * pressure:.3g}" for pressure in held]
     named = f" ({', '.join(figures[:-1])} or {figures[-1]} bar)" if figures else ""

@@ -40,11 +40,13 @@ class ChannelEvidence:
     """What the channels show of the effects.
 
     impossible: effects that the channels refute, or that need a channel that was not recorded; unvaried: effects that
-    read a channel which was the same at every visit of a deflection, each with the sentence that says so
+    read a channel which was the same at every visit of a deflection, each with the sentence that says so; varied:
+    channels that were set to several values
     """
 
     impossible: frozenset[str]
     unvaried: Mapping[str, str]
+    varied: frozenset[str] = frozenset()
 
 
 def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidence:
@@ -53,6 +55,7 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
     """
     impossible: set[str] = set()
     unvaried: dict[str, str] = {}
+    varied: set[str] = set()
     for channel in CHANNELS:
         readers = [e for e in CATALOGUE.values() if e.reads is not None and e.reads.channel == channel.name]
         if any(channel.name not in e.measured for e in dataset.experiments):
@@ -74,7 +77,9 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
                 f"{channel.name}"
             )
             unvaried |= {e.name: same for e in readers}
-    return ChannelEvidence(frozenset(impossible), unvaried)
+        else:
+            varied.add(channel.name)
+    return ChannelEvidence(frozenset(impossible), unvaried, frozenset(varied))
 
 
 def _followed(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,6 +22,7 @@ from tirelab.diagnosis.outcome import split_reason
 from tirelab.estimation.findings import Evidence, NamedEffect
 from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.samples import RawDataset, raw_dataset_of
+from tirelab.regressors.excitation import NO_EVIDENCE
 
 RIDE = raw_dataset_of([damped(1, samples=2000)], TireModel())
 LOOP, DAMPING = ("rate_independent_hysteresis",), ("viscous_damping",)
@@ -41,6 +43,7 @@ def explained_by_sets(*sets: tuple[str, float, float], **more: Any) -> Any:
         within_law=more.get("within_law", ()),
         excitation=SimpleNamespace(
             timed=True,
+            channels=more.get("channels", NO_EVIDENCE),
             one_speed=more.get("one_speed", False),
             of_deflection=lambda name: name in more.get("single_valued", ()),
         ),
@@ -244,6 +247,13 @@ def test_the_second_pressure_is_one_that_the_rig_holds(pressures: tuple[float, .
     asked = explained_by_sets(("recalibration", 0.0, 1.0))
     limits = Limits(pressures=pressures)
     assert reason_of(("recalibration",), ("gas_compression",), asked, RIDE, limits).endswith(said)
+
+
+def test_no_second_pressure_is_asked_for_where_several_were_recorded() -> None:
+    varied = replace(NO_EVIDENCE, varied=frozenset({"pressure"}))
+    asked = explained_by_sets(("recalibration", 0.0, 1.0), channels=varied)
+    said = reason_of(("recalibration",), ("gas_compression",), asked, RIDE, Limits(pressures=(2e5, 3e5)))
+    assert split_reason(said)[1] == "repeat at a pressure further from those recorded"
 
 
 def test_what_leaves_no_trace_beside_the_refitted_law_is_told_once_with_the_reason() -> None:

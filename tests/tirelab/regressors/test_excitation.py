@@ -57,6 +57,12 @@ def test_a_constant_pressure_refutes_what_would_change_it() -> None:
     assert "was the same" in reason
     # what stands behind the colon is told alone, as what to do next
     assert reason.endswith(": record at a second pressure")
+    assert not found.channels.varied
+
+
+def test_pressures_that_were_set_are_known_to_vary() -> None:
+    found = shown(*(pressed(part * SET + GAUGE, name=f"{part}") for part in (0.7, 1.0, 1.3)))
+    assert found.channels.varied == {"pressure"}
 
 
 @pytest.mark.parametrize(
