@@ -15,6 +15,8 @@ _CLOCK = re.compile(
     r"(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)?\s*"
 )
 _ZONE = r"\s*(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)$"
+_OFFSET = r"([+-])(\d{2})(?::?(\d{2}))?$"
+"""The hours and minutes by which a clock is ahead of UTC: at a change of summer time they change in a recording."""
 _MILLISECONDS = r"(:\d{2}:\d{2}):(\d{3})$"
 """11:10:00:771, as controllers of testing machines write milliseconds."""
 
@@ -66,6 +68,7 @@ class Clock:
             pl.when(plain.str.to_lowercase().is_in(["", "nan", "na", "null"])).then(None).otherwise(plain)
         ).to_series()
         present = plain.is_not_null()
+        ahead = _ahead(plain)
         plain = plain.str.replace(_ZONE, "").str.replace("T", " ", literal=True)
         plain = plain.str.replace(",", ".", literal=True).str.replace(r"\s+", " ")
         plain = plain.str.replace(_MILLISECONDS, "$1.$2")
@@ -78,6 +81,7 @@ class Clock:
         instants = (
             _instants(plain, self.form) if self.form else pl.Series([None] * len(plain), dtype=pl.Int64)
         )
+        instants -= ahead
         wrong = (present & instants.is_null()).arg_true()
         if len(wrong):
             raise ClockError(int(wrong[0]))
@@ -107,6 +111,14 @@ class Clock:
                 f"dates read as {_words(best[2])}, not as {_words(others[0])}: the shorter recording"
             )
         return best[2]
+
+
+def _ahead(plain: pl.Series) -> pl.Series:
+    """Return how far [ns] the clock of each time is ahead of UTC; 0 where that is not written."""
+    sign, hours, minutes = (plain.str.extract(_OFFSET, group).alias(str(group)) for group in (1, 2, 3))
+    seconds = hours.cast(pl.Int64) * 3600 + minutes.cast(pl.Int64).fill_null(0) * 60
+    ahead: pl.Series = pl.select(pl.when(sign == "-").then(-seconds).otherwise(seconds)).to_series()
+    return ahead.fill_null(0) * 1_000_000_000
 
 
 def _instants(plain: pl.Series, form: str) -> pl.Series:
