@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .channels import unit_of_column
+from .clock_doubt import YEAR_2001, YEAR_2096, clock_doubt
 from .counting import Counted, count_from_zero
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
 from .pieces import Piece, samples_within
-from .plausibility import YEAR_2001, YEAR_2096, Doubts, doubts_of, too_deep
+from .plausibility import Doubts, doubts_of, too_deep
 from .reading_plan import Plan
 from .rows import Rows, complete_rows
 from .samples import descends, gap_notes, over_midnight
@@ -124,7 +125,7 @@ def interpret(
 
     part_alone = plan.settings.part
     doubts = Doubts() if counted.fault else doubts_of(counted.gauges, values, units, where, part_alone)
-    doubts = replace(doubts, sentences=(*_thousands_doubts(rows), *doubts.sentences))
+    doubts = replace(doubts, sentences=(*_of_columns(rows, plan, values["time"]), *doubts.sentences))
     notes += [f"doubtful: {sentence}" for sentence in doubts.sentences]
     return Interpreted(values, rows, tuple(notes), counted, units, doubts, before, part_alone)
 
@@ -157,10 +158,16 @@ def _time_from_first(
     return time, notes
 
 
-def _thousands_doubts(rows: Rows) -> list[str]:
-    """Return a sentence for each column whose mark may stand between thousands."""
+def _of_columns(rows: Rows, plan: Plan, time: FloatArray) -> list[str]:
+    """Return a sentence for each column whose mark may stand between thousands, and for a clock of another unit."""
+    header, convert = plan.headers.get("time"), plan.conversions.get("time")
+    clock = ""
+    if header is not None and convert is not None and not header.dated:
+        size = float(np.diff(convert.to_si(np.array([0.0, 1.0])))[0])
+        clock = clock_doubt(rows.origin, time, convert.unit, size)
+    said = [f"column {quoted(header.text)}: {clock}"] if header is not None and clock else []
     found = ((name, thousands_doubt(column)) for name, column in rows.values.items() if name in rows.headers)
-    return [
+    return said + [
         f"{rows.place(doubt[0])}, column {quoted(rows.headers[name].text)}: {doubt[1]}"
         for name, doubt in found
         if doubt is not None

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .clock_doubt import likely_clock
 from .jumps import sudden_doubts
 from .origin import Origin
 from .samples import LARGEST_PLAUSIBLE
@@ -46,12 +47,6 @@ LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0))
 
 PART_STROKES = (("m", 0.05), ("mm", 1e3), ("um", np.inf))
 """Units of the stroke of a part with the largest number that is likely in them: machines write millimetres."""
-
-CLOCKS = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
-"""Units of clocks with their size [s]."""
-
-YEAR_2001, YEAR_2096 = 1e9, 4e9
-"""Seconds since 1970 [s]; a recording is not that long."""
 
 PRESSURES = (2e4, 1.5e6)
 """Gauge pressures [Pa] of bicycle tires: 0.3 bar of a fat one, 14 bar of a track racer's."""
@@ -338,17 +333,6 @@ def _unit_guess(stroke: float, load: float, units: Mapping[str, str]) -> tuple[s
     return min(fits)[1:] if fits else None
 
 
-def _likely_clock(time: FloatArray) -> str:
-    """Return the unit of a clock: of one since 1970 by the date, else by its steps and its length."""
-    first = float(time[np.isfinite(time)][0]) if np.isfinite(time).any() else 0.0
-    dated = [unit for unit, size in CLOCKS if YEAR_2001 <= first * size <= YEAR_2096]
-    if dated:
-        return dated[0]
-    step, length = float(np.nanmedian(np.diff(time))), float(np.nanmax(time) - np.nanmin(time))
-    likely = [unit for unit, size in CLOCKS[1:] if step >= 1e-3 / size and length > 3.6 / size]
-    return likely[-1] if likely else "s"
-
-
 def guessed_units(
     columns: Mapping[str, FloatArray], part: bool = False, metres: float | None = None
 ) -> dict[str, str]:
@@ -359,7 +343,7 @@ def guessed_units(
     """
     guesses: dict[str, str] = {}
     if "time" in columns:
-        guesses["time"] = _likely_clock(columns["time"])
+        guesses["time"] = likely_clock(columns["time"])
     moved = columns.get("deflection", np.zeros(1))
     stroke = float(np.nanmax(moved) - np.nanmin(moved))
     if metres is not None:
