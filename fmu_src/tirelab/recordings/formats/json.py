@@ -1,6 +1,7 @@
 """JSON files: a list of samples, {"time": 0.0, "force": 1.5} or [0.0, 1.5], one below the other or in brackets, or a
 list for each channel, {"time": [...], "force": [...]}, also inside other objects, {"test": {"time": [...], ...}}; units
-stand in the names, as in a CSV header.
+stand in the names, as in a CSV header, or beside the list, {"name": "force", "unit": "N", "values": [...]}. An object
+whose keys count its values is a list, as pandas writes one: {"0": 0.0, "1": 1.5}.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 import polars as pl
 
 from ..origin import Origin
+from ..units import split_header
 from .libraries import reading_with
 from .parquet import frame_headers, series_values
 from .table import Columns, Header, RecordingError, Wanted, sample_place
@@ -21,6 +23,9 @@ from .text_column import LOOKED_AT, headers_of_text
 
 LINES = (".jsonl", ".ndjson")
 """Suffixes of files with one sample in each line."""
+
+NAMES, UNITS, VALUES = ("name", "channel", "label"), ("unit", "units"), ("values", "data", "samples")
+"""Keys of the name, the unit and the list of a channel in an object of its own."""
 
 
 class JsonTable:
@@ -56,7 +61,7 @@ class JsonTable:
 def _frame(path: Path) -> pl.DataFrame:
     if path.suffix.lower() in LINES:
         return pl.read_ndjson(path, infer_schema_length=None)
-    held = json.loads(path.read_bytes())
+    held = _plain(json.loads(path.read_bytes()))
     lists = dict(_lists(held))
     channels = {k: v for k, v in lists.items() if k and not any(isinstance(x, (dict, list)) for x in v)}
     longest, many = max(Counter(map(len, channels.values())).items(), default=(0, 0))
@@ -76,6 +81,39 @@ def _frame(path: Path) -> pl.DataFrame:
     own = Counter(keys[-1] for keys in chosen)
     names = {keys: keys[-1] if own[keys[-1]] == 1 else ".".join(keys) for keys in chosen}
     return pl.DataFrame({names[keys]: v for keys, v in chosen.items()}, strict=False)
+
+
+def _plain(held: Any) -> Any:
+    """Return what a file holds with a list for an object that numbers its values, and for one that describes a channel
+    an object with its list alone, under its name and unit.
+    """
+    if isinstance(held, dict):
+        inner = {key: _plain(value) for key, value in held.items()}
+        numbers = [int(key) for key in inner if key.isdecimal()]
+        if len(numbers) == len(inner) > 1 and numbers == [numbers[0] + n for n in range(len(inner))]:
+            return list(inner.values())
+        return {key: _channel(value, key) or value for key, value in inner.items()}
+    if not isinstance(held, list) or not held or not _channel(held[0]):
+        return held
+    channels = {str(number): _channel(one) for number, one in enumerate(held, 1)}
+    return channels if all(channels.values()) else held
+
+
+def _channel(held: Any, key: str = "") -> dict[str, list[Any]]:
+    """Return the list of an object that describes one channel, under its name and unit; nothing for any other.
+
+    key: under which the object stands, if any; then it names the channel, and the object has its unit at least
+    """
+    if not isinstance(held, dict):
+        return {}
+    name, unit, values = (
+        next((held[k] for k in keys if isinstance(held.get(k), kind)), None)
+        for keys, kind in ((NAMES, str), (UNITS, str), (VALUES, list))
+    )
+    if values is None or (unit if key else name) is None:
+        return {}
+    text = " ".join(filter(None, (key, name)))
+    return {f"{text} [{unit.strip()}]" if unit and not split_header(text)[1] else text: values}
 
 
 def _lists(held: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], list[Any]]]:

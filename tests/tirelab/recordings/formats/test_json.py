@@ -9,9 +9,20 @@ import numpy as np
 import pytest
 from one_recording import COLUMNS, SAMPLES, TIME, assert_the_recording, refusal
 from tirelab.recordings.recording import read_recording
+from tirelab.recordings.units import split_header
 
 LISTS = {name: np.asarray(values).tolist() for name, values in COLUMNS.items()}
 ROWS = [dict(zip(LISTS, row, strict=True)) for row in zip(*LISTS.values(), strict=True)]
+
+
+def described(name: str) -> dict[str, dict[str, Any]]:
+    """The channels as objects of their own, with their units beside the lists."""
+    parts = {text: split_header(text) for text in LISTS}
+    return {
+        bare: {name: bare if name == "name" else 3, "unit": unit, "values": LISTS[text]}
+        for text, (bare, unit) in parts.items()
+    }
+
 
 WRITTEN: dict[str, Callable[[], str]] = {
     "rows.json": lambda: json.dumps(ROWS),
@@ -25,6 +36,10 @@ WRITTEN: dict[str, Callable[[], str]] = {
             "steps": [[1, 2], [3, 4]],
         }
     ),
+    "channels.json": lambda: json.dumps({"test": "A", "channels": list(described("name").values())}),
+    "channels by key.json": lambda: json.dumps({"test": "A", **described("remark")}),
+    "numbered.json": lambda: json.dumps({name: dict(enumerate(values)) for name, values in LISTS.items()}),
+    "numbered rows.json": lambda: json.dumps(dict(enumerate(ROWS, 100))),
     "rows inside.json": lambda: json.dumps({"test": {"read": ROWS}}),
     "names above.json": lambda: json.dumps([list(LISTS), *(list(row.values()) for row in ROWS)]),
     "lines.jsonl": lambda: "\n".join(map(json.dumps, ROWS)),
@@ -68,6 +83,12 @@ class TestJson:
         recording = read_recording(tmp_path / "a.json", radius="flat")
         assert "skipped for want of force: sample 9" in recording.notes
         np.testing.assert_allclose(recording.time, np.delete(TIME, 8), atol=1e-12)
+
+    def test_channels_of_one_name_are_told_apart(self, tmp_path: Path) -> None:
+        channels = [*described("name").values(), {"name": "force", "unit": "kN", "values": [0.0] * SAMPLES}]
+        channels = [{**one, "name": one["name"].lower()} for one in channels]
+        (tmp_path / "a.json").write_text(json.dumps(channels), encoding="utf-8")
+        assert "'3.force [kN]'" in refusal(tmp_path / "a.json", columns={"force": "load"})
 
     @pytest.mark.parametrize(
         ("held", "said"),
