@@ -59,8 +59,14 @@ def read_tire(path: str | Path) -> TireModel:
 
 
 def write_tire(tire: TireModel, path: str | Path) -> None:
-    """Write `tire` to the file at `path`; `read_tire` gives it back exactly."""
-    Path(path).write_text(to_text(tire), encoding="utf-8")
+    """Write `tire` to the file at `path`; `read_tire` gives it back exactly.
+
+    Raise TireFileError where its folder is not there.
+    """
+    try:
+        Path(path).write_text(to_text(tire), encoding="utf-8")
+    except FileNotFoundError:
+        raise TireFileError(f"{path}: its folder is not there; make it, or name another") from None
 
 
 def to_text(tire: TireModel) -> str:

@@ -1,7 +1,7 @@
 """The one kind of failure that the user can correct, and arguments of another kind than a function takes."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 
@@ -29,6 +29,24 @@ def check_recordings_given(given: Iterable[object]) -> None:
         if not hasattr(one, "deflection"):
             how = f"read it first: read_recording({str(one)!r})" if isinstance(one, (str, Path)) else _ARRAYS
             raise TypeError(f"{str(one)[:60]!r} is of type {type(one).__name__}, not a recording; {how}")
+
+
+_OF_CHANNELS = {"columns": {"force": "#3"}, "units": {"force": "kN"}, "zero": {"force": "5 N"}}
+
+
+def texts_of_channels(argument: str, given: object) -> Mapping[str, str]:
+    """Return what an argument (columns, units, zero) says of channels as text, nothing where it is None.
+
+    Raise TypeError, in one sentence, where it is no mapping, such as the text of a command's option.
+    """
+    if given is None:
+        return {}
+    if isinstance(given, Mapping):
+        return {name: str(text) for name, text in given.items()}
+    raise TypeError(
+        f"{argument}={str(given)[:60]!r} is of type {type(given).__name__}, no mapping; give for instance "
+        f"{argument}={json.dumps(_OF_CHANNELS[argument])}"
+    )
 
 
 _ARRAYS = "make one of arrays with Recording.from_arrays, of a data frame with Recording.from_dataframe"

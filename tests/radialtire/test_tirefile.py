@@ -44,6 +44,13 @@ def test_what_is_written_is_read_back_exactly(tire: TireModel, tmp_path: Path) -
     assert read_tire(tmp_path / "tire.json") == tire
 
 
+def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(
+        TireFileError, match=r"none.tire\.json: its folder is not there; make it, or name another"
+    ):
+        write_tire(TireModel(), tmp_path / "none" / "tire.json")
+
+
 def test_a_tire_of_law_and_schema_alone_has_the_starts(tmp_path: Path) -> None:
     tire = read_tire(written(tmp_path, {"schema": 1, "law": {"name": "hull1996"}}))
     assert tire == TireModel(tested_range=None, name="", source="")

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 from drives import damped
 from radialtire import TireModel
 from tirelab import build_fmu, compare, diagnose, identify, replay
 from tirelab.errors import TirelabError, check_recordings_given, check_tire_given
+from tirelab.recordings.recording import Recording, RecordingError, read_recording
 
 RECORDING = damped(1, samples=200)
 TIRE = TireModel()
@@ -25,6 +28,9 @@ CALLS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], str]] = {
     "identify paths": (identify, (["a.csv"],), "read_recording('a.csv')"),
     "compare a path": (compare, ("a.csv", np.zeros(9)), "read_recording('a.csv')"),
     "replay several": (replay, (Path("a.fmu"), [RECORDING]), "is of type list, not a recording"),
+    "columns as an option": (partial(read_recording, columns="force=#3"), ("a.csv",), '{"force": "#3"}'),
+    "units as an option": (partial(Recording.from_arrays, units="force=N"), ([0.0],) * 3, '{"force": "kN"}'),
+    "zero as an option": (partial(Recording.from_dataframe, zero="force=5 N"), (None,), '{"force": "5 N"}'),
     "build of nothing": (build_fmu, (None, "out"), "give read_tire(FILE) or TireModel()"),
 }
 
@@ -60,3 +66,10 @@ def test_a_simulated_force_that_cannot_be_compared_is_told(simulated: Any, told:
 
 def test_a_list_of_numbers_is_compared() -> None:
     assert compare(RECORDING, RECORDING.force.tolist()).rmse == 0.0  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("given", [{"columns": {"force": 3}}, {"units": {"force": 3}}])
+def test_a_number_is_taken_as_a_text(given: dict[str, Any]) -> None:
+    frame = pl.DataFrame({"deflection [mm]": [0.0, 1.0], "force [N]": [0.0, 1.0]})
+    with pytest.raises(RecordingError, match="'3'"):
+        Recording.from_dataframe(frame, **given)

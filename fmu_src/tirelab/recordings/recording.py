@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import texts_of_channels
 from .choices import Choices
 from .description import facts, html_table, one_line
 from .formats import Columns, RecordingError, Table, open_table
@@ -135,7 +136,7 @@ class Recording:
         `notes` says so. Errors: RecordingError, one sentence with the sample, the value and the next step.
         """
         origin = Origin(name, "arrays")
-        channel_units = array_units(origin, units)
+        channel_units = array_units(origin, texts_of_channels("units", units))
         arrays = {"deflection": deflection, "force": force}
         if time is None:
             channel_units.pop("time")
@@ -172,9 +173,9 @@ class Recording:
         """
         origin = Origin(name, "frame")
         _refuse_unknown(more, Gauged.__annotations__)
-        settings = Settings(
-            columns or {}, units or {}, radius, sampling=more.get("sampling"), zero=more.get("zero") or {}
-        )
+        said = (texts_of_channels("columns", columns), texts_of_channels("units", units))
+        zero = texts_of_channels("zero", more.get("zero"))
+        settings = Settings(*said, radius, sampling=more.get("sampling"), zero=zero)
         return _recording_of(origin, frame_table(origin, frame), settings)
 
     def __repr__(self) -> str:
@@ -266,8 +267,9 @@ def read_recording(
     them, where columns, units or the radius have to be given.
     """
     _refuse_unknown(more, Exported.__annotations__)
-    sampling, skip_rows, zero = more.get("sampling"), more.get("skip_rows"), more.get("zero")
-    how = Choices(columns or {}, units or {}, radius, sampling, skip_rows, zero=zero or {})
+    said = (texts_of_channels("columns", columns), texts_of_channels("units", units))
+    zero = texts_of_channels("zero", more.get("zero"))
+    how = Choices(*said, radius, more.get("sampling"), more.get("skip_rows"), zero=zero)
     return understand(path, how).recording
 
 
