@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,12 +14,25 @@ from .channels import known_channel
 from .formats import RecordingError
 from .pieces import Piece
 from .toml_text import parse_toml
+from .units import with_likely_unit
 
 FOLDER_SIDECAR = "recording.toml"
 """The sidecar of every recording in its folder."""
 
-_CONSTANT = {channel.name: f"{channel.usual:.4g} {channel.unit}" for channel in CHANNELS}
-"""Channels of which a file may state one value for the whole recording, with an example."""
+_CONSTANT = {channel.name: (f"{channel.usual:.4g} {channel.unit}", channel.unit) for channel in CHANNELS}
+"""Channels of which a file may state one value for the whole recording, with an example and its SI unit."""
+
+_EXAMPLES = {
+    "name": ("front, 2 bar", ""),
+    "radius": ("25.4 cm", "m"),
+    "sampling": ("10 Hz", ""),
+    "from": ("10 s", ""),
+    "to": ("20 s", ""),
+    "zero.deflection": ("30 mm", ""),
+    "zero.force": ("30 N", ""),
+    **_CONSTANT,
+}
+"""Values as they are written; with the SI unit where a number may be of several units, and its size tells which."""
 
 _TEXTS = ("radius", "sampling", "from", "to", "name", *_CONSTANT)
 _TABLES = ("columns", "units", "zero")
@@ -217,14 +231,17 @@ def _check(file: Path, content: Mapping[str, Any], inside: str) -> None:
 
 def _as_text(file: Path, key: str, value: object) -> None:
     if not isinstance(value, str) or (not value.strip() and not key.startswith("columns.")):
-        examples = {
-            "name": "front, 2 bar",
-            "radius": "25.4 cm",
-            "sampling": "10 Hz",
-            "from": "10 s",
-            "to": "20 s",
-            **_CONSTANT,
-        }
         raise RecordingError(
-            f'{file.name}: {key} is {value!r}, not text; write {key} = "{examples.get(key, "...")}"'
+            f'{file.name}: {key} is {value!r}, not text; write {key} = "{_example(key, value)}"'
         )
+
+
+def _example(key: str, value: object) -> str:
+    """Return what may stand for a key: a number that was written with its likely unit, or an example."""
+    text, si = _EXAMPLES.get(key, ("...", ""))
+    unit = text.split(" ")[1:]
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or len(unit) != 1:
+        return text
+    if not 0.0 < abs(value) < math.inf:
+        return text
+    return with_likely_unit(value, text, si) if si else f"{value:.15g} {unit[0]}"

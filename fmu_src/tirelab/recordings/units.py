@@ -329,6 +329,14 @@ def parse_quantity(text: str, si: str) -> float:
     return float(conversion(found["unit"].strip(), si).to_si(np.array([float(found["value"])]))[0])
 
 
+def with_likely_unit(value: float, usual: str, si: str) -> str:
+    """Return a number that was written without a unit with the one in which it is nearest to a usual quantity."""
+    size, units = parse_quantity(usual, si), [conversion(unit, si) for unit in _COMMON[si]]
+    in_unit = {c.unit: (size - c.offset) / c.multiplied for c in units}
+    far = {unit: abs(math.log(abs(value) / number)) for unit, number in in_unit.items()}
+    return f"{value:.15g} {min(far, key=far.__getitem__)}"
+
+
 def _likely(unit: str, si: str, known: bool = False) -> str:
     """Return the unit that was likely meant, "" where none is near; known: it is a unit, but of something else."""
     hint = _LIKELY.get((si, unit.lower()), "")

@@ -104,6 +104,13 @@ class TestSidecar:
         ("text", "advice"),
         [
             ('radius = ""', "radius is '', not text; write radius = \"25.4 cm\""),
+            ("pressure = 2.6", 'pressure is 2.6, not text; write pressure = "2.6 bar"'),
+            ("pressure = 35", 'pressure is 35, not text; write pressure = "35 psi"'),
+            ("pressure = true", 'pressure is True, not text; write pressure = "3.447e+05 Pa"'),
+            ("temperature = 23.5", 'temperature is 23.5, not text; write temperature = "23.5 degC"'),
+            ("radius = 0.3", 'radius is 0.3, not text; write radius = "0.3 m"'),
+            ("sampling = 1000", 'sampling is 1000, not text; write sampling = "1000 Hz"'),
+            ("[zero]\nforce = -12", 'zero.force is -12, not text; write zero.force = "-12 N"'),
             ("[units]\nforce = 3", 'units.force is 3, not text; write units.force = "..."'),
         ],
     )
