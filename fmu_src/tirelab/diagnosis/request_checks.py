@@ -1,5 +1,5 @@
-"""What a diagnosis refuses before its work would be lost: files given twice, samples that two parts share, a motion
-that no tire can follow, a folder that cannot be written.
+"""What a diagnosis refuses before its work would be lost: files given twice, samples that two parts share, fitted
+readings that are held out again, a motion that no tire can follow, a folder that cannot be written.
 
 Each check raises TirelabError with one sentence and returns nothing. What a request cannot show is told, not refused:
 copies of a recording, times that were made up, deflections that only held-out recordings reach, a tire that pulls.
@@ -39,8 +39,12 @@ def check_once(files: Sequence[Path]) -> None:
         seen.add(file.resolve())
 
 
-def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
-    """Raise TirelabError where two pieces of one file share samples: each sample is fitted or held out, once."""
+def check_apart(read: Sequence[tuple[Path, Recording]], fitted: int | None = None) -> None:
+    """Raise TirelabError where two pieces of one file share samples, or a recording that is held out has no readings
+    but those of a fitted one: each sample is fitted or held out, once.
+
+    fitted: how many of the first are fitted, None: all
+    """
     for i, (file, one) in enumerate(read):
         for other_file, other in read[:i]:
             same = one.source is not None and other.source is not None and one.source.samefile(other.source)
@@ -54,6 +58,15 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                     f"{other_file} and {file} share {shared}; give each part of a file once "
                     "(a range includes both ends)"
                 )
+    first, held_out = read[:fitted], read[len(read) if fitted is None else fitted :]
+    known = [(file, _runs(recording)) for file, recording in first] if held_out else []
+    for file, recording in held_out:
+        own = _runs(recording)
+        copied = next((one for one, runs in known if own.size and np.isin(own, runs).all()), None)
+        if copied is not None:
+            raise TirelabError(
+                f"{file} has the readings of {copied}, which is fitted, and tests nothing; hold out another recording"
+            )
 
 
 def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple[str, ...]:
@@ -81,8 +94,8 @@ def _runs(recording: Recording) -> NDArray[np.uint64]:
     readings = (
         np.column_stack([recording.deflection, recording.force]).astype(np.float32).view(np.uint64).ravel()
     )
-    last = readings.size - FEWEST_EVENTS + 1
-    return pl.DataFrame([readings[k : last + k] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()
+    last = max(readings.size - FEWEST_EVENTS + 1, 0)
+    return pl.DataFrame([readings[k:][:last] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()
 
 
 def without_time(recordings: Sequence[Recording]) -> list[str]:
