@@ -69,7 +69,8 @@ class LawFit:
 
     constants: symbol, value, uncertainty (without end where nothing determines it) and unit of each
     bic: Bayesian criterion relative to nothing, lower is better
-    at: the deflections [m] whose forces the constants are, in the piecewise law
+    at: the deflections [m] whose forces the constants are, in the piecewise law; amid_loop: whether it was fitted
+    within a loop, which its RMSE counts
     """
 
     name: str
@@ -77,6 +78,7 @@ class LawFit:
     rmse: float
     bic: float
     at: tuple[float, ...] = ()
+    amid_loop: bool = False
 
     def value(self, symbol: str) -> float:
         """Return a constant; raises KeyError where the law has none of that symbol."""
@@ -274,7 +276,7 @@ def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]
     loop = (("a", s.load, "N"), ("b", 1.0, "1"))[: values.size - n]
     fit = _fit("piecewise", [*units, *loop], values, (residual, matrix), s.load)
     left, criterion = _left(s.load * (s.force - lines @ values[:n]), n)
-    return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at)
+    return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at, state is not None)
 
 
 def _hats(x: Array, knots: Array) -> list[Array]:

@@ -38,10 +38,16 @@ SHOWN = 6
 
 def law_table(fits: Sequence[LawFit]) -> Table:
     """Return the laws that were compared: what each leaves, and its constants."""
+    amid = next((fit.name for fit in fits if fit.amid_loop), "")
     table = _table(
         "Laws compared",
         "all samples alike, loading and unloading together; standard uncertainties for white noise; the first has the "
-        "least Bayesian criterion",
+        "least Bayesian criterion"
+        + (
+            f"; {amid} goes amid the loop of both ways, and others may pass all samples nearer"
+            if amid
+            else ""
+        ),
     )
     table.add_column("law", no_wrap=True)
     table.add_column("RMSE\n" + escape("[N]"), justify="right", no_wrap=True)

@@ -64,7 +64,10 @@ def test_a_curve_is_the_middle_of_a_loop_at_its_turns_too() -> None:
     x = np.concatenate([way, way[::-1], way, way[::-1]])
     elastic = 1.5e4 * x + 5e5 * x**2
     force = elastic + loop_state(x, 1e-4) * (20.0 + 0.2 * elastic)
-    found = {fit.name: fit for fit in fit_laws([recording(x, force)])}["piecewise"]
+    fits = fit_laws([recording(x, force)])
+    found = {fit.name: fit for fit in fits}["piecewise"]
+    assert "piecewise goes amid the loop of both ways" in str(law_table(fits).caption)
+    assert "loop" not in str(law_table(fit_laws([recording(way, elastic[:1500])])).caption)
     middle = np.interp(way, found.at, [value for _, value, _, _ in found.constants])
     assert middle == pytest.approx(1.5e4 * way + 5e5 * way**2, abs=2.0)
     # What is stated to be left is what the curve alone leaves: the loop.
