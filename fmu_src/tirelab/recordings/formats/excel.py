@@ -18,8 +18,7 @@ from ..units import FLAT_WORDS, measures
 from ..vocabulary import any_channel
 from .cell_units import row_without_units, without_unit
 from .libraries import reading_with
-from .number_style import NumberStyle, with_plain_marks
-from .sheet import DATES, NUMBER, Sheet, cell_text, holds_any, length, tables_of
+from .sheet import DATES, Sheet, cell_text, holds_any, length, stored_as_text, tables_of
 from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, listed, not_a_number, quoted
 from .table_search import is_value
 from .text_rows import TextRows
@@ -157,22 +156,11 @@ class ExcelTable:
             return float("nan")
         if want.channel == "radius" and word in FLAT_WORDS:
             return float("inf")
-        number = self._stored_as_text(cell, self.sheet_of(want.index).style)
+        style = self.sheet_of(want.index).style
+        number = None if style is None else stored_as_text(cell, style)
         if number is not None:
             return number
         raise not_a_number(self.path.name, f"row {line}", header.text, cell)
-
-    @staticmethod
-    def _stored_as_text(cell: object, style: NumberStyle | None) -> float | None:
-        """Return a number that is stored as text, written as others of its sheet are; None for any other cell."""
-        if style is None or not isinstance(cell, str):
-            return None
-        text = style.ungrouped(with_plain_marks(cell.strip()))
-        if style.decimal_comma:
-            text = "" if "." in text else text.replace(",", ".")
-        if NUMBER.fullmatch(text) is None:
-            return None
-        return float(text)
 
 
 def _chosen(found: Sequence[Sheet], version: Version) -> Sheet:

@@ -2,6 +2,7 @@
 
 import datetime
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,8 +24,8 @@ MOST_SHEETS = 200
 KEPT = 4
 """Number of workbooks whose tables are remembered."""
 
-NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-"""A number that is stored as text."""
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+"""A number that is stored as text, without marks between thousands and with a decimal point."""
 
 DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 """What the libraries make of cells that hold a date, a duration or a time of day."""
@@ -34,8 +35,8 @@ DATES = (datetime.datetime, datetime.timedelta, datetime.time)
 class Sheet:
     """The table of one sheet: its title, its row of names (0: none) and its first row of numbers from 1, its columns.
 
-    style: of numbers that are stored as text, where most rows hold one; rows: how many were seen below the names;
-    counted: whether its first column holds no text; provenance: the rows above the names
+    style: of numbers that are stored as text, where most cells of a column hold one; rows: how many were seen below the
+    names; counted: whether its first column holds no text; provenance: the rows above the names
     """
 
     title: str
@@ -126,10 +127,23 @@ def _sheet(title: str, head: Sequence[Sequence[Any]]) -> Sheet:
 
 
 def _style_of_texts(body: Sequence[Sequence[Any]]) -> NumberStyle | None:
-    """Return how numbers that are stored as text are written; None where fewer than half of the rows hold one."""
-    if 2 * sum(any(map(_is_text_number, row)) for row in body) <= len(body):
+    """Return how numbers that are stored as text are written; None where no column holds mostly such."""
+    style = style_of(cell for row in body for cell in row if isinstance(cell, str))
+    held: Counter[int] = Counter(n for row in body for n, cell in enumerate(row) if holds_any((cell,)))
+    texts = Counter(
+        n for row in body for n, cell in enumerate(row) if stored_as_text(cell, style) is not None
+    )
+    return style if any(2 * count > held[n] for n, count in texts.items()) else None
+
+
+def stored_as_text(cell: object, style: NumberStyle) -> float | None:
+    """Return a number that is stored as text and written in a style; None for any other cell."""
+    if not isinstance(cell, str):
         return None
-    return style_of(cell for row in body for cell in row if isinstance(cell, str))
+    text = style.ungrouped(with_plain_marks(cell.strip()))
+    if style.decimal_comma:
+        text = "" if "." in text else text.replace(",", ".")
+    return float(text) if NUMBER.fullmatch(text) else None
 
 
 def _named_width(names: Sequence[Any]) -> int:
@@ -148,10 +162,6 @@ def _without_units(row: Sequence[Any], units: Mapping[int, str]) -> list[Any]:
 def _trimmed(row: Sequence[Any]) -> Sequence[Any]:
     filled = [n for n, cell in enumerate(row, 1) if holds_any((cell,))]
     return row[: filled[-1]] if filled else ()
-
-
-def _is_text_number(cell: object) -> bool:
-    return isinstance(cell, str) and NUMBER.fullmatch(with_plain_marks(cell.strip())) is not None
 
 
 def cell_text(cell: object) -> str:
