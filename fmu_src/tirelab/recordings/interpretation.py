@@ -16,6 +16,7 @@ from .formats.table import quoted
 from .pieces import Piece, samples_within
 from .plausibility import Doubts, doubts_of, too_deep
 from .reading_plan import Plan
+from .rounded_clock import lost_in_single
 from .rows import Rows, complete_rows
 from .samples import descends, gap_notes, over_midnight
 from .thousands_doubt import thousands_doubt
@@ -89,6 +90,7 @@ def interpret(
     rows = complete_rows(plan.origin, plan.headers, read)
     backwards = "time" in rows.values and descends(rows.values["time"])
     rows = rows.reversed() if backwards else rows
+    _refuse_lost_steps(rows, plan)
     rows = rows.evened()
     values = {name: _in_si(column, plan.conversions[name]) for name, column in rows.values.items()}
     samples = len(values["deflection"])
@@ -158,13 +160,29 @@ def _time_from_first(
     return time, notes
 
 
+def _refuse_lost_steps(rows: Rows, plan: Plan) -> None:
+    """Raise RecordingError where the times stand still because they were stored in single precision."""
+    written, convert = rows.values.get("time"), plan.conversions.get("time")
+    if written is None or convert is None:
+        return
+    size = convert.multiplied
+    step = lost_in_single(written, size)
+    if step:
+        late = int(np.argmax(np.diff(written) <= 0.0)) + 1
+        what = (
+            f"time repeats {written[late] * size:.9g} s: in single precision times of this size are {step:.3g} s apart,"
+            " and the steps of the samples are lost; export them in double precision or from 0 on, or, if the samples "
+            f"are evenly spaced, give the rate at which they were taken: {rows.origin.sampling('RATE')}"
+        )
+        raise rows.error(late, "time", what)
+
+
 def _of_columns(rows: Rows, plan: Plan, time: FloatArray) -> list[str]:
     """Return a sentence for each column whose mark may stand between thousands, and for a clock of another unit."""
     header, convert = plan.headers.get("time"), plan.conversions.get("time")
     clock = ""
     if header is not None and convert is not None and not header.dated:
-        size = float(np.diff(convert.to_si(np.array([0.0, 1.0])))[0])
-        clock = clock_doubt(rows.origin, time, convert.unit, size)
+        clock = clock_doubt(rows.origin, time, convert.unit, convert.multiplied)
     said = [f"column {quoted(header.text)}: {clock}"] if header is not None and clock else []
     found = ((name, thousands_doubt(column)) for name, column in rows.values.items() if name in rows.headers)
     return said + [

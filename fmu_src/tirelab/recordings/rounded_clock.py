@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from .samples import COARSE
+
 FloatArray = NDArray[np.float64]
 
 EVEN = 1e-3
@@ -16,6 +18,9 @@ EVEN = 1e-3
 
 FEWEST = 10
 """Fewest times that show whether they are even: each but two of them could refute it."""
+
+LOST = 1e-3
+"""Step of single precision [s] from which times that all are the same are likely to have lost theirs by it."""
 
 DIGITS = 16
 """Decimal digits of a double."""
@@ -46,6 +51,24 @@ def evened(written: FloatArray, number: NDArray[np.intp]) -> FloatArray | None:
         if line is not None:
             return np.asarray(line - (line[0] - written[0]))
     return None
+
+
+def lost_in_single(written: FloatArray, size: float) -> float:
+    """Return the step [s] between numbers of single precision as large as the times written, where these stand still
+    for want of smaller ones; 0 where they do not.
+
+    size [s]: of the unit in which the times are written
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps, single = np.diff(written), written.astype(np.float32)
+    if not np.count_nonzero(steps == 0.0) > COARSE * steps.size:
+        return 0.0
+    if not np.array_equal(single, written):
+        return 0.0
+    least, most = (float(np.spacing(np.abs(end(single)))) for end in (np.min, np.max))
+    moved = steps[steps > 0.0]
+    lost = least <= float(moved.min()) <= most if moved.size else most * size >= LOST
+    return most * size if lost else 0.0
 
 
 def _last_digits(written: FloatArray, most: float) -> FloatArray:

@@ -97,9 +97,11 @@ def check_time(time: FloatArray) -> None:
     what = f"time repeats {after:.9g} s"
     still = int(np.count_nonzero(steps == 0.0))
     if steps.min() == 0.0 and still > COARSE * len(steps):
-        rate = len(time) / float(time[-1] - time[0] + steps[steps > 0.0].min()) if still < len(steps) else 0.0
+        known = still < len(steps)
+        rate = len(time) / float(time[-1] - time[0] + steps[steps > 0.0].min()) if known else 0.0
+        said = f"{rate:.6g}Hz" if known else "RATE"
         what += f", as do {still - 1} others: the clock is coarser than the samples; if these are evenly spaced, give "
-        raise SampleFault(late, "time", what + f"their rate: --sampling {rate:.6g}Hz")
+        raise SampleFault(late, "time", what + f"their rate: --sampling {said}")
     raise SampleFault(late, "time", what + "; sort the rows by time, and keep one of each")
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
-from tirelab.recordings.recording import Recording, read_recording
-from tirelab.recordings.rounded_clock import evened
+from tirelab.recordings.recording import Recording, RecordingError, read_recording
+from tirelab.recordings.rounded_clock import evened, lost_in_single
 
 NUMBER = np.arange(3000)
 EVEN = NUMBER / 300.0
@@ -115,3 +116,27 @@ def test_a_damper_is_found_whatever_the_digits_of_the_clock(tmp_path: Path) -> N
     verdict = diagnose(recording, TireModel(PowerLaw(100.0, 1.0), two_sided=True))
     assert [effect.name for effect in verdict.effects] == ["viscous_damping"]
     assert verdict.fit.after == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("first", "size", "step"),
+    [(1.7e9, 1.0, 128.0), (1.7e12, 1e-3, 131.072), (1.7e5, 1.0, 1.0 / 64.0), (0.0, 1.0, 0.0)],
+)
+def test_times_that_single_precision_cannot_part(first: float, size: float, step: float) -> None:
+    written = (first + EVEN / size).astype(np.float32).astype(np.float64)
+    assert lost_in_single(written, size) == (step if step > 0.01 else 0.0)
+    assert lost_in_single(first + EVEN / size, size) == 0.0
+
+
+@pytest.mark.parametrize("written", [np.floor(EVEN), 1e5 + np.floor(EVEN), np.full(300, 5.0)])
+def test_a_coarse_clock_did_not_lose_its_steps_in_single_precision(written: np.ndarray) -> None:
+    assert lost_in_single(written, 1.0) == 0.0
+
+
+def test_a_file_of_such_times_is_read_with_its_rate_alone(tmp_path: Path) -> None:
+    path = tmp_path / "a.parquet"
+    columns = {"time [s]": 1.7e9 + EVEN, "deflection [mm]": 10.0 - 10.0 * np.cos(EVEN), "force [N]": EVEN}
+    pl.DataFrame({name: values.astype(np.float32) for name, values in columns.items()}).write_parquet(path)
+    with pytest.raises(RecordingError, match=r"times of this size are 128 s apart.*: --sampling RATE$"):
+        read_recording(path, radius="flat")
+    assert read_recording(path, radius="flat", sampling="300Hz").duration == pytest.approx(EVEN[-1])

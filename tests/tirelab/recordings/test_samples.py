@@ -49,6 +49,12 @@ class TestTime:
         ("time", "index", "what"),
         [
             ([0.0, 1.0, 1.0, 0.0], 2, "time repeats 1 s"),
+            (
+                [5.0] * 3,
+                1,
+                "time repeats 5 s, as do 1 others: the clock is coarser than the samples; if these are "
+                "evenly spaced, give their rate: --sampling RATE",
+            ),
             ([0.0, 1.0, 0.5, 0.2], 2, "time goes back from 1 s to 0.5 s"),
         ],
     )
