@@ -42,6 +42,7 @@ from .alternatives import USUAL_SPEED, Alternative, alternatives_of, no_surer_th
 from .asked import Asked
 from .between_recordings import difference_between
 from .confidence import EITHER, confidence_of, grounds_of_effect, grounds_of_verdict, probability_of_effect
+from .contradicting_channel import ContradictingChannel, contradicting_channel
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of, driven
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
@@ -92,12 +93,11 @@ def diagnosed(asked: Asked) -> Verdict:
     check_recordings(fitted, kept, two_sided=baseline.two_sided)
     data = _Data(fitted, raw_dataset_of(fitted, baseline), [r.force - simulate(baseline, r) for r in fitted])
 
-    def explain(
-        several: Sequence[Recorded], say: Callable[[str], None], most_work: float = MOST_WORK
-    ) -> Explanation:
-        return explain_misfit(several, baseline, allowed, say, held_out=kept, most_work=most_work)
+    def explain_both(several: Sequence[Recorded], judges: Sequence[Recorded]) -> Explanation:
+        quiet, work = (lambda sentence: None), ANEW * MOST_WORK
+        return explain_misfit(several, baseline, allowed, quiet, held_out=judges, most_work=work)
 
-    candidates = explain(fitted, report)
+    candidates = explain_misfit(fitted, baseline, allowed, report, held_out=kept)
     levels = [floor.level for floor in candidates.floors]
     with_simulation = any(getattr(r, "believed_force", None) is not None for r in fitted)
     check_signal(data.samples, [r.name for r in fitted], levels, beside=with_simulation)
@@ -116,18 +116,20 @@ def diagnosed(asked: Asked) -> Verdict:
     motions = [e.motion for e in data.samples.experiments]
 
     def explain_anew(several: Sequence[Recorded]) -> Explanation:
-        return explain(several, lambda sentence: None, ANEW * MOST_WORK)
+        return explain_both(several, kept)
 
     contradiction = contradiction_of(explanation, fitted, motions, data.before, explain_anew)
     contradiction = contradiction or difference_between(explanation, fitted, motions, explain_anew)
     contradiction = contradiction or _contradicted_by(candidates, accepted, fitted, kept)
+    contradiction = contradiction or contradicting_channel(explanation, fitted, kept, explain_both)
     confidence = confidence_of(grounds, named, doubted, explanation.share)
     of_law = _left_by_law(fitted, baseline) if remainder.size > LIKE_NOISE else 0.0
     may_be_before = of_law > fit.left
-    most = EITHER if isinstance(contradiction, Missed) or may_be_before else 1.0
+    most = EITHER if isinstance(contradiction, Missed | ContradictingChannel) or may_be_before else 1.0
     confidence = min(confidence, most)
     alternatives = alternatives_of(explanation, data.samples, confidence, limits)
     effects = no_surer_than_alternatives(accepted.effects, alternatives)
+    effects = contradiction.no_surer(effects) if isinstance(contradiction, ContradictingChannel) else effects
     if not accepted.effects:
         fit = replace(fit, not_named=_not_named(candidates, validate, fit.before))
     before = asked.before.judged(fit)

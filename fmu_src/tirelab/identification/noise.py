@@ -197,10 +197,7 @@ def _autocorrelation(blocks: list[_Blocks]) -> NDArray[np.float64]:
     lags = seen[: order + 1]
     counts = sum(np.maximum(b.noise.size - np.arange(order + 1), 0) for b in noisy)
     for _ in range(CORRECTIONS if order else 0):
-        extended = _extended(lags, longest)
-        if extended is None:
-            break
-        correlation = extended
+        correlation = _extended(lags, longest)
         missing = np.zeros(order + 1)
         for b in noisy:
             expected = _expected(b, correlation, order)
@@ -247,13 +244,16 @@ def _order(correlation: NDArray[np.float64], total: float) -> int:
     return order
 
 
-def _extended(lags: NDArray[np.float64], longest: int) -> NDArray[np.float64] | None:
-    """Return the autocorrelation continued by its autoregression to `longest` lags, or None if that does not fade."""
+def _extended(lags: NDArray[np.float64], longest: int) -> NDArray[np.float64]:
+    """Return the autocorrelation continued by its autoregression to `longest` lags. One that does not fade, as between
+    recordings at different levels, is slowed to a memory as long as the recording: nothing shows a longer one.
+    """
     order = lags.size - 1
     coefficients = solve_toeplitz(lags[:-1], lags[1:])
-    roots = np.roots(np.concatenate([[1.0], -coefficients]))
-    if np.abs(roots).max() >= 1.0 - 1.0 / longest:
-        return None
+    largest = float(np.abs(np.roots(np.concatenate([[1.0], -coefficients]))).max())
+    slowest = 1.0 - 1.0 / longest
+    if largest > slowest:
+        coefficients = coefficients * (slowest / largest) ** np.arange(1, order + 1)
     correlation = np.zeros(longest)
     correlation[: order + 1] = lags / lags[0]
     for lag in range(order + 1, longest):

@@ -67,19 +67,23 @@ def channel_evidence(dataset: Dataset, cells: Sequence[Cells]) -> ChannelEvidenc
         followed, seen = _followed(value, changing, dataset)
         impossible |= {
             e.name
-            for e in changing
+            for e in (changing if _is_read(dataset, channel.name) else ())
             if not (seen[e.name][0] > NEGLIGIBLE and seen[e.name][1] > NEGLIGIBLE * channel.resolution)
         }
         within, between = _spreads(value - followed, np.concatenate(cells))
         if within < max(channel.resolution, between):
-            same = (
-                f"the {channel.name} was the same whenever a deflection was visited: record at a second "
-                f"{channel.name}"
-            )
+            alike = _spreads(value, np.concatenate(cells))[0] < channel.resolution
+            how = "was the same whenever a deflection was visited" if alike else "changed in one course only"
+            same = f"the {channel.name} {how}: record at a second {channel.name}"
             unvaried |= {e.name: same for e in readers}
         else:
             varied.add(channel.name)
     return ChannelEvidence(frozenset(impossible), unvaried, frozenset(varied))
+
+
+def _is_read(dataset: Dataset, channel: str) -> bool:
+    """Return whether a channel was read, and not typed in: a reading is never quite the same all the time."""
+    return any(np.ptp(e.measured[channel]) > 0.0 for e in dataset.experiments)
 
 
 def _followed(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,3 +39,18 @@ def test_a_surface_recorded_twice_is_one_surface() -> None:
     # twice the samples: the uncertainty falls by the root of two; the noise of 149 samples is known to 6 %, three times
     ratio = alone.surfaces[0].coefficient_uncertainty / found.surfaces[0].coefficient_uncertainty
     assert ratio == pytest.approx(math.sqrt(2.0), rel=0.18)
+
+
+@pytest.mark.parametrize("apart", [0.01, 0.03, 0.1])
+def test_recordings_at_different_levels_are_known_no_better_than_they_agree(apart: float) -> None:
+    """Of two draws of a level the mean is known to half their distance (standard error of two values); of noise alone
+    it would be known to a tenth of a percent.
+    """
+    pieces = [triangle(noise=2.0, seed=seed) for seed in (2, 3)]
+    levels = (1.0 - apart, 1.0 + apart)
+    several = [
+        replace(r, name=r.name + str(level), force=level * r.force)
+        for r, level in zip(pieces, levels, strict=True)
+    ]
+    (surface,) = identify(several).surfaces
+    assert surface.coefficient_uncertainty > 0.5 * apart * surface.coefficient
