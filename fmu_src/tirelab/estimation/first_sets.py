@@ -134,7 +134,7 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
     left = dataset.apart(_left_by_all(equations, dataset.misfit))
     noise_left = partial(_noise_left, dataset.experiments, equations, left)
     noises = [noise_left(number, white=white) for number in range(len(left))]
-    series = [e for e in dataset.with_noise(noises).experiments if e.reading.memory > 1]
+    series = [e for e in dataset.with_noise(noises).experiments if e.reading.told_by_series]
     if series and not white:
         noises = [n if n.memory > 1 else noise_left(i, series) for i, n in enumerate(noises)]
     found, states = [], []
@@ -170,10 +170,10 @@ def _noise_left(
     (surface,) = surface_numbers([e.surface_radius[e.counts]])
     driven = Driven(e.interval, x, rate, acceleration, surface)
     over = [noise for other in series for noise in other.noises_over(e.interval, e.size)]
-    known = [replace(n, level=n.level / e.noise) for n in over]
+    known = [replace(n, level=n.level / e.noise, hum=n.hum / e.noise) for n in (*over, e.reading.of_mains)]
     others = partial(_left_in_one, equations, [r.size for r in left], number)
-    noise = white_noise_of(own, driven) if white else noise_of(own, driven, others, known)
-    return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT))
+    noise = white_noise_of(own, driven, known) if white else noise_of(own, driven, others, known)
+    return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT), hum=e.noise * noise.hum)
 
 
 def _profiled(experiment: Experiment, left: FloatArray, noise: Noise) -> tuple[float, NoiseProfile, float]:

@@ -93,10 +93,23 @@ class NoiseFloor:
 
 @dataclass(frozen=True)
 class Noise:
-    """level: standard deviation of one sample; memory: number of samples after which errors are independent."""
+    """level: standard deviation of one sample; memory: number of samples after which errors are independent; hum: root
+    mean square of the part of it that is hum of the mains.
+    """
 
     level: float
     memory: int
+    hum: float = 0.0
+
+    @property
+    def told_by_series(self) -> bool:
+        """Whether it is of a kind that one recording of a series may show where another one does not."""
+        return self.memory > 1 or self.hum > 0.0
+
+    @property
+    def of_mains(self) -> Noise:
+        """The hum of the mains alone, of which neither level nor memory is known."""
+        return Noise(0.0, 1, self.hum)
 
     def is_like(self, other: Noise) -> bool:
         """Whether both may be of one amplifier: their levels count as the same, and their memories, which are known to
@@ -124,17 +137,24 @@ def noise_of(
     cannot follow varies within a few lags, as a noise with a memory does; then the residual must have none of it.
     known: noises of other recordings of the series
     """
-    return _beside_hum(residual, driven, lambda rest: _noise_beside_motion(rest, driven, left, known))
+    return _beside_hum(residual, driven, known, lambda rest: _noise_beside_motion(rest, driven, left, known))
 
 
-def _beside_hum(residual: FloatArray, driven: Driven, noise: Callable[[FloatArray], Noise]) -> Noise:
-    """Return the noise of a residual whose hum, a noise of the reading, is apart from what `noise` sees."""
+def _beside_hum(
+    residual: FloatArray, driven: Driven, known: Sequence[Noise], noise: Callable[[FloatArray], Noise]
+) -> Noise:
+    """Return the noise of a residual whose hum, a noise of the reading, is apart from what `noise` sees. A hum that
+    comes again with the motion is believed where the series is known to have one that is as loud.
+    """
     lags, _ = _slow_lags(driven)
     hum = mains_hum(residual, driven.interval, 2.0 * lags[-1], NEGLIGIBLE)
-    if not np.any(hum) or _comes_again(hum, driven):
+    size = float(np.sqrt(np.mean(hum**2)))
+    if not np.any(hum) or (
+        max((n.hum for n in known), default=0.0) * STAYS < size and _comes_again(hum, driven)
+    ):
         return noise(residual)
     found = noise(residual - hum)
-    return Noise(float(np.hypot(found.level, np.sqrt(np.mean(hum**2)))), found.memory)
+    return Noise(float(np.hypot(found.level, size)), found.memory, size)
 
 
 def _comes_again(line: FloatArray, driven: Driven) -> bool:
@@ -172,9 +192,9 @@ def noise_left(residual: FloatArray, driven: Driven) -> Noise | None:
     return found and replace(found, level=min(found.level, float(np.std(residual))))
 
 
-def white_noise_of(residual: FloatArray, driven: Driven) -> Noise:
-    """Return the noise of a residual (n,) that is known to be white."""
-    return _beside_hum(residual, driven, lambda rest: _levels_of(rest, driven).white(driven))
+def white_noise_of(residual: FloatArray, driven: Driven, known: Sequence[Noise] = ()) -> Noise:
+    """Return the noise of a residual (n,) that is known to be white; known: see `noise_of`."""
+    return _beside_hum(residual, driven, known, lambda rest: _levels_of(rest, driven).white(driven))
 
 
 @dataclass(frozen=True)

@@ -190,9 +190,9 @@ def dataset_of(
     experiments = [
         experiment_in_blocks(r, tire, (least, size), n) for r, n in zip(recordings, known, strict=True)
     ]
-    if series := [e for e in experiments if e.reading.memory > 1]:
+    if series := [e for e in experiments if e.reading.told_by_series]:
         for i, e in enumerate(experiments):
-            if e.reading.memory == 1 and known[i] is None:
+            if not e.reading.told_by_series and known[i] is None:
                 experiments[i] = experiment_in_blocks(recordings[i], tire, (least, size), None, series)
     gauge = float(np.median([e.gauge for e in experiments]))
     return Dataset(

@@ -130,7 +130,8 @@ class Experiment:
         """Return the noise of its readings as that of another recording may be in blocks of so many samples, an
         interval [s] apart: a filter of an amplifier has its time, or follows the sampling.
         """
-        return in_blocks(self.reading, interval * self.size / self.interval), in_blocks(self.reading, size)
+        own = self.reading if self.reading.memory > 1 else self.reading.of_mains
+        return in_blocks(own, interval * self.size / self.interval), in_blocks(own, size)
 
     def with_noise(self, noise: Noise) -> Experiment:
         """Return the experiment with another noise [N] of its averaged misfit."""
@@ -138,7 +139,8 @@ class Experiment:
         if noise.memory > 1:
             # Averaging removed a part of the noise of the samples; the readings still have it.
             removed = max(reading.level**2 - self.noise**2, 0.0)
-            reading = Noise(float(np.sqrt(noise.level**2 + removed)), noise.memory * self.size)
+            level = float(np.sqrt(noise.level**2 + removed))
+            reading = Noise(level, noise.memory * self.size, reading.hum)
         return replace(self, noise=max(noise.level, self.least_noise), reading=reading)
 
 
@@ -173,6 +175,7 @@ def experiment_in_blocks(
     averaged_misfit = blocks.mean(misfit)
     # Changes as quick as the blocks are told from noise later, by the residual of the saturated model.
     known = [in_blocks(noise, blocks.size) for noise in known if noise.memory > blocks.size]
+    known.append(reading.of_mains)
     of_blocks = _noise_along(averaged, averaged_misfit, interval * blocks.size, known)
     noise = reading.level * np.sqrt(min(reading.memory / blocks.size, 1.0))
     # Blocks within one memory are not independent, so that a white noise of theirs is a part of it only.

@@ -142,6 +142,22 @@ def test_recordings_of_a_series_have_the_noise_of_one_amplifier(follows_sampling
     assert other.reading.level == pytest.approx(FORCE_NOISE, rel=0.1)
 
 
+def test_recordings_of_a_series_have_the_hum_of_one_amplifier() -> None:
+    """8 N RMS at 50.03 Hz: within 40 s it drifts against cycles of 20 s, within 8 s hardly against those of 2 s."""
+    several = []
+    for name, duration, period in (("slow", 40.0, 20.0), ("fast", 8.0, 2.0)):
+        time = np.arange(0.0, duration, 0.005)
+        x = 0.02 * (1.0 - np.abs(2.0 * (time / period % 1.0) - 1.0))
+        silent = Recording(name, time, x, np.full(time.size, np.inf), np.zeros(time.size))
+        hum = 8.0 * np.sqrt(2.0) * np.sin(2.0 * np.pi * 50.03 * time + 1.0)
+        noise = 3.0 * np.random.default_rng(1).standard_normal(time.size)
+        several.append(replace(silent, force=simulate(TireModel(), silent) + hum + noise))
+    alone = [dataset_of([r], TireModel()).experiments[0].reading.hum for r in several]
+    together = [e.reading.hum for e in dataset_of(several, TireModel()).experiments]
+    assert alone == [pytest.approx(8.0, rel=0.05), 0.0]
+    assert together == [pytest.approx(8.0, rel=0.05)] * 2
+
+
 def test_false_readings_do_not_hide_a_filtered_noise() -> None:
     """Two readings of twenty times the noise in 600: they are most of its whole variation."""
     noise = lfilter(*butter(2, 0.13), np.random.default_rng(11).normal(size=700))[100:]
