@@ -151,7 +151,8 @@ def _moved_by(name: str, believed: Believed, report: Progress) -> _Moved | None:
 
     def tire(at: FloatArray) -> TireModel:
         values = plain.copy()
-        values[[p.index for p in order[: at.size]]] += at * usual[: at.size]
+        for p, moved in zip(order, at * usual[: at.size], strict=False):
+            values[p.index] = min(max(plain[p.index] + moved, p.minimum), p.maximum)
         return arranged(believed.tire, [(name, tuple(values.tolist()))])
 
     def replayed(at: FloatArray) -> FloatArray:

@@ -15,6 +15,7 @@ import polars as pl
 import pytest
 from click.testing import CliRunner
 from numpy.typing import NDArray
+from radialtire import CATALOGUE
 from rivals import looking_for
 from tirelab.cli import main
 from tirelab.diagnosis import moved_simulation
@@ -25,6 +26,7 @@ from tirelab.diagnosis.verdict import FitErrors, Verdict
 from tirelab.errors import TirelabError
 from tirelab.estimation.findings import NamedEffect
 from tirelab.recordings.recording import Recording
+from tirelab.simulation.simulate import upstream_names
 
 FloatArray = NDArray[np.float64]
 Simulation = Callable[[FloatArray], FloatArray]
@@ -135,6 +137,16 @@ def test_what_only_acts_beside_the_simulation_stays_what_it_is(monkeypatch: pyte
     _, x = motion()
     found = diagnosed_of(beside(recorded(x, x, play, rubbed(x)), play, monkeypatch), *BESIDE)
     assert [e.name for e in found.effects] == ["rate_independent_hysteresis"]
+
+
+@pytest.mark.parametrize("name", upstream_names())
+def test_a_strength_stays_within_its_bounds(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Friction of 400 N asks for more of an effect before the simulation than there can be."""
+    _, x = motion()
+    believed = beside(recorded(x, x, play, 10.0 * rubbed(x)), play, monkeypatch)
+    moved = moved_simulation._moved_by(name, believed, lambda sentence: None)
+    for value, parameter in zip(moved.values if moved else (), CATALOGUE[name].parameters, strict=False):
+        assert parameter.minimum <= value <= parameter.maximum
 
 
 def test_a_simulation_that_fails_on_another_deflection_keeps_the_verdict(
