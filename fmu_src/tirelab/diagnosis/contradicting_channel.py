@@ -114,8 +114,10 @@ def contradicting_channel(
 
 
 def _without(recording: Recorded, channel: str) -> Recorded:
-    """Return a recording without one of its channels."""
+    """Return a recording, and what was recorded before it, without one of its channels."""
+    changed: Any = recording
     if channel not in measured_of(recording):
         return recording
-    changed: Any = replace(recording, **{channel: None})  # type: ignore[type-var]
-    return changed  # type: ignore[no-any-return]
+    if (history := getattr(recording, "history", None)) is not None:
+        changed = replace(changed, history=_without(history, channel))
+    return replace(changed, **{channel: None})  # type: ignore[no-any-return]

@@ -149,21 +149,31 @@ def levels_by_load(
     first, and then more of what is left over the noise at these.
     """
     size, found = np.abs(load), before
+    loads = np.array([np.median(size[part]) for part in _parts_of(size, LOADS[-1])])
     for count in LOADS:
         parts = _parts_of(size, count)
+        numbers = np.array([part.sum() for part in parts])
+        if numbers.min() < FEWEST_IN_STATE:
+            break
         even = residual * before.of_load(load) / found.of_load(load)
-        levels = _levels_in(even, parts, least)
-        white = np.array([own[0] for own in levels])
-        known = known_part(np.array([part.sum() for part in parts]))
-        if len(levels) < 2 or not _differ(white, known):
-            continue
-        loads = np.array([np.median(size[part]) for part in _parts_of(size, LOADS[-1])])
+        levels = [known_levels(even, finer(STATE_LAGS), part) for part in parts]
+        white = np.array([max(float(own[0]), least) for own, _ in levels])
         at = np.array([np.sqrt(np.mean(size[part] ** 2)) for part in parts])
-        more = np.sqrt(np.interp(loads**2, at**2, white**2))
-        shape = replace(found, loads=tuple(loads.tolist()), by_load=tuple(found.of_load(loads) * more))
-        whole = float(np.sqrt(np.mean(shape.of_load(load) ** 2)))
-        found = replace(shape, by_load=tuple(float(factor) / whole for factor in shape.by_load))
+        factors = found.of_load(loads) * np.sqrt(np.interp(loads**2, at**2, white**2))
+        # What differs as much between lags at one load is what the force does there, and may do at all of them.
+        if max(map(_between_lags, levels)) > max(STAYS, float(np.sqrt(factors.max() / factors.min()))):
+            return before
+        if len(parts) > 1 and _differ(white, known_part(numbers)):
+            shape = replace(found, loads=tuple(loads.tolist()), by_load=tuple(factors.tolist()))
+            whole = float(np.sqrt(np.mean(shape.of_load(load) ** 2)))
+            found = replace(shape, by_load=tuple((factors / whole).tolist()))
     return found
+
+
+def _between_lags(levels: tuple[FloatArray, FloatArray]) -> float:
+    """Return by which factor levels over lags, with their `known_part`, differ beyond chance."""
+    own, known = levels
+    return float(np.max(own * known) / max(float(np.min(own / known)), 1e-300))
 
 
 def _parts_of(size: FloatArray, count: int) -> list[BoolArray]:

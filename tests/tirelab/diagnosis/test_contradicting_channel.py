@@ -67,3 +67,22 @@ def test_a_pressure_that_was_typed_in_refutes_no_leak() -> None:
     found = diagnose(replace(pressed(LEAK), pressure=np.full(TIME.size, 2e5)), catalogue=NAMES)
     assert [effect.name for effect in found.effects] == ["pressure_leak"]
     assert found.contradiction is None
+
+
+def test_what_was_recorded_before_a_held_out_part_is_taken_without_the_channel_too() -> None:
+    course = 1.0 + 0.05 * (1.0 - np.exp(-TIME / 20.0))
+    room = replace(
+        pressed(course), temperature=293.0 + 0.05 * np.random.default_rng(2).standard_normal(TIME.size)
+    )
+    fitted, kept = (
+        replace(
+            room,
+            **{
+                c: getattr(room, c)[part]
+                for c in ("time", "deflection", "surface_radius", "force", "temperature")
+            },
+        )
+        for part in (slice(0, 2000), slice(2000, None))
+    )
+    found = diagnose(fitted, held_out=replace(kept, history=fitted), catalogue=NAMES)
+    assert isinstance(found.contradiction, ContradictingChannel)
