@@ -102,11 +102,8 @@ def contradicting_channel(
             continue
         other = explain(*([_without(r, name) for r in several] for several in (recordings, held_out)))
         found = tuple(n for n in other.model.names if n in affected & refuted)
-        if (
-            found
-            and not other.remainder.unexplained
-            and len(other.effects) <= max(len(explanation.effects), 1)
-        ):
+        # What stays unexplained with the channel is one more that acts.
+        if found and not other.remainder.unexplained and len(other.effects) <= len(explanation.effects) + 1:
             names = tuple(r.name for r in recordings)
             errors = other.error_left, explanation.error_left
             return ContradictingChannel(names, other.model.names, *errors, channel=name, refuted=found)

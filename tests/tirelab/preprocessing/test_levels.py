@@ -165,8 +165,8 @@ def test_a_part_in_the_air_has_one_load() -> None:
 
 
 def test_a_misfit_that_lasts_at_one_load_is_no_noise_of_the_loads() -> None:
-    """Two halves of the loads look like one white noise each; between eight loads it is seen to grow with the lag."""
-    white = np.random.default_rng(9).standard_normal(8015)
-    lasting = 16.0 * np.convolve(white, np.ones(16) / 16.0, mode="valid")[:8000]
+    """It differs more between lags of one, two and three samples than the levels of the loads differ at one."""
+    white = np.random.default_rng(9).standard_normal(8002)
+    lasting = 4.0 * np.convolve(white, np.ones(3) / np.sqrt(3.0), mode="valid")
     steep = np.where((LOAD > 760.0) & (LOAD < 900.0), lasting, white[:8000])
     assert levels_by_load(steep, LOAD, 1e-3, EVEN) is EVEN
