@@ -17,7 +17,7 @@ from .output import Output, example, output_options
 
 if TYPE_CHECKING:
     from ..terrain import Profile, ProfileColumns, Ride
-    from ..terrain.ride import TireForce
+    from ..terrain.ride import HeldTire
 
 LOAD = 500.0
 """Load [N] where neither a load nor a path of the hub is given."""
@@ -152,7 +152,7 @@ def command(
 ) -> None:
     """Ride over the terrain of PROFILE (CSV with s [m] and z [m], or GPX), or over random or flat ground.
 
-    Prints the range of deflection and force, and how much of the ride lies outside the limits of the article's tire.
+    Prints the range of deflection and force, and how much of the ride lies outside the tire's limits.
     Writes ride.csv and ride.png.
     """
     from ..computing.staging import staged
@@ -168,9 +168,10 @@ def command(
         hub_path, notes = HubPath(height, position), (*notes, *table.notes)
     elif load is None:
         load = LOAD
+    ridden = _at_pressure(model, passage.inflation_pressure)
     result = ride(
         ground,
-        _at_pressure(model, passage.inflation_pressure),
+        ridden,
         speed=passage.speed,
         load=load,
         hub_path=hub_path,
@@ -185,11 +186,12 @@ def command(
             output.stage("drawing the animation")
             animate_ride(result, folder / "ride.gif")
     written = [str(output.out / name) for name in names]
+    notes += _of_effects(model, ridden)
     lines = _summary(result, model, () if output.quiet else notes)
     output.result([*lines, f"written: {', '.join(written)}"], _content(result, model, notes, written))
 
 
-def _at_pressure(tire: TireModel, text: str | None) -> TireModel | TireForce:
+def _at_pressure(tire: TireModel, text: str | None) -> TireModel | HeldTire:
     """Return the tire, or its force at a pressure that is given with its unit."""
     from ..recordings.units import UnitError, parse_quantity
     from ..terrain.ride import force_at
@@ -198,7 +200,7 @@ def _at_pressure(tire: TireModel, text: str | None) -> TireModel | TireForce:
         return tire
     try:
         return force_at(tire, {"pressure": parse_quantity(text, "Pa")})
-    except (UnitError, InputError) as error:
+    except (UnitError, InputError, TirelabError) as error:
         raise TirelabError(f"--inflation-pressure: {error}") from None
 
 
@@ -219,18 +221,34 @@ def _content(result: Ride, tire: TireModel, notes: tuple[str, ...], written: lis
     }
 
 
+def _of_effects(tire: TireModel, ridden: TireModel | HeldTire) -> tuple[str, ...]:
+    """Return the note on which effects of a tire act in the ride and which in its FMU alone, none where it has none."""
+    found, acting = [], []
+    if not isinstance(ridden, TireModel):
+        acting = [effect.name for effect, _ in ridden.acting.effects]
+        given = ridden.channels["pressure"]
+        own = next(value for _, channel, value in ridden.acting.channels if channel.name == "pressure")
+        found.append(
+            f"the tire's law is that at {own / 1e5:.4g} bar; its effect {', '.join(acting)} takes it to "
+            f"{given / 1e5:.4g} bar, and the tire file does not say between which pressures it was measured"
+        )
+    learned = [] if tire.remainder is None else ["learned remainder"]
+    others = [*(effect.name for effect, _ in tire.effects if effect.name not in acting), *learned]
+    if others and acting:
+        found.append(f"its other effects ({', '.join(others)}) act in the FMU")
+    elif others:
+        found.append(f"the tire's elastic law alone; its effects ({', '.join(others)}) act in the FMU")
+    return tuple(found)
+
+
 def _summary(result: Ride, tire: TireModel, notes: tuple[str, ...]) -> list[str]:
     touch, force = result.contact, result.radial_force
     length = touch.position[-1] - touch.position[0]
-    lines = [
+    return [
         f"{result.ground.name}: {length:.1f} m at {result.speed:g} m/s, {touch.position.size} positions",
         *(f"note: {note}" for note in notes),
         f"tire: {tire.name}",
         f"deflection {1000.0 * touch.deflection.min():.1f} to {1000.0 * touch.deflection.max():.1f} mm",
         f"radial force {force.min():.0f} to {force.max():.0f} N, mean {force.mean():.0f} N",
+        *result.report.sentences(),
     ]
-    if not tire.bare:
-        learned = [] if tire.remainder is None else ["learned remainder"]
-        names = ", ".join([*(effect.name for effect, _ in tire.effects), *learned])
-        lines.insert(2, f"note: the tire's elastic law alone; its effects ({names}) act in the FMU")
-    return lines + list(result.report.sentences())

@@ -29,6 +29,7 @@ LABELS = {
     Limit.FORCE_UNTESTED: "force untested",
     Limit.COARSE_GROUND: "ground data coarse",
     Limit.AIRBORNE: "off the ground",
+    Limit.SURFACE_UNTESTED: "surface untested",
 }
 
 LONGEST_TO_SCALE = 6.0

@@ -9,16 +9,17 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import CHANNELS, TireModel, check_measured
+from radialtire import CHANNELS, TestedRange, TireModel, check_measured
 from radialtire.hull1996 import WHEEL_RADIUS
 from radialtire.model import Law
 from radialtire.power_law import CM_PER_M
 
 from ..errors import TirelabError
+from ..recordings.plausibility import PRESSURES
 from ..simulation.simulate import SmoothedMotion, simulate
 from .contact import Contact, contact, hub_positions, rolling_path
 from .curvature import Ground
-from .limits import LimitReport, limit_report, limits
+from .limits import ARTICLES, LimitReport, limit_report, limits
 from .profile import Floats
 
 TireForce: TypeAlias = Callable[[Floats, Floats], Floats]
@@ -40,7 +41,8 @@ class Ride:
     """The ride of a wheel; arrays of shape (n,), one value per position of the hub.
 
     time [s] at the constant speed [m/s]; rolling_height: the hub's height without deflection [m];
-    radial_force: compressive, along the line from hub to ground [N]; limits: bits of `Limit`.
+    radial_force: compressive, along the line from hub to ground [N]; limits: bits of `Limit`;
+    tested: where the tire was measured, None where that is not known.
     """
 
     ground: Ground
@@ -51,6 +53,7 @@ class Ride:
     rolling_height: Floats
     radial_force: Floats
     limits: NDArray[np.uint16]
+    tested: TestedRange | None = ARTICLES
 
     @property
     def vertical_force(self) -> Floats:
@@ -66,9 +69,9 @@ class Ride:
 
     @cached_property
     def report(self) -> LimitReport:
-        """How much of the ride lay beyond the article's limits."""
+        """How much of the ride lay beyond the tire's limits."""
         length = float(self.contact.position[-1] - self.contact.position[0])
-        return limit_report(self.limits, length)
+        return limit_report(self.limits, length, self.tested)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +95,8 @@ def ride(
 
     The hub follows `hub_path`, from a multibody tool or a measurement; or, where `load` [N] is given instead, the path
     on which the tire carries that load upwards at every position: a ride so slow that nothing bounces. tire: a tire, of
-    which the elastic law acts, or a force (see TireForce), which is evaluated only where the wheel is on the ground.
+    which the elastic law acts, one at a pressure (see `force_at`), or a force (see TireForce), which is evaluated only
+    where the wheel is on the ground and counts as tested where the article's tire was.
 
     Raises TirelabError for paths that are not over the ground, and for loads that the tire cannot carry.
     """
@@ -101,6 +105,7 @@ def ride(
     if (load is None) == (hub_path is None):
         raise TirelabError("a ride follows either a load or a path of the hub; give one of the two")
     tire_force = law_force(tire.law) if isinstance(tire, TireModel) else tire
+    tested = tire.tested_range if isinstance(tire, TireModel | HeldTire) else ARTICLES
     given = None if hub_path is None else hub_path.position
     place = hub_positions(ground, wheel_radius) if given is None else np.asarray(given, dtype=np.float64)
     if np.any(np.diff(place) <= 0.0):
@@ -122,7 +127,8 @@ def ride(
         touch,
         rolling,
         force,
-        limits(touch, force, wheel_radius),
+        limits(touch, force, wheel_radius, tested),
+        tested,
     )
 
 
@@ -137,7 +143,27 @@ def law_force(law: Law) -> TireForce:
     return force
 
 
-def force_at(tire: TireModel, channels: Mapping[str, float]) -> TireForce:
+@dataclass(frozen=True)
+class HeldTire:
+    """The force of a tire whose channels are held at values [SI]; a TireForce.
+
+    acting: the tire's elastic law with the effects that read a channel; tested_range: that of the tire
+    """
+
+    acting: TireModel
+    channels: Mapping[str, float]
+    tested_range: TestedRange | None
+
+    def __call__(self, deflection: Floats, surface_radius: Floats) -> Floats:
+        """Return the force [N] at deflections [m] on surfaces of these radii [m]."""
+        count = deflection.size
+        still, order = np.zeros(count), np.arange(count, dtype=np.float64)
+        measured = {name: np.full(count, value) for name, value in self.channels.items()}
+        motion = SmoothedMotion(order, deflection, surface_radius, still, still, measured)
+        return simulate(self.acting, motion)
+
+
+def force_at(tire: TireModel, channels: Mapping[str, float]) -> HeldTire:
     """Return the force of a tire whose channels, such as the pressure, are held at values [SI].
 
     Its elastic law acts, with the effects that read one of them and depend on nothing but the deflection beside it.
@@ -153,20 +179,17 @@ def force_at(tire: TireModel, channels: Mapping[str, float]) -> TireForce:
     read = {effect.reads.channel for effect, _ in reading if effect.reads is not None}
     for name, value in channels.items():
         check_measured(known[name], value)
+        if name == "pressure" and not tire.is_part and not 0.0 <= value <= PRESSURES[1]:
+            raise TirelabError(
+                f"a gauge pressure of {value / 1e5:.3g} bar is none that a bicycle tire has "
+                f"(0 to {PRESSURES[1] / 1e5:.0f} bar); check its unit"
+            )
         if name not in read:
             raise TirelabError(
                 f"the tire {tire.name!r} does not say how its force depends on the {name}; tirelab diagnose finds that "
                 f"from recordings at several values, or write the effect that reads it into the tire file"
             )
-    at = TireModel(tire.law, reading, None)
-
-    def force(deflection: Floats, surface_radius: Floats) -> Floats:
-        count = deflection.size
-        still, order = np.zeros(count), np.arange(count, dtype=np.float64)
-        measured = {name: np.full(count, value) for name, value in channels.items()}
-        return simulate(at, SmoothedMotion(order, deflection, surface_radius, still, still, measured))
-
-    return force
+    return HeldTire(TireModel(tire.law, reading, None), dict(channels), tire.tested_range)
 
 
 def constant_load_path(

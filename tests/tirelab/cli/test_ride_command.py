@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import tirelab.terrain
 from click.testing import CliRunner
-from radialtire import CATALOGUE, TireModel, write_tire
+from radialtire import CATALOGUE, PowerLaw, TestedRange, TireModel, write_tire
 from tirelab.cli.ride import command
 from tirelab.terrain.iso8608 import GEOMETRIC_MEAN
 
@@ -162,3 +162,52 @@ def test_the_pressure_is_given_with_its_unit(tmp_path: Path) -> None:
     wrong = CliRunner().invoke(command, [*map(str, flat), "--inflation-pressure", "1.5"])
     assert wrong.exit_code != 0
     assert "is no pressure" in wrong.output
+
+
+@pytest.mark.usefixtures("undrawn")
+@pytest.mark.parametrize(
+    ("pressure", "said"), [("60bar", "60 bar is none that a bicycle tire has"), ("-0.9bar", "(0 to 15 bar)")]
+)
+def test_a_pressure_that_no_tire_has_is_refused(tmp_path: Path, pressure: str, said: str) -> None:
+    write_tire(
+        TireModel(effects=((CATALOGUE["inflation_pressure"], (1.0, 3e5, 1.0)),)), tmp_path / "tire.json"
+    )
+    options = ("--length", "4", "--tire", str(tmp_path / "tire.json"), f"--inflation-pressure={pressure}")
+    refused = CliRunner().invoke(command, options)
+    assert refused.exit_code == 2
+    assert "--inflation-pressure: a gauge pressure of" in refused.output
+    assert said in refused.output
+    assert len(refused.output.splitlines()) == 1
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_effect_that_acts_is_not_said_to_act_in_the_fmu_alone(tmp_path: Path) -> None:
+    pressure, damping = CATALOGUE["inflation_pressure"], CATALOGUE["viscous_damping"]
+    damped = (damping, tuple(p.start for p in damping.parameters))
+    for effects in ((), (damped,)):
+        write_tire(TireModel(effects=((pressure, (1.0, 3e5, 1.0)), *effects)), tmp_path / "tire.json")
+        flat = ("--length", "4", "--load", "275.45", "--tire", tmp_path / "tire.json")
+        output = run(*flat, "--inflation-pressure", "1.5bar")
+        assert "the tire's law is that at 3 bar; its effect inflation_pressure takes it to 1.5 bar" in output
+        assert ("other effects (viscous_damping) act in the FMU" in output) == bool(effects)
+        assert "elastic law alone" not in output
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_tire_beyond_its_own_tested_range(tmp_path: Path) -> None:
+    flat_alone = TestedRange(-1e-5, 1e-5, 0.005, 150.0)
+    write_tire(TireModel(PowerLaw(400.0, 1.5), tested_range=flat_alone), tmp_path / "small.json")
+    small = ("--tire", tmp_path / "small.json")
+    output = run("--length", "8", "--obstacle", "log", *small)
+    assert (
+        "This tire was measured to 0.5 cm and 150 N on ground that is flat; its model cannot be trusted"
+        in output
+    )
+    assert "100.0 % deflection beyond the 0.5 cm tested" in output
+    assert "100.0 % force beyond the 150 N tested" in output
+    assert "% ground of other curvature than that tested, flat" in output
+    held = run("--length", "4", "--load", "100", *small)
+    assert "on ground that is flat; its model holds along all of the 3.3 m ridden." in held
+    write_tire(TireModel(tested_range=None), tmp_path / "small.json")
+    unknown = run("--length", "4", *small)
+    assert "Where this tire was measured is not known; by the article's limits its model holds" in unknown

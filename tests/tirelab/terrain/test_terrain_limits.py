@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from radialtire import TestedRange
 from tirelab.terrain import (
     DOUBTS,
     Limit,
@@ -182,3 +183,34 @@ def test_a_little_doubt_is_never_rounded_to_none() -> None:
 def test_only_the_air_is_no_doubt() -> None:
     assert Limit(sum(Limit)) == DOUBTS | Limit.AIRBORNE
     assert not DOUBTS & Limit.AIRBORNE
+
+
+def test_a_tires_own_range_is_what_counts() -> None:
+    """On a crest of 3.3 m (0.3 /m): outside a range of flat ground, within one to 1 m; and ground of 100 m is flat."""
+    flat_alone, to_a_metre = TestedRange(-1e-5, 1e-5, 0.02, 600.0), TestedRange(-1e-5, 1.0, 0.02, 600.0)
+
+    def met(height: float, tested: TestedRange | None, deflection: float = 0.01) -> Limit:
+        ground = ground_from(sine(8.0, (height, 2.0)))
+        where = np.array([2.5])  # a crest
+        touch = contact(ground, where, rolling_path(ground, where) - deflection)
+        return Limit(int(limits(touch, np.array([500.0]), WHEEL, tested)[0]))
+
+    assert met(0.03, flat_alone) == Limit.SURFACE_UNTESTED
+    assert met(0.03, to_a_metre) == Limit(0)
+    assert met(0.001, flat_alone) == Limit(0)
+    assert met(0.03, to_a_metre, 0.021) == Limit.DEFLECTION_UNTESTED
+    assert met(0.03, None, 0.021) == Limit(0)
+
+
+def test_an_edge_is_sharper_than_any_ground_tested() -> None:
+    ground = ground_from(place(flat(4.0), stick(0.0115), 2.0), 0.0005)
+    where = np.array([2.0])
+    touch = contact(ground, where, rolling_path(ground, where) - 0.001)
+    on_sticks = TestedRange(-1e-5, 1.0 / 0.008, 0.02, 600.0)
+    assert limits(touch, np.array([50.0]))[0] & Limit.SHARP_EDGE
+    assert not limits(touch, np.array([50.0]), WHEEL, on_sticks)[0] & Limit.SHARP_EDGE
+    words = limit_report(np.array([Limit.SHARP_EDGE.value]), 3.0, on_sticks).sentences()
+    assert words[0].startswith(
+        "This tire was measured to 2 cm and 600 N on ground that is flat to 0.8 cm convex;"
+    )
+    assert words[1] == "100.0 % sharp edge in contact (radius below 0.8 cm, or a corner)"
