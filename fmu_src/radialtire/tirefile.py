@@ -103,7 +103,7 @@ def to_text(tire: TireModel) -> str:
 def from_text(text: str) -> TireModel:
     """Return the tire described by the text of a tire file, or raise TireFileError."""
     try:
-        content = json.loads(text, parse_int=_whole)
+        content = json.loads(text.removeprefix("\ufeff"), parse_int=_whole, object_pairs_hook=_once)
     except (json.JSONDecodeError, RecursionError) as error:
         raise TireFileError(f"not JSON ({error}); compare it with the tire files of the examples") from None
     known = {
@@ -121,12 +121,12 @@ def from_text(text: str) -> TireModel:
         "curve",
     }
     entry = _entry(content, "the tire", known, {"schema", "law"})
-    if entry["schema"] != SCHEMA:
+    if isinstance(entry["schema"], bool) or entry["schema"] != SCHEMA:
         raise TireFileError(
             f"schema {entry['schema']!r} is not {SCHEMA}; use the version that wrote the file"
         )
     try:
-        return TireModel(
+        tire = TireModel(
             law=_law(entry["law"]),
             effects=tuple(sorted(_effects(entry.get("effects", [])), key=lambda e: _order(e[0].name))),
             tested_range=_tested_range(entry.get("tested_range")),
@@ -141,6 +141,8 @@ def from_text(text: str) -> TireModel:
         )
     except ParameterError as error:
         raise TireFileError(str(error)) from None
+    _check_tested_range(tire)
+    return tire
 
 
 def with_parameters(tire: TireModel, values: dict[str, float]) -> TireModel:
@@ -198,6 +200,16 @@ def _whole(digits: str) -> float:
     """Return an integer of a file; one beyond every double is infinite, as 1e400 is, and so refused by its key."""
     number = float(digits)
     return int(digits) if math.isfinite(number) else number
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object of a file whose entries are all named once."""
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise TireFileError(f"the entry {key!r} stands twice in one object; keep one of the two")
+        found[key] = value
+    return found
 
 
 def _order(name: str) -> tuple[int, int]:
@@ -329,3 +341,24 @@ def _tested_range(value: Any) -> TestedRange | None:
         if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
             raise TireFileError(f"tested_range {name} = {number!r} is not a finite number")
     return TestedRange(**{name: float(number) for name, number in entry.items()})
+
+
+def _check_tested_range(tire: TireModel) -> None:
+    """Raise TireFileError where nothing, or nothing that can be, lies in the tested range of a file."""
+    tested = tire.tested_range
+    if tested is None:
+        return
+    if tested.curvature_min > tested.curvature_max:
+        raise TireFileError(
+            f"tested_range curvature_min = {tested.curvature_min:g} is more than curvature_max = "
+            f"{tested.curvature_max:g}; exchange the two"
+        )
+    if not tire.is_part:  # a part may have been pulled alone
+        for name, number in (("deflection_max", tested.deflection_max), ("force_max", tested.force_max)):
+            if number <= 0.0:
+                raise TireFileError(f"tested_range {name} = {number:g} is not allowed; it must be above 0")
+    if tested.deflection_max > tire.deflection_highest:
+        raise TireFileError(
+            f"tested_range deflection_max = {tested.deflection_max:g} m is not allowed; it must be at most "
+            f"{tire.deflection_highest:g} m: is it in mm?"
+        )

@@ -251,3 +251,48 @@ def test_a_part_without_air_says_so_in_its_file() -> None:
     assert "inflated" not in to_text(TireModel())
     with pytest.raises(TireFileError, match="inflated must be true or false, not 0"):
         from_text(to_text(part).replace('"inflated": false', '"inflated": 0'))
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        (
+            {"curvature_min": 5, "curvature_max": -5},
+            "curvature_min = 5 is more than curvature_max = -5; exchange the two",
+        ),
+        ({"deflection_max": -1}, "deflection_max = -1 is not allowed; it must be above 0"),
+        ({"force_max": 0}, "force_max = 0 is not allowed; it must be above 0"),
+        (
+            {"deflection_max": 20},
+            "deflection_max = 20 m is not allowed; it must be at most 0.33 m: is it in mm?",
+        ),
+    ],
+)
+def test_a_tested_range_in_which_nothing_can_lie_is_refused(changed: dict[str, float], said: str) -> None:
+    tested = {"curvature_min": -1, "curvature_max": 1, "deflection_max": 0.02, "force_max": 100}
+    with pytest.raises(TireFileError, match=f"^tested_range {re.escape(said)}$"):
+        from_text(json.dumps({"schema": 1, "law": LAW, "tested_range": {**tested, **changed}}))
+
+
+def test_a_part_may_have_been_pulled_alone_and_far() -> None:
+    pulled = TireModel(PowerLaw(10.0, 1.0), (), TestedRange(-1e-5, 1e-5, -0.01, -5.0), two_sided=True)
+    assert from_text(to_text(pulled)) == pulled
+    long = TireModel(PowerLaw(10.0, 1.0), (), TestedRange(-1e-5, 1e-5, 2.0, 5.0), inflated=False)
+    assert from_text(to_text(long)) == long
+
+
+def test_an_entry_that_stands_twice_is_refused() -> None:
+    twice = '{"schema": 1, "law": {"name": "power_law", "parameters": {"exponent": 1.4, "exponent": 1.0}}}'
+    with pytest.raises(TireFileError, match=r"^the entry 'exponent' stands twice in one object; keep one"):
+        from_text(twice)
+
+
+def test_a_schema_is_a_number() -> None:
+    with pytest.raises(TireFileError, match="schema True is not 1; use the version that wrote the file"):
+        from_text('{"schema": true, "law": {"name": "hull1996"}}')
+
+
+def test_a_file_with_the_mark_of_its_encoding_is_read(tmp_path: Path) -> None:
+    path = written(tmp_path, "\ufeff" + to_text(TireModel()))
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf")
+    assert read_tire(path) == TireModel()
