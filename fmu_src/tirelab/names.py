@@ -1,4 +1,4 @@
-"""Names that a verdict may use besides those of the catalogue's effects, and how powers of ten are written."""
+"""Names that a verdict may use besides those of the catalogue's effects, and how numbers are written in sentences."""
 
 UNKNOWN = "unknown"
 """Something that no effect of the catalogue explains."""
@@ -6,7 +6,19 @@ UNKNOWN = "unknown"
 REFITTED_LAW = "recalibration"
 """The elastic law with other coefficients than the baseline's."""
 
+PLAIN_MOST = 1e15
+"""Numbers up to here are written without a power of ten."""
+
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def plain(value: float, digits: int) -> str:
+    """Return a number to so many significant digits, without noughts at its end, for a sentence.
+
+    All digits before the point are written, and a power of ten where it is small.
+    """
+    text = f"{value:.{digits}g}"
+    return f"{value:.0f}" if "e+" in text and abs(value) < PLAIN_MOST else with_power(text)
 
 
 def with_power(text: str) -> str:

@@ -13,6 +13,7 @@ from radialtire import write_tire
 from radialtire.tirefile import LAWS
 
 from ..errors import TirelabError
+from ..names import plain
 from ..recordings.reading import Reading
 from .options import FILE, SentenceCommand, reading_options
 from .output import Output, example, output_options
@@ -206,7 +207,7 @@ def _part(
         if misfit and law.rmse > MISFIT * curve.rmse:
             own = words.identify(words.recordings, CURVE, output.out)
             console.print(
-                f"- a curve leaves {curve.rmse:.2g} N, if loading and unloading are alike: `{own}`",
+                f"- a curve leaves {plain(curve.rmse, 2)} N, if loading and unloading are alike: `{own}`",
                 markup=False,
                 soft_wrap=True,
             )
@@ -277,7 +278,7 @@ def _print(console: Console, found: Identification) -> None:
     console.print(surface_table(found))
     console.print(constant_table(found))
     console.print(
-        f"RMSE of the law over all samples: {found.rmse:.3g} N (two stages: {found.two_stage_rmse:.3g} N)"
+        f"RMSE of the law over all samples: {plain(found.rmse, 3)} N (two stages: {plain(found.two_stage_rmse, 3)} N)"
     )
     for note in found.notes:
         console.print(f"- {note}", markup=False, soft_wrap=True)

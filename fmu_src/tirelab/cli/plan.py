@@ -11,6 +11,7 @@ import click
 from radialtire import TireModel, read_tire
 
 from ..errors import TirelabError
+from ..names import plain
 from .option_group import option_group
 from .options import FILE, SentenceCommand, check_files
 from .output import Output, example, output_options, progress
@@ -146,7 +147,7 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
         f"{1.0 / rig.sampling:g} Hz, {rig.noise:g} N of noise",
         f"{len(plan.drives)} recording{'s' if len(plan.drives) > 1 else ''}, {plan.seconds:.0f} s of {rig.time:g} s:",
         *(
-            f"  {out / file_name(number, drive)}: {drive.duration:.0f} s, to {1e3 * drive.fastest:.3g} mm/s"
+            f"  {out / file_name(number, drive)}: {drive.duration:.0f} s, to {plain(1e3 * drive.fastest, 3)} mm/s"
             for number, drive in enumerate(plan.drives, 1)
         ),
         f"{told} of {asked} pairs are told apart in 19 of 20 tests at {100.0 * plan.size:g} % of the peak force; "

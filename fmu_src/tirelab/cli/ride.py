@@ -11,6 +11,7 @@ from radialtire import InputError, TireModel, read_tire
 from radialtire.hull1996 import WHEEL_RADIUS
 
 from ..errors import TirelabError
+from ..names import plain
 from .option_group import option_group
 from .options import FILE, SentenceCommand
 from .output import Output, example, output_options
@@ -229,8 +230,8 @@ def _of_effects(tire: TireModel, ridden: TireModel | HeldTire) -> tuple[str, ...
         given = ridden.channels["pressure"]
         own = next(value for _, channel, value in ridden.acting.channels if channel.name == "pressure")
         found.append(
-            f"the tire's law is that at {own / 1e5:.4g} bar; its effect {', '.join(acting)} takes it to "
-            f"{given / 1e5:.4g} bar, and the tire file does not say between which pressures it was measured"
+            f"the tire's law is that at {plain(own / 1e5, 4)} bar; its effect {', '.join(acting)} takes it to "
+            f"{plain(given / 1e5, 4)} bar, and the tire file does not say between which pressures it was measured"
         )
     learned = [] if tire.remainder is None else ["learned remainder"]
     others = [*(effect.name for effect, _ in tire.effects if effect.name not in acting), *learned]

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 from radialtire import TireModel, read_tire
 
+from ..names import plain
 from .options import FILE, SentenceCommand
 from .output import Output, example, output_options
 
@@ -83,7 +84,7 @@ def command(
         for recording in recordings
     ]
     lines = [
-        f"{output.out / recording.name}.csv: to {100.0 * recording.deflection.max():.4g} cm and "
+        f"{output.out / recording.name}.csv: to {plain(100.0 * recording.deflection.max(), 4)} cm and "
         f"{recording.force.max():.0f} N, {recording.time.size} samples"
         for recording in recordings
     ]

@@ -28,7 +28,7 @@ import numpy as np
 from radialtire import TireModel
 
 from ..estimation.explanation import Explanation
-from ..names import REFITTED_LAW
+from ..names import REFITTED_LAW, plain
 from ..preprocessing.data_checks import compared
 from ..preprocessing.driven import FEWEST_EVENTS
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
@@ -241,7 +241,7 @@ def _name_of(kept: Chosen, recordings: Sequence[Recorded]) -> str:
     more = " and the ends of the others" if len(recordings) > 1 else ""
     if not is_timed([r]):
         return f"samples {first + 1}-{last + 1}{more}"
-    return f"time block {float(r.time[first]):.4g}-{float(r.time[last]):.4g} s{more}"
+    return f"time block {plain(float(r.time[first]), 4)}-{plain(float(r.time[last]), 4)} s{more}"
 
 
 def _shows_as_much(

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..estimation.explanation import Explanation
+from ..names import plain
 from ..preprocessing.motion import FloatArray, IndexArray, Motion
 from ..preprocessing.samples import Recorded
 from ..report.titles import newtons, set_title
@@ -99,7 +100,7 @@ class _Difference:
             )
         else:
             ratio = (1.0 + self.amounts[most]) / (1.0 + self.amounts[least]) - 1.0
-            between = f"the force were up to {100.0 * ratio:.2g} % larger in one than in another"
+            between = f"the force were up to {plain(100.0 * ratio, 2)} % larger in one than in another"
         return f"It is as if {between}: least in {names[least]}, most in {names[most]}."
 
 

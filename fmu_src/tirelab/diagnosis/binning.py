@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from radialtire import FLAT_RADIUS
 
+from ..names import plain
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment, Recorded
 
@@ -181,4 +182,4 @@ def _radius(curvature: FloatArray) -> FloatArray:
 def _surface(radius: float) -> str:
     if not np.isfinite(radius):
         return "flat"
-    return f"{'convex' if radius > 0.0 else 'concave'}, radius {abs(radius):.4g} m"
+    return f"{'convex' if radius > 0.0 else 'concave'}, radius {plain(abs(radius), 4)} m"

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..estimation.findings import FittedModel
+from ..names import plain
 from ..planning.waveforms import WAVEFORMS, Limits, motion, sample_times
 from ..preprocessing.motion import FloatArray
 from ..recordings.zero import millimetres
@@ -81,9 +82,9 @@ class DiscriminatingTest:
         """What to do, or that no motion separates the two sets."""
         path, asked = self.test.deflection, question(*self.between)
         place = f" on {_surface(float(self.test.surface_radius[0]))}" if self.ground else ""
-        differ = f"{self.typical:.2g} times the noise in a typical sample"
+        differ = f"{plain(self.typical, 2)} times the noise in a typical sample"
         if self.missed > 0.0:
-            differ += f", {self.typical / self.missed:.2g} times what the forms of the effects may miss"
+            differ += f", {plain(self.typical / self.missed, 2)} times what the forms of the effects may miss"
         if not self.sufficient:
             none = f"No motion within the rig's limits decides {asked}: the forces would differ by"
             if self.typical < INVISIBLE:
@@ -169,4 +170,4 @@ def expected_gain(samples: int, different: float, missed: float) -> float:
 def _surface(radius: float) -> str:
     if not np.isfinite(radius):
         return "flat ground"
-    return f"a {'convex' if radius > 0.0 else 'concave'} surface of radius {100.0 * abs(radius):.4g} cm"
+    return f"a {'convex' if radius > 0.0 else 'concave'} surface of radius {plain(100.0 * abs(radius), 4)} cm"

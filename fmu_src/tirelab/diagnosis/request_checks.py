@@ -18,6 +18,7 @@ from radialtire import TireModel
 from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
+from ..names import plain
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.driven import FEWEST_EVENTS
 from ..preprocessing.noise import NEGLIGIBLE
@@ -53,7 +54,11 @@ def check_apart(read: Sequence[tuple[Path, Recording]], fitted: int | None = Non
             if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
                 first, last = max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1])
                 count = int(np.sum((one.time >= first) & (one.time <= last)))
-                shared = f"{first:.6g} to {last:.6g} s" if one.timed else f"{count} sample{'s' * (count > 1)}"
+                shared = (
+                    f"{plain(first, 6)} to {plain(last, 6)} s"
+                    if one.timed
+                    else f"{count} sample{'s' * (count > 1)}"
+                )
                 raise TirelabError(
                     f"{other_file} and {file} share {shared}; give each part of a file once "
                     "(a range includes both ends)"
@@ -118,8 +123,9 @@ def beyond_fitted(fitted: Sequence[Recording], kept: Sequence[Recording]) -> lis
     least = min(float(recording.deflection.min()) for recording in fitted)
     most = max(float(recording.deflection.max()) for recording in fitted)
     return [
-        f"{100.0 * share:.0f} % of {r.name} lie beyond the deflections fitted on their surface, {1e3 * least:.3g} to "
-        f"{1e3 * most:.3g} mm in all: there the law is extrapolated, and its error says nothing of the effects"
+        f"{100.0 * share:.0f} % of {r.name} lie beyond the deflections fitted on their surface, "
+        f"{plain(1e3 * least, 3)} to {plain(1e3 * most, 3)} mm in all: there the law is extrapolated, and its error "
+        "says nothing of the effects"
         for r, share in zip(kept, (1.0 - float(k.mean()) for k in known), strict=True)
         if share > NEGLIGIBLE
     ]
@@ -132,9 +138,9 @@ def pulls_told(recordings: Sequence[Recording], tire: TireModel) -> list[str]:
         if least := pull_of(r.force):
             zero = quantity_text("force", float(f"{least:.3g}"))
             told.append(
-                f"the force of {r.name} goes down to {least:.3g} N, and a tire does not pull: if the load cell was "
-                f"not zeroed, give what it reads without load, as in --zero force={zero}; if this is a part that is "
-                "held at both ends, identify it with --part"
+                f"the force of {r.name} goes down to {plain(least, 3)} N, and a tire does not pull: if the load "
+                f"cell was not zeroed, give what it reads without load, as in --zero force={zero}; if this is a "
+                "part that is held at both ends, identify it with --part"
             )
     return told
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
-from ..names import REFITTED_LAW, UNKNOWN
+from ..names import REFITTED_LAW, UNKNOWN, plain
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.levels import white_level
 from ..preprocessing.noise import Noise
@@ -128,7 +128,7 @@ def slow_noise(
             continue
         lasts = f"{noise.memory} samples"
         if is_timed([recording]):
-            lasts = f"{noise.memory * float(np.median(np.diff(recording.time))):.2g} s"
+            lasts = f"{plain(noise.memory * float(np.median(np.diff(recording.time))), 2)} s"
         told.append(
             f"Of the noise of {newtons(noise.level)} in {recording.name} only {newtons(quick)} change from one reading "
             f"to the next; the rest lasts for {lasts} and follows no motion: record at rest. If the force is quieter "

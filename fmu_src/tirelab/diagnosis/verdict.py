@@ -14,7 +14,7 @@ from radialtire.tirefile import to_text
 
 from ..errors import TirelabError
 from ..estimation.findings import Evidence, NamedEffect, Remainder
-from ..names import REFITTED_LAW, UNKNOWN
+from ..names import REFITTED_LAW, UNKNOWN, plain
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import Recorded
 from ..recordings.recording import Recording
@@ -135,8 +135,9 @@ class Verdict:
         said = headline(names, self.unexplained, False, left, changed).removesuffix(".")
         alternatives = f", {len(self.alternatives)} alternative" if self.alternatives else ""
         return (
-            f"Verdict({said!r}, {100.0 * self.confidence:.0f} % sure, {fit.before:.3g} -> {fit.after:.3g} N, "
-            f"noise {fit.noise:.3g} N{alternatives}{'s' if len(self.alternatives) > 1 else ''})"
+            f"Verdict({said!r}, {100.0 * self.confidence:.0f} % sure, {plain(fit.before, 3)} -> "
+            f"{plain(fit.after, 3)} N, noise {plain(fit.noise, 3)} "
+            f"N{alternatives}{'s' if len(self.alternatives) > 1 else ''})"
         )
 
     def _repr_html_(self) -> str:

@@ -12,6 +12,7 @@ import fmpy
 from fmpy.model_description import ModelDescription
 
 from ..errors import TirelabError
+from ..names import plain
 
 LARGEST = 8 << 30
 """Bytes of an archive's content above which it is refused: an FMU with its libraries has some hundred megabytes."""
@@ -56,8 +57,9 @@ def unpack(archive: Path, folder: Path) -> None:
             free = shutil.disk_usage(folder if folder.exists() else folder.parent).free
             if size > free:
                 raise TirelabError(
-                    f"{archive} unpacks to {size / 1e9:.2g} GB, and {folder.parent} has {free / 1e9:.2g} GB left; make "
-                    "room, or name another folder in the environment variable TMPDIR"
+                    f"{archive} unpacks to {plain(size / 1e9, 2)} GB, and {folder.parent} has "
+                    f"{plain(free / 1e9, 2)} GB left; make room, or name another folder in the environment variable "
+                    "TMPDIR"
                 )
             members.extractall(folder)
     except DAMAGE as error:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from ..preprocessing.driven import Driven
 from ..preprocessing.motion import motion_of
 from ..preprocessing.noise import noise_of
@@ -54,4 +55,7 @@ def misfit_sentence(rmse: float, noise: float, command: str, law: str = "the law
         return ""
     step = f"but no diagnosis can say what: {refused}" if refused else f"try `{command}`"
     mark = ", " if refused else ": "
-    return f"{law} leaves {rmse:.2g} N beside {noise:.2g} N of noise, so something else acts here{mark}{step}"
+    return (
+        f"{law} leaves {plain(rmse, 2)} N beside {plain(noise, 2)} N of noise, so something else acts "
+        f"here{mark}{step}"
+    )

@@ -10,6 +10,7 @@ from radialtire import CATALOGUE, FLAT_RADIUS, ParameterError, PowerLaw, TestedR
 from radialtire.part_curve import PartCurve
 
 from ..errors import TirelabError
+from ..names import plain
 from ..recordings.counting import MOST_MOVED
 from ..recordings.recording import Recording
 from ..recordings.sign_convention import mass_alike
@@ -67,14 +68,14 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
     x0 = 1e-3 * fit.value("x0")
     if abs(x0) > FARTHEST:
         raise TirelabError(
-            f"the force begins at {1e3 * x0:.3g} mm, which is rather a gauge's zero than a gap; give what it reads "
-            "there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
+            f"the force begins at {plain(1e3 * x0, 3)} mm, which is rather a gauge's zero than a gap; give what it "
+            "reads there, as the file counts: tirelab inspect --part FILE --zero deflection=..."
         )
     symbol, scale = ("k", 10.0) if fit.name == "linear_gap" else ("A", 1.0)  # N/mm to N/cm
     law = _power_law(fit, max(scale * fit.value(symbol), LEAST_SPRING), recordings)
     if law.coefficient == LEAST_SPRING:
         raise TirelabError(
-            f"the law {fit.name} has {symbol} = {fit.value(symbol):.3g}; {_other_laws(recordings)}"
+            f"the law {fit.name} has {symbol} = {plain(fit.value(symbol), 3)}; {_other_laws(recordings)}"
         )
     gap = next(effect for effect in CATALOGUE.values() if effect.holds_gap)
     effects = ((gap, (-x0,)),)
@@ -112,8 +113,8 @@ def curve_advice(tire: TireModel, recordings: Sequence[Recording]) -> str:
     if not (common > spring and common > reading_noise(recordings)):
         return ""
     return (
-        f"the force rises and falls with the deflection in and out alike, by {common:.2g} N, and the spring of this "
-        f"law by {spring:.2g} N, as with detents or a snap-through"
+        f"the force rises and falls with the deflection in and out alike, by {plain(common, 2)} N, and the spring "
+        f"of this law by {plain(spring, 2)} N, as with detents or a snap-through"
     )
 
 
@@ -124,8 +125,9 @@ def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:
     value, deviation = next((v, d) for s, v, d, _ in fit.constants if s == symbol)
     if value + SURE * deviation < 0.0:
         raise TirelabError(
-            f"the law {fit.name} has {symbol} = {value:.3g}, a force that falls as the deflection grows, which a tire "
-            f"file does not hold as a power; check the signs of force and deflection; {_other_laws(recordings)}"
+            f"the law {fit.name} has {symbol} = {plain(value, 3)}, a force that falls as the deflection grows, "
+            "which a tire file does not hold as a power; check the signs of force and deflection; "
+            f"{_other_laws(recordings)}"
         )
     if scale * value <= LEAST_SPRING:
         return _without_spring(constant_fit(recordings).value("F0"))
@@ -151,7 +153,7 @@ def _exponent(fit: LawFit, recordings: Sequence[Recording]) -> float:
     least, most = EXPONENT_BOUNDS
     if not least <= exponent <= most:
         raise TirelabError(
-            f"the law {fit.name} has B = {exponent:.3g}, and a tire file holds {least:g} to {most:g}; "
+            f"the law {fit.name} has B = {plain(exponent, 3)}, and a tire file holds {least:g} to {most:g}; "
             f"{_other_laws(recordings)}"
         )
     return exponent
@@ -171,8 +173,8 @@ def springless(fit: LawFit, tire: TireModel) -> str:
         return ""
     symbol, value, deviation, unit = next(c for c in fit.constants if c[0] in ("k", "A"))
     return (
-        f"{symbol} = {value:.3g} ± {deviation:.2g} {unit} is no spring that a tire file holds: the file has the "
-        f"preload alone, {tire.preload:.4g} N, as of --part constant"
+        f"{symbol} = {plain(value, 3)} ± {plain(deviation, 2)} {unit} is no spring that a tire file holds: the file "
+        f"has the preload alone, {plain(tire.preload, 4)} N, as of --part constant"
     )
 
 
@@ -187,8 +189,8 @@ def falling(fit: LawFit, linear: LawFit) -> str:
     if fit.name != CURVE or not k + SURE * deviation < 0.0:
         return ""
     return (
-        f"the force falls as the deflection grows, by {-k:.3g} N/mm on the whole, as between magnets; if this is a "
-        "spring, check the signs of force and deflection"
+        f"the force falls as the deflection grows, by {plain(-k, 3)} N/mm on the whole, as between magnets; if this "
+        "is a spring, check the signs of force and deflection"
     )
 
 
@@ -242,13 +244,14 @@ def _refuse_pull(fit: LawFit, recordings: Sequence[Recording]) -> None:
         if float(first.deflection.max()) <= x0 and float(first.force.max()) > -float(first.force.min()):
             low, high = (1e3 * float(end) for end in (first.deflection.min(), first.deflection.max()))
             raise TirelabError(
-                f"the deflection of {first.name} is {low:.3g} to {high:.3g} mm, where the law {fit.name} has no force; "
-                "give what the gauge reads where the part begins to be loaded, as the file counts: tirelab inspect "
-                "--part FILE --zero deflection=..."
+                f"the deflection of {first.name} is {plain(low, 3)} to {plain(high, 3)} mm, where the law "
+                f"{fit.name} has no force; give what the gauge reads where the part begins to be loaded, as the "
+                "file counts: tirelab inspect --part FILE --zero deflection=..."
             )
         raise TirelabError(
-            f"the law {fit.name} has no force below {1e3 * x0:.3g} mm, and the recordings have {left:.3g} N there "
-            f"beyond the noise (root mean square); choose one of {', '.join(TWO_SIDED)} for a part that pulls too"
+            f"the law {fit.name} has no force below {plain(1e3 * x0, 3)} mm, and the recordings have "
+            f"{plain(left, 3)} N there beyond the noise (root mean square); choose one of {', '.join(TWO_SIDED)} "
+            "for a part that pulls too"
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..names import with_power
+from ..names import plain, with_power
 from .surfaces import CM_PER_M, describe
 
 WEAK = 1.5
@@ -169,8 +169,8 @@ def statements(
         worst = max(surfaces, key=lambda s: s.law_rmse - s.rmse)
         found.append(
             f"the law does not follow all surfaces within their noise: on {describe(worst.surface_radius)} it leaves "
-            f"{worst.law_rmse:.3g} N where A and B of that surface alone leave {worst.rmse:.3g} N; the uncertainties "
-            f"are {digits(math.sqrt(chi_square / freedom), 2)} times wider for it"
+            f"{plain(worst.law_rmse, 3)} N where A and B of that surface alone leave {plain(worst.rmse, 3)} N; the "
+            f"uncertainties are {digits(math.sqrt(chi_square / freedom), 2)} times wider for it"
         )
     return found
 
@@ -198,12 +198,14 @@ def recording_notes(surfaces: tuple[SurfaceFit, ...], one_sided: tuple[bool, ...
             )
         if surface.loop is not None and abs(surface.loop) > 0.03 * surface.force_max:
             found.append(
-                f"{where}: loading and unloading differ by {surface.loop:.3g} N, "
-                f"{100.0 * abs(surface.loop) / surface.force_max:.3g} % of the largest force; the law is their mean"
+                f"{where}: loading and unloading differ by {plain(surface.loop, 3)} N, "
+                f"{plain(100.0 * abs(surface.loop) / surface.force_max, 3)} % of the largest force; the law is "
+                "their mean"
             )
         if surface.deflection_max * CM_PER_M < 0.2:
             found.append(
-                f"{where}: the tire was compressed by {1e3 * surface.deflection_max:.2g} mm at most; check the unit"
+                f"{where}: the tire was compressed by {plain(1e3 * surface.deflection_max, 2)} mm at most; check "
+                "the unit"
             )
     return found
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS
 
 from ..errors import TirelabError
+from ..names import plain
 from ..recordings.recording import Recording
 from .branches import LOADING, RESTING, branches
 
@@ -128,7 +129,7 @@ def describe(radius: float) -> str:
     """Return "flat", or the radius in cm with "convex" or "concave"."""
     if math.isinf(radius):
         return "flat"
-    return f"{'convex' if radius > 0.0 else 'concave'} {CM_PER_M * abs(radius):.4g} cm"
+    return f"{'convex' if radius > 0.0 else 'concave'} {plain(CM_PER_M * abs(radius), 4)} cm"
 
 
 def names(surfaces: Sequence[Surface]) -> str:
@@ -199,7 +200,7 @@ def _surface(radius: float, pieces: list[Piece]) -> Surface:
     logs = [p.log_deflection for p in surface.pieces]
     if max(x.max() for x in logs) - min(x.min() for x in logs) < SPAN_LEAST:
         raise TirelabError(
-            f"{where}: the deflection stays at {1e3 * surface.deflection_max:.4g} mm; A and B need it to vary"
+            f"{where}: the deflection stays at {plain(1e3 * surface.deflection_max, 4)} mm; A and B need it to vary"
         )
     if sum(float(p.force.sum()) for p in pieces) <= 0.0:
         raise TirelabError(

@@ -12,6 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ..names import plain
 from ..regressors.signature import LAW
 from ..report.palette import PLAIN
 from ..report.titles import short_title
@@ -68,10 +69,10 @@ def draw_plan(plan: RecordingPlan, path: Path) -> None:
         axis.plot(
             drive.time[::step], 1e3 * drive.deflection[::step], lw=0.8, color=PLAIN.after, rasterized=True
         )
-        held = "" if drive.pressure is None else f", {drive.pressure / 1e5:.3g} bar"
+        held = "" if drive.pressure is None else f", {plain(drive.pressure / 1e5, 3)} bar"
         axis.set_title(
             f"{number}  {drive.name}, {drive.surface}{held}: {drive.duration:.0f} s, to "
-            f"{1e3 * drive.fastest:.3g} mm/s",
+            f"{plain(1e3 * drive.fastest, 3)} mm/s",
             loc="left",
             fontsize=9,
         )
@@ -127,7 +128,7 @@ def _draw_matrix(
     axis.set_ylabel("true")
     axis.set_xlabel("taken for")
     axis.set_title(
-        f"probability [%] of the right answer at {100.0 * plan.size:.3g} % of {plan.peak:.0f} N\n"
+        f"probability [%] of the right answer at {plain(100.0 * plan.size, 3)} % of {plan.peak:.0f} N\n"
         f"(written where below {100.0 * TOLD:.0f} %, *: whatever is driven; grey: not asked)",
         loc="left",
         fontsize=9,

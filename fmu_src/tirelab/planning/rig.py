@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import TirelabError
+from ..names import plain
 from ..recordings.sampling import parse_interval
 from ..recordings.toml_text import parse_toml
 from ..recordings.units import UnitError, conversion, parse_radius
@@ -96,7 +97,7 @@ def read_rig(
         )
     if rig.time * rig.speed < 32.0 * rig.stroke:
         raise TirelabError(
-            f"in {rig.time:g} s at {1e3 * rig.speed:g} mm/s the rig moves {1e3 * rig.time * rig.speed:.3g} mm, "
+            f"in {rig.time:g} s at {1e3 * rig.speed:g} mm/s the rig moves {plain(1e3 * rig.time * rig.speed, 3)} mm, "
             f"less than 16 cycles of {1e3 * rig.stroke:g} mm; give more --time, a smaller --stroke or a faster --speed"
         )
     return rig

@@ -15,6 +15,7 @@ from radialtire.tracking import PAUSE
 from scipy.stats import binom, norm, t
 
 from ..errors import TirelabError
+from ..names import plain
 from .driven import FEWEST_EVENTS
 from .gauge import deflection_noise
 from .levels import white_level
@@ -112,8 +113,9 @@ def check_signal(
         varies = float(np.std(record.force))
         if level > 0.9 * varies > 0.0:
             raise PoorRecording(
-                f"the force of recording {name} varies by {varies:.3g} N, hardly more than the noise of its readings "
-                f"({level:.3g} N, the deflection's through the stiffness with it); check the units, or press deeper"
+                f"the force of recording {name} varies by {plain(varies, 3)} N, hardly more than the noise of its "
+                f"readings ({plain(level, 3)} N, the deflection's through the stiffness with it); check the units, "
+                "or press deeper"
             )
 
 
@@ -222,7 +224,7 @@ def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray
         beyond, read = (v[lone] - 0.5 * (v[lone - 1] + v[lone + 1]) for v in (residual, r.force))
         lone = lone[read * np.sign(beyond) > MAJORITY * np.abs(beyond)]
         if lone.size:
-            first = f"{float(r.time[lone[0]]):.4g} s" if is_timed([r]) else f"sample {lone[0] + 1}"
+            first = f"{plain(float(r.time[lone[0]]), 4)} s" if is_timed([r]) else f"sample {lone[0] + 1}"
             which = "sample stands" if lone.size == 1 else "samples stand"
             where = f"at {first}" if lone.size == 1 else f"the first at {first}"
             sentences.append(
@@ -249,9 +251,9 @@ def not_compared(recordings: Sequence[Recorded]) -> tuple[str, ...]:
         if (lost := beyond_travel(r.deflection, r.force)).any():
             place = 1e3 * float(np.median(r.deflection[lost]))
             sentences.append(
-                f"In {r.name} the deflection's reading stands still at {place:.4g} mm in {int(lost.sum())} samples "
-                "while the force rises and falls: its gauge is at the end of its travel, and these samples were not "
-                "compared; record with more travel."
+                f"In {r.name} the deflection's reading stands still at {plain(place, 4)} mm in {int(lost.sum())} "
+                "samples while the force rises and falls: its gauge is at the end of its travel, and these samples "
+                "were not compared; record with more travel."
             )
         if (lost := after_pauses(r)).any():
             sentences.append(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from .origin import Origin
 
 FloatArray = NDArray[np.float64]
@@ -44,7 +45,7 @@ def clock_doubt(origin: Origin, time: FloatArray, unit: str, size: float) -> str
     with np.errstate(over="ignore", invalid="ignore"):
         length, step, written = float(time[-1] - time[0]), float(np.median(np.diff(time))), time / size
     if YEAR < length < np.inf:
-        said = f"the recording lasts {length / YEAR:.3g} years"
+        said = f"the recording lasts {plain(length / YEAR, 3)} years"
     elif 0.0 < step < FINEST:
         said = f"the samples are {step:.3g} s apart"
     else:
@@ -54,5 +55,5 @@ def clock_doubt(origin: Origin, time: FloatArray, unit: str, size: float) -> str
     factor = {**dict(CLOCKS), DAYS: DAY}[other] / size
     if factor == 1.0:
         return f"{said}; check its unit ({unit})"
-    would = f"{step * factor:.3g} s apart over {length * factor:.3g} s"
+    would = f"{plain(step * factor, 3)} s apart over {plain(length * factor, 3)} s"
     return f"{said}; in {other} they would be {would}: {origin.units(time=other)}"

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from .asking import IncompleteRecording
 from .choices import Choices
 from .formats import RecordingError
@@ -83,7 +84,7 @@ def count_from_zero(
         likely = Signs(1, -1 if work_share(values["deflection"], values["force"]) < 0.0 else 1)
         why = (
             "the force falls as the deflection rises: a spring counted the other way has it so, and so has the mass "
-            f"of a rod and clamps, {mass:.2g} kg at this speed"
+            f"of a rod and clamps, {plain(mass, 2)} kg at this speed"
         )
         return Counted(gauges, tuple(notes), _asked(values, gauges, likely, why, settings))
     if (signs.doubt and not of_part) or turned & given:

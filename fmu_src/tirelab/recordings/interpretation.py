@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from .channels import unit_of_column
 from .clock_doubt import YEAR_2001, YEAR_2096, clock_doubt
 from .counting import Counted, count_from_zero
@@ -64,7 +65,7 @@ class Interpreted:
         """Refuse a deflection that never changes or is deeper than a wheel, and signs that are in doubt."""
         deflection = self.values["deflection"]
         if deflection.min() == deflection.max():
-            still = f"is {deflection[0]:.6g} m in every row"
+            still = f"is {plain(deflection[0], 6)} m in every row"
             naming = self.rows.origin.columns(deflection="NAME")
             raise self.error(0, "deflection", f"{still}; name the column that moves with {naming}")
         if self.counted.fault is not None:
@@ -72,7 +73,7 @@ class Interpreted:
         deepest = int(np.argmax(deflection))
         if deflection[deepest] > DEEPEST and not self.part:
             guess = too_deep(self.rows.origin, float(np.ptp(deflection)), self.units.get("deflection", ""))
-            what = f"{deflection[deepest]:.6g} m is deeper than a wheel; correct its unit"
+            what = f"{plain(deflection[deepest], 6)} m is deeper than a wheel; correct its unit"
             raise self.error(deepest, "deflection", what + (f" ({guess})" if guess else ""))
 
 
@@ -170,9 +171,10 @@ def _refuse_lost_steps(rows: Rows, plan: Plan) -> None:
     if step:
         late = int(np.argmax(np.diff(written) <= 0.0)) + 1
         what = (
-            f"time repeats {written[late] * size:.9g} s: in single precision times of this size are {step:.3g} s apart,"
-            " and the steps of the samples are lost; export them in double precision or from 0 on, or, if the samples "
-            f"are evenly spaced, give the rate at which they were taken: {rows.origin.sampling('RATE')}"
+            f"time repeats {plain(written[late] * size, 9)} s: in single precision times of this size are "
+            f"{plain(step, 3)} s apart, and the steps of the samples are lost; export them in double precision or "
+            "from 0 on, or, if the samples are evenly spaced, give the rate at which they were taken: "
+            f"{rows.origin.sampling('RATE')}"
         )
         raise rows.error(late, "time", what)
 

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from ..names import plain
+
 FAR = 10.0
 """A jump is this many times as far as the motion between any two other samples; a corner of a motion is none."""
 
@@ -30,8 +32,8 @@ def jump_doubt(deflection: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
     if min(before.size, after.size) < FEWEST or not 0.0 < FAR * other < jump or covered < BOTH * jump:
         return ()
     said = (
-        f"the deflection jumps by {1e3 * jump:.3g} mm from the sample before, {jump / other:.0f} times as far as "
-        "between any two others: if these are two runs in one table, give the rows of one of them, as in FILE@1:2000"
+        f"the deflection jumps by {plain(1e3 * jump, 3)} mm from the sample before, {jump / other:.0f} times as far "
+        "as between any two others: if these are two runs in one table, give the rows of one of them, as in FILE@1:2000"
     )
     return ((at + 1, said),)
 
@@ -70,8 +72,8 @@ def mark_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> t
     if others.min() <= mark <= others.max():
         return ()
     said = (
-        f"the force is {mark:.6g} N at {alone.size} samples, beyond all others, and comes back each time: if that is a "
-        "mark for no reading, write nothing there, and the rows are skipped"
+        f"the force is {plain(mark, 6)} N at {alone.size} samples, beyond all others, and comes back each time: if "
+        "that is a mark for no reading, write nothing there, and the rows are skipped"
     )
     return ((int(alone[0]), said),)
 

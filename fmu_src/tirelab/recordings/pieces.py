@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from .formats import WORKBOOK_SUFFIXES, RecordingError
 from .formats.table import quoted
 from .units import UnitError, conversion
@@ -131,7 +132,7 @@ def samples_within(
     if end - begin < 2:
         raise RecordingError(
             f"{where}: {piece.start or 'the start'} to {piece.stop or 'the end'} holds {max(end - begin, 0)} samples; "
-            f"the recording has {time[0]:.6g} to {time[-1]:.6g} s, rows {rows[0]} to {rows[-1]}"
+            f"the recording has {plain(time[0], 6)} to {plain(time[-1], 6)} s, rows {rows[0]} to {rows[-1]}"
         )
     return slice(begin, end)
 

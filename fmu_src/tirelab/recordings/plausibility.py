@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from .clock_doubt import likely_clock
 from .jumps import sudden_doubts
 from .origin import Origin
@@ -137,7 +138,7 @@ def _state_doubts(
             found.append(
                 (
                     "pressure",
-                    f"goes from {low / 1e5:.3g} to {high / 1e5:.3g} bar of gauge pressure, which no "
+                    f"goes from {plain(low / 1e5, 3)} to {plain(high / 1e5, 3)} bar of gauge pressure, which no "
                     f"{'gauge reads' if part else 'bicycle tire has'}; {_unit_asked('pressure', units)}",
                 )
             )
@@ -147,8 +148,8 @@ def _state_doubts(
             found.append(
                 (
                     "temperature",
-                    f"goes from {low - 273.15:.3g} to {high - 273.15:.3g} degC, at which no rubber is tested; "
-                    f"{_unit_asked('temperature', units)}",
+                    f"goes from {plain(low - 273.15, 3)} to {plain(high - 273.15, 3)} degC, at which no rubber is "
+                    f"tested; {_unit_asked('temperature', units)}",
                 )
             )
     return found
@@ -171,7 +172,7 @@ def too_deep(origin: Origin, deepest: float, unit: str) -> str:
     if not fits:
         return ""
     name, length = fits[0]
-    return f"in {name} it would be {1e3 * length:.3g} mm: {origin.units(deflection=name)}"
+    return f"in {name} it would be {plain(1e3 * length, 3)} mm: {origin.units(deflection=name)}"
 
 
 def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) -> Zero | None:
@@ -252,7 +253,7 @@ def _radius_doubts(origin: Origin, radius: FloatArray, unit: str) -> list[tuple[
     large = sizes[sizes > GROUND]
     if not len(large):
         return []
-    shown = f"{large[0]:.4g} m"
+    shown = f"{plain(large[0], 4)} m"
     at = int(np.argmax(np.abs(radius) == large[0]))
     factor = dict(LENGTHS).get(unit)
     finer = [
@@ -264,7 +265,7 @@ def _radius_doubts(origin: Origin, radius: FloatArray, unit: str) -> list[tuple[
         return [(at, f"a surface radius of {shown} is as good as flat: say so with {origin.radius('flat')}")]
     name, length = finer[0]
     sentence = (
-        f"a surface radius of {shown} is as good as flat: {name}? Then it is {100.0 * length:.4g} cm, "
+        f"a surface radius of {shown} is as good as flat: {name}? Then it is {plain(100.0 * length, 4)} cm, "
         f"{origin.units(radius=name)}; if the ground is flat, {origin.radius('flat')}"
     )
     return [(at, sentence)]
@@ -287,7 +288,10 @@ def _size_doubt(origin: Origin, x: FloatArray, f: FloatArray, units: Mapping[str
     # within a factor of three of a power of ten a round figure says it better
     if 1 / 3.2 < ratio / rounded < 3.2:
         far = f"{max(rounded, 1.0 / rounded):.0f} times too {'small' if ratio < 1.0 else 'large'}"
-    what = f"the force, up to {load:.3g} N, is about {far} for a tire at {1e3 * stroke:.3g} mm of deflection"
+    what = (
+        f"the force, up to {plain(load, 3)} N, is about {far} for a tire at {plain(1e3 * stroke, 3)} mm of "
+        f"deflection"
+    )
     guess = _unit_guess(stroke, load, units)
     other = "" if origin.kind != "file" else "; if this is no tire, write part = true into recording.toml"
     return (
@@ -308,8 +312,8 @@ def _pull_doubt(gauges: Gauges, x: FloatArray, f: FloatArray) -> str:
         return ""
     given = gauges.origin.zero(gauges.at_zero({"force": float(f"{least:.3g}")}))
     return (
-        f"the force is {least:.3g} to {most:.3g} N: it pulls all the time, the least where the deflection is largest; "
-        f"if the load cell was not zeroed, give what it reads without load, such as {given}"
+        f"the force is {plain(least, 3)} to {plain(most, 3)} N: it pulls all the time, the least where the "
+        f"deflection is largest; if the load cell was not zeroed, give what it reads without load, such as {given}"
     )
 
 

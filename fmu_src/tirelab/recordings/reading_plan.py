@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..names import plain
 from .asking import Lacking, asked, may_count_time, rises, stating_time
 from .channels import EXAMPLE_UNITS, UNIT_OF, known_channel, says_absolute, unit_of_column, units_stated
 from .formats import Header, RecordingError, Table, Wanted
@@ -183,7 +184,7 @@ def _given_interval(
     except UnitError as error:
         raise RecordingError(f"{origin}: {error}") from None
     instead = ", not taken from its column" if matches.pop("time", None) is not None else ""
-    return interval, [f"time made of samples {interval:.6g} s apart, as given{instead}"]
+    return interval, [f"time made of samples {plain(interval, 6)} s apart, as given{instead}"]
 
 
 def _may_hold_time(table: Table, matches: Mapping[str, Match], lacking: int) -> bool:
@@ -230,7 +231,7 @@ def _given_radius(
 
 
 def _radius_text(radius: float) -> str:
-    return "flat" if np.isinf(radius) else f"{radius:.6g} m"
+    return "flat" if np.isinf(radius) else f"{plain(radius, 6)} m"
 
 
 def _conversions(

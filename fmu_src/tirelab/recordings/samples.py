@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import plain
 from .channels import CHANNELS, UNIT_OF
 from .formats import RecordingError
 
@@ -56,14 +57,16 @@ def gap_notes(time: FloatArray) -> list[str]:
     if not len(gaps):
         return []
     if len(gaps) > 0.1 * len(steps):
-        return [f"time is sampled irregularly: steps from {steps.min():.6g} to {steps.max():.6g} s"]
+        return [
+            f"time is sampled irregularly: steps from {plain(steps.min(), 6)} to {plain(steps.max(), 6)} s"
+        ]
     longest = gaps[np.argmax(steps[gaps])]
     which = (
         "1 gap in time, not filled:"
         if len(gaps) == 1
         else f"{len(gaps)} gaps in time, not filled, the longest"
     )
-    return [f"{which} {steps[longest]:.6g} s after {time[longest]:.6g} s"]
+    return [f"{which} {plain(steps[longest], 6)} s after {plain(time[longest], 6)} s"]
 
 
 def over_midnight(time: FloatArray) -> tuple[FloatArray, int | None]:
@@ -91,10 +94,13 @@ def check_time(time: FloatArray) -> None:
     late = int(np.argmax(steps <= 0.0)) + 1
     before, after = float(time[late - 1]), float(time[late])
     if before > after:
-        what = f"time goes back from {before:.9g} s to {after:.9g} s; sort the rows by time, and keep one of each, or "
+        what = (
+            f"time goes back from {plain(before, 9)} s to {plain(after, 9)} s; sort the rows by time, and keep "
+            "one of each, or "
+        )
         what += "leave out a clock that is written wrongly"
         raise SampleFault(late, "time", what, anew=int(np.count_nonzero(steps < 0.0)) <= MOST_TESTS)
-    what = f"time repeats {after:.9g} s"
+    what = f"time repeats {plain(after, 9)} s"
     still = int(np.count_nonzero(steps == 0.0))
     if steps.min() == 0.0 and still > COARSE * len(steps):
         known = still < len(steps)

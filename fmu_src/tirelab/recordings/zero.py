@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire.model import DEFLECTION_HIGHEST
 
+from ..names import plain
 from .assignments import assignments
 from .channels import UNIT_OF, known_channel
 from .formats import RecordingError
@@ -87,7 +88,7 @@ class Zero:
             return f"the force begins at {self.shown} of deflection"
         before = f", and it would begin at {self.shown}" if self._of_deflection else ""
         low = millimetres(self.low, self.stroke)
-        return f"the readings begin at {low} of deflection with a force of {self.force:.3g} N{before}"
+        return f"the readings begin at {low} of deflection with a force of {plain(self.force, 3)} N{before}"
 
     @property
     def _of_deflection(self) -> bool:
@@ -204,12 +205,12 @@ def refuse_too_deep(recordings: Iterable[_Driven]) -> None:
         deepest = int(np.argmax(recording.deflection))
         if recording.deflection[deepest] <= DEFLECTION_HIGHEST:
             continue
-        at = f"{recording.time[deepest]:.6g} s" if recording.timed else f"sample {deepest + 1}"
+        at = f"{plain(recording.time[deepest], 6)} s" if recording.timed else f"sample {deepest + 1}"
         least = float(f"{recording.deflection.min():.3g}")
         zero = f", such as --zero deflection={quantity_text('deflection', least)}" if least > FARTHEST else ""
         raise RecordingError(
-            f"{recording.name}: the deflection is {recording.deflection[deepest]:.6g} m at {at}, and a tire takes "
-            f"{DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit, count a part that is pulled "
+            f"{recording.name}: the deflection is {plain(recording.deflection[deepest], 6)} m at {at}, and a tire "
+            f"takes {DEFLECTION_HIGHEST:g} m at most (the wheel's radius); check its unit, count a part that is pulled "
             "further as negative (--columns 'deflection=-NAME,force=-NAME'), give what the gauge reads when nothing is "
             f"loaded{zero}, or choose a range of the file: FILE@10s:20s (times), FILE@100:2000 (rows)"
         )

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ..errors import TirelabError, check_recordings_given
+from ..names import plain
 from .thinning import COLUMNS, envelope
 
 PIXELS, FEW = 1000, 20_000
@@ -143,4 +144,4 @@ def _distinct(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp
 def _surface(radius: float) -> str:
     if abs(radius) >= 1e5:
         return "flat ground"
-    return f"{'convex' if radius > 0 else 'concave'} {100 * abs(radius):.3g} cm"
+    return f"{'convex' if radius > 0 else 'concave'} {plain(100 * abs(radius), 3)} cm"

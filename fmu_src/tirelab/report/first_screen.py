@@ -8,7 +8,7 @@ from typing import Any
 
 from radialtire import CATALOGUE
 
-from ..names import REFITTED_LAW, UNKNOWN
+from ..names import REFITTED_LAW, UNKNOWN, plain
 from . import titles, words
 from .delivered import delivered_of
 
@@ -178,7 +178,7 @@ def _left_in_order(verdict: Mapping[str, Any]) -> str:
     by = [titles.dependence(d["by"]) for d in left.get("depends_on", [])]
     if not by:
         return ""
-    return f"The remainder, {left['size']:.2g} times the noise, depends on {titles.listed(by)}."
+    return f"The remainder, {plain(left['size'], 2)} times the noise, depends on {titles.listed(by)}."
 
 
 def actions(reasons: Sequence[str]) -> list[str]:

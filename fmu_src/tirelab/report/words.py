@@ -10,7 +10,7 @@ from typing import Any
 
 from radialtire import CATALOGUE, FLAT_RADIUS
 
-from ..names import REFITTED_LAW, with_power
+from ..names import REFITTED_LAW, plain, with_power
 
 LAW_STATEMENT = (
     "the elastic law has other coefficients than in the baseline; a refitted law is not missing physics"
@@ -374,7 +374,7 @@ def on_surface(radius: float | str) -> str:
     size = float(radius)
     if abs(size) >= FLAT_RADIUS:
         return "flat ground"
-    return f"a {'convex' if size > 0.0 else 'concave'} surface of radius {100.0 * abs(size):.4g} cm"
+    return f"a {'convex' if size > 0.0 else 'concave'} surface of radius {plain(100.0 * abs(size), 4)} cm"
 
 
 def held_out_part(by: str) -> str:

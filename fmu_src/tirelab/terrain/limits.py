@@ -37,6 +37,7 @@ from numpy.typing import NDArray
 from radialtire import FLAT_RADIUS, TestedRange
 from radialtire.hull1996 import WHEEL_RADIUS
 
+from ..names import plain
 from .contact import Contact
 from .profile import Floats
 
@@ -78,12 +79,12 @@ DOUBTS = Limit(sum(Limit)) & ~Limit.AIRBORNE
 def meanings(tested: TestedRange) -> dict[Limit, str]:
     """Return what is said of a ride beyond each limit of a tire with the range `tested`."""
     convex, concave = 100.0 / _sharpest(tested), -100.0 / _tightest(tested)
-    deepest, strongest = f"{100.0 * tested.deflection_max:.4g} cm", f"{tested.force_max:.0f} N"
+    deepest, strongest = f"{plain(100.0 * tested.deflection_max, 4)} cm", f"{tested.force_max:.0f} N"
     return {
-        Limit.SHARP_EDGE: f"sharp edge in contact (radius below {convex:.3g} cm, or a corner)",
+        Limit.SHARP_EDGE: f"sharp edge in contact (radius below {plain(convex, 3)} cm, or a corner)",
         Limit.DISCONTINUOUS_RADIUS: "radius of curvature jumps within the contact",
         Limit.CHANGING_RADIUS: "radius of curvature changes quickly within the contact",
-        Limit.TIGHT_CONCAVE: f"concave radius tighter than the {concave:.3g} cm tested, near the wheel's own",
+        Limit.TIGHT_CONCAVE: f"concave radius tighter than the {plain(concave, 3)} cm tested, near the wheel's own",
         Limit.SEVERAL_CONTACTS: "several contacts at once",
         Limit.DEFLECTION_UNTESTED: f"deflection beyond the {deepest} tested",
         Limit.FORCE_UNTESTED: f"force beyond the {strongest} tested",
@@ -145,7 +146,7 @@ def _surfaces(tested: TestedRange) -> str:
     for curvature in (tested.curvature_min, tested.curvature_max):
         flat = abs(curvature) * FLAT_RADIUS <= 1.0 + 1e-6
         side = "convex" if curvature > 0.0 else "concave"
-        ends.append("flat" if flat else f"{100.0 / abs(curvature):.4g} cm {side}")
+        ends.append("flat" if flat else f"{plain(100.0 / abs(curvature), 4)} cm {side}")
     return " to ".join(dict.fromkeys(ends))
 
 
@@ -182,7 +183,7 @@ class LimitReport:
             return "Where this tire was measured is not known; by the article's limits its model"
         if self.tested == ARTICLES:
             return "The article's model"
-        to = f"{100.0 * self.tested.deflection_max:.4g} cm and {self.tested.force_max:.0f} N"
+        to = f"{plain(100.0 * self.tested.deflection_max, 4)} cm and {self.tested.force_max:.0f} N"
         return f"This tire was measured to {to} on ground that is {_surfaces(self.tested)}; its model"
 
 

@@ -15,6 +15,7 @@ from radialtire.model import Law
 from radialtire.power_law import CM_PER_M
 
 from ..errors import TirelabError
+from ..names import plain
 from ..recordings.plausibility import PRESSURES
 from ..simulation.simulate import SmoothedMotion, simulate
 from .contact import Contact, contact, hub_positions, rolling_path
@@ -181,7 +182,7 @@ def force_at(tire: TireModel, channels: Mapping[str, float]) -> HeldTire:
         check_measured(known[name], value)
         if name == "pressure" and not tire.is_part and not 0.0 <= value <= PRESSURES[1]:
             raise TirelabError(
-                f"a gauge pressure of {value / 1e5:.3g} bar is none that a bicycle tire has "
+                f"a gauge pressure of {plain(value / 1e5, 3)} bar is none that a bicycle tire has "
                 f"(0 to {PRESSURES[1] / 1e5:.0f} bar); check its unit"
             )
         if name not in read:
@@ -224,7 +225,7 @@ def constant_load_path(
         if np.max(high) > DEEPEST_DROP * wheel_radius:
             i = int(short[np.argmax(high[short])])
             raise TirelabError(
-                f"the tire cannot carry {load:g} N at s = {position[i]:g} m with less than {low[i]:.3g} m of "
+                f"the tire cannot carry {load:g} N at s = {position[i]:g} m with less than {plain(low[i], 3)} m of "
                 "deflection; give a smaller load"
             )
         above[short] = excess(high[short], short)

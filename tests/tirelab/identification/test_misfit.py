@@ -55,6 +55,7 @@ def test_only_what_is_more_than_the_noise_is_said() -> None:
     assert misfit_sentence(27.0, 4.0, "tirelab diagnose a.csv") == (
         "the law leaves 27 N beside 4 N of noise, so something else acts here: try `tirelab diagnose a.csv`"
     )
+    assert "the law leaves 240 N beside 5 N of noise" in misfit_sentence(240.4, 5.0, "x")
     assert misfit_sentence(4.2, 4.0, "x") == ""
     assert misfit_sentence(4.2, math.nan, "x") == ""
     assert misfit_sentence(1e-9, 0.0, "x") == ""

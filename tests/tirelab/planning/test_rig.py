@@ -48,6 +48,7 @@ def test_without_either_the_defaults_hold() -> None:
         ({"sampling": "fast"}, "--sampling: sampling 'fast' cannot be read"),
         ({"time": "1s", "sampling": "10Hz"}, "are 10 samples, and a plan needs 100"),
         ({"time": "10s", "speed": "1mm/s"}, "the rig moves 10 mm, less than 16 cycles of 20 mm"),
+        ({"time": "300s", "stroke": "2000mm"}, "the rig moves 30000 mm, less than"),
     ],
 )
 def test_bad_limits_are_told_in_a_sentence(given: dict[str, str], words: str) -> None:
