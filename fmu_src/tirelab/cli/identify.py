@@ -86,7 +86,7 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
 
     from ..computing.staging import staged
     from ..identification.identify import identify
-    from ..identification.misfit import misfit_sentence
+    from ..identification.misfit import diagnosis_refused, misfit_sentence
     from ..recordings.files import recording_files
     from ..recordings.zero import refuse_too_deep
 
@@ -122,9 +122,8 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
     known = part and all(_is_said_to_be_a_part(file, said) for file in files)
-    words = _Words(
-        tuple(map(str, recordings)), tuple((said if known else reading).words()), _refused(read, bool(part))
-    )
+    as_read, refused = tuple((said if known else reading).words()), diagnosis_refused(read, part=bool(part))
+    words = _Words(tuple(map(str, recordings)), as_read, refused)
     if found is None:
         _part(output, console, dict(zip(files, read, strict=True)), (part, options["name"]), words)
         return
@@ -132,7 +131,9 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     with staged(out.parent) as folder:
         write_tire(found.tire, folder / out.name)
         (folder / beside.name).write_text(found.to_json(), encoding="utf-8")
-    misfit = misfit_sentence(found.rmse, found.reading_noise, words.diagnose(out), refused=words.refused)
+    further = words.diagnose(out)
+    told = misfit_sentence(found.rmse, found.reading_noise, further, refused=words.refused)
+    misfit = told if found.misfit else ""
     if output.as_json:
         output.result((), found.to_json())
         if misfit:
@@ -236,17 +237,6 @@ def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words:
     )
 
 
-def _refused(recordings: Sequence[Recording], part: bool) -> str:
-    """Return why no diagnosis takes recordings, "" where one does."""
-    from ..preprocessing.data_checks import PoorRecording, check_recordings
-
-    try:
-        check_recordings(recordings, two_sided=part)
-    except PoorRecording as error:
-        return str(error)
-    return ""
-
-
 def _is_said_to_be_a_part(path: Path, reading: Reading) -> bool:
     """Return whether the settings of a recording say that it is one of a part; then no command has to be told."""
     from ..recordings.metadata import read_sidecar
@@ -281,4 +271,5 @@ def _print(console: Console, found: Identification) -> None:
         f"RMSE of the law over all samples: {plain(found.rmse, 3)} N (two stages: {plain(found.two_stage_rmse, 3)} N)"
     )
     for note in found.notes:
-        console.print(f"- {note}", markup=False, soft_wrap=True)
+        if note != found.misfit:  # told with the command that looks further
+            console.print(f"- {note}", markup=False, soft_wrap=True)

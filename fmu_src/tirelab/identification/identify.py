@@ -19,7 +19,7 @@ from ..simulation.simulate import simulate
 from .forms import Form, HullForm, form_of
 from .intervals import profile
 from .joint import JointFit, joint_fit
-from .misfit import noise_beside
+from .misfit import diagnosis_refused, misfit_sentence, noise_beside
 from .noise import PowerFit, with_covariance
 from .power_fit import chunks, fit_power, inner_products
 from .result import Constant, Identification, SurfaceFit, recording_notes, statements
@@ -31,6 +31,9 @@ Progress = Callable[[str, int, int], None]
 
 ROUNDING = 1e-9
 """Part of a curvature by which the tested range is wider, as radii are rounded to nine digits."""
+
+UNREAD = 1e-9
+"""Part of the largest force that no reading resolves: a law that leaves less leaves rounding."""
 
 Array = NDArray[np.float64]
 
@@ -78,17 +81,22 @@ def identify(
     )
     alone = tuple(0 in s.samples for s in surfaces)
     tire = _tire(form.law(joint.logs), surfaces, recordings, name)
+    rmse = _rmse(surfaces, form.coefficients(joint.logs))
+    noise = noise_beside(recordings, [r.force - simulate(tire, r) for r in recordings])
+    read = rmse > UNREAD * max(surface.force_max for surface in surfaces)
+    misfit = misfit_sentence(rmse, noise, refused=diagnosis_refused(recordings, part=False)) if read else ""
     return Identification(
         tire=tire,
         surfaces=rows,
         constants=constants,
         correlation=_correlation(joint),
         condition=joint.condition,
-        rmse=_rmse(surfaces, form.coefficients(joint.logs)),
+        rmse=rmse,
         two_stage_rmse=_rmse(surfaces, form.coefficients(start)),
         chi_square=profiles.chi_square,
         freedom=profiles.freedom,
-        reading_noise=noise_beside(recordings, [r.force - simulate(tire, r) for r in recordings]),
+        reading_noise=noise,
+        misfit=misfit,
         notes=(
             *why,
             *recording_notes(rows, alone),
@@ -99,6 +107,7 @@ def identify(
                 profiles.chi_square,
                 profiles.freedom,
             ),
+            *([misfit] if misfit else []),
         ),
     )
 

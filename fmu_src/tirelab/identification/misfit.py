@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..names import plain
+from ..preprocessing.data_checks import PoorRecording, check_recordings
 from ..preprocessing.driven import Driven
 from ..preprocessing.motion import motion_of
 from ..preprocessing.noise import noise_of
@@ -46,14 +47,27 @@ def noise_beside(recordings: Sequence[Recording], residuals: Sequence[Array]) ->
     return float(np.sqrt(squares / samples)) if samples else float("nan")
 
 
-def misfit_sentence(rmse: float, noise: float, command: str, law: str = "the law", refused: str = "") -> str:
+def diagnosis_refused(recordings: Sequence[Recording], *, part: bool) -> str:
+    """Return why no diagnosis takes recordings, "" where one does; part: whether they are of one that can pull."""
+    try:
+        check_recordings(recordings, two_sided=part)
+    except PoorRecording as error:
+        return str(error)
+    return ""
+
+
+def misfit_sentence(
+    rmse: float, noise: float, command: str = "", law: str = "the law", refused: str = ""
+) -> str:
     """Return the sentence for a law that leaves more than the noise, both [N], "" where it does not.
 
-    command: that looks for what is missing; law: what it is called; refused: why that command takes no such recordings
+    command: that looks for what is missing, where one was typed; law: what it is called; refused: why no diagnosis
+    takes such recordings
     """
     if not noise > 0.0 or rmse < MISFIT * noise:
         return ""
-    step = f"but no diagnosis can say what: {refused}" if refused else f"try `{command}`"
+    step = f"try `{command}`" if command else "diagnose the recordings with this tire"
+    step = f"but no diagnosis can say what: {refused}" if refused else step
     mark = ", " if refused else ": "
     return (
         f"{law} leaves {plain(rmse, 2)} N beside {plain(noise, 2)} N of noise, so something else acts "

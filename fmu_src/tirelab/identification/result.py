@@ -106,6 +106,7 @@ class Identification:
     chi_square, freedom: what the law leaves of the surfaces' A and B, in units of their noise, and its expectation
     notes: sentences about the choice of law, the recordings and what they cannot determine
     reading_noise: [N], of the readings alone; NaN where they are too few
+    misfit: the note that the law leaves more than that noise, "" where it does not
     """
 
     tire: TireModel
@@ -119,6 +120,7 @@ class Identification:
     freedom: int
     notes: tuple[str, ...]
     reading_noise: float = math.nan
+    misfit: str = ""
 
     def to_json(self) -> str:
         """Return everything but the tire itself as JSON; infinite numbers are the text "inf" or "-inf"."""

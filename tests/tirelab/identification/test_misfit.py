@@ -38,6 +38,15 @@ def test_the_noise_is_that_of_the_readings_whatever_the_law_leaves(friction: flo
     assert found.rmse == pytest.approx(math.hypot(friction, noise), rel=0.08)
 
 
+def test_the_notes_of_an_identification_say_it_too() -> None:
+    found = identify([pressed(27.0, 4.0)])
+    assert found.notes[-1] == found.misfit
+    assert found.misfit.endswith("so something else acts here: diagnose the recordings with this tire")
+    assert found.misfit in json.loads(found.to_json())["notes"]
+    assert identify([pressed(0.0, 4.0)]).misfit == ""
+    assert not any("noise" in note for note in identify([pressed(0.0, 4.0)]).notes)
+
+
 @pytest.mark.parametrize("samples", [3.0, 10.0])
 def test_noise_that_a_filter_made_smooth_counts_whole_and_is_no_misfit(samples: float) -> None:
     """White noise behind a first-order filter of so many samples, 4 N in all: from sample to sample it is 0.5 N."""
