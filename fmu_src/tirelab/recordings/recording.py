@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import texts_of_channels
 from .choices import Choices
 from .description import facts, html_table, one_line
+from .fixed_array import fix, fixed
 from .formats import Columns, RecordingError, Table, open_table
 from .formats.delimited import DelimitedTable
 from .formats.excel import ExcelTable
@@ -70,7 +71,7 @@ class Recording:
     far_zero         why its zero is so far off that no effect holds it, "" where one does
     history          of a part of a file what was recorded before it, or None: a simulation starts with it
 
-    All arrays have the shape (samples,), samples >= 2, and are read-only.
+    All arrays have the shape (samples,), samples >= 2, and are read-only; arrays that others may write to are copied.
     Errors: RecordingError (SampleFault where one sample is at fault) for unequal lengths, fewer than two
     samples, time that does not increase, a radius of zero, values not finite or beyond `LARGEST_PLAUSIBLE`.
     """
@@ -95,13 +96,12 @@ class Recording:
     def __post_init__(self) -> None:
         samples = len(self.time)
         for name, channel in self.channels():
-            values = np.asarray(channel, dtype=np.float64).view()
+            values = fixed(channel)
             if values.shape != (samples,):
                 raise RecordingError(
                     f"recording {quoted(self.name)}: {name} has shape {values.shape}, time ({samples},); "
                     "give every channel one value per sample"
                 )
-            values.flags.writeable = False
             object.__setattr__(self, "surface_radius" if name == "radius" else name, values)
         if samples < 2:
             raise RecordingError(
@@ -112,6 +112,13 @@ class Recording:
                 check_values(name, values)
         object.__setattr__(self, "surface_radius", checked_radius(self.surface_radius))
         check_time(self.time)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Take the state of a pickled or copied recording, whose arrays are read-only too."""
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                fix(value)
+        self.__dict__.update(state)
 
     @classmethod
     def from_arrays(
@@ -371,8 +378,8 @@ def _history(before: Mapping[str, FloatArray], name: str) -> Recording | None:
 
 
 def _arrays(values: Mapping[str, FloatArray]) -> dict[str, Any]:
-    """Return channels under the names that a recording has for them."""
-    return {"surface_radius" if name == "radius" else name: column for name, column in values.items()}
+    """Return channels that were read, which nobody else has, under the names that a recording has for them."""
+    return {"surface_radius" if name == "radius" else name: fix(column) for name, column in values.items()}
 
 
 def _refuse_too_large(path: Path, table: Table, columns: int) -> None:
