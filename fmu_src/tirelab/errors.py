@@ -31,6 +31,29 @@ def check_recordings_given(given: Iterable[object]) -> None:
             raise TypeError(f"{str(one)[:60]!r} is of type {type(one).__name__}, not a recording; {how}")
 
 
+def check_given(given: object, kind: type, argument: str, what: str, instance: str) -> None:
+    """Raise TypeError, in one sentence, where an argument is not of the type `kind`; what: it should be, with what is
+    given for instance.
+    """
+    if not isinstance(given, kind):
+        raise TypeError(
+            f"{argument}={str(given)[:60]!r} is of type {type(given).__name__}, not {what}; give for instance "
+            f"{instance}"
+        )
+
+
+def check_names_given(argument: str, given: object) -> None:
+    """Raise TypeError, in one sentence, where several names are one text, or no names."""
+    if isinstance(given, str):
+        raise TypeError(
+            f"{argument}={given[:60]!r} is one text, not several names; give {argument}=[{given[:60]!r}]"
+        )
+    if not isinstance(given, Iterable):
+        raise TypeError(
+            f"{argument}={str(given)[:60]!r} is of type {type(given).__name__}, not several names; give a list of them"
+        )
+
+
 _OF_CHANNELS = {"columns": {"force": "#3"}, "units": {"force": "kN"}, "zero": {"force": "5 N"}}
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,12 +14,14 @@ import polars as pl
 import pytest
 from drives import damped
 from radialtire import TireModel
-from tirelab import build_fmu, compare, diagnose, identify, replay
+from tirelab import Limits, build_fmu, compare, diagnose, identify, replay, ride
 from tirelab.errors import TirelabError, check_recordings_given, check_tire_given
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
+from tirelab.terrain import flat, ground_from
 
 RECORDING = damped(1, samples=200)
 TIRE = TireModel()
+GROUND = ground_from(flat(4.0))
 
 CALLS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], str]] = {
     "diagnose a path": (diagnose, ("a.csv", TIRE), "read it first: read_recording('a.csv')"),
@@ -31,8 +35,56 @@ CALLS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], str]] = {
     "columns as an option": (partial(read_recording, columns="force=#3"), ("a.csv",), '{"force": "#3"}'),
     "units as an option": (partial(Recording.from_arrays, units="force=N"), ([0.0],) * 3, '{"force": "kN"}'),
     "zero as an option": (partial(Recording.from_dataframe, zero="force=5 N"), (None,), '{"force": "5 N"}'),
+    "limits as a mapping": (
+        partial(diagnose, limits={}),
+        (RECORDING, TIRE),
+        "Limits(deepest=0.02, fastest=0.1)",
+    ),
+    "limits as a text": (partial(diagnose, limits="x"), (RECORDING, TIRE), "limits='x' is of type str"),
+    "one name": (partial(diagnose, catalogue="inertia"), (RECORDING,), "give catalogue=['inertia']"),
+    "no names": (partial(diagnose, catalogue=5), (RECORDING,), "catalogue='5' is of type int"),
+    "identify nothing": (identify, (None,), "is of type NoneType, not a recording"),
+    "ride over nothing": (
+        partial(ride, speed=5.0, load=500.0),
+        (None, TIRE),
+        "give for instance ground_from(flat(",
+    ),
+    "ride on a path": (partial(ride, speed=5.0, load=500.0), (GROUND, "t.json"), "give read_tire('t.json')"),
+    "a number as a name": (
+        Recording,
+        (5, [0.0, 1.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]),
+        "name='5' is of type int",
+    ),
     "build of nothing": (build_fmu, (None, "out"), "give read_tire(FILE) or TireModel()"),
 }
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"deepest": -1.0}, "deepest=-1.0 is no limit of a rig; give a number [m] above 0"),
+        ({"fastest": np.nan}, "fastest=nan is no limit of a rig; give a number [m/s] above 0"),
+        ({"step": np.inf}, "step=inf is no limit"),
+        ({"longest": "60"}, "longest='60' is no limit"),
+        ({"start": np.nan}, "start=nan is no deflection; give a number [m]"),
+    ],
+)
+def test_limits_that_no_rig_has_are_told(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(told)):
+        Limits(**given)
+
+
+def test_a_recording_that_is_fitted_is_not_held_out_too() -> None:
+    with pytest.raises(
+        TirelabError, match="ride 1 has the readings of ride 1, which is fitted, and tests nothing"
+    ):
+        diagnose(RECORDING, TIRE, held_out=RECORDING)
+    with pytest.raises(TirelabError, match="other has the readings of ride 1, which is fitted"):
+        diagnose([RECORDING], TIRE, held_out=[replace(RECORDING, name="other")])
+
+
+def test_one_recording_is_identified_as_several_are() -> None:
+    assert identify(RECORDING).tire == identify([RECORDING]).tire
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -10,7 +10,7 @@ import numpy as np
 from radialtire import TireModel
 
 from ..computing.threads import one_thread
-from ..errors import check_recordings_given, check_tire_given
+from ..errors import check_given, check_names_given, check_recordings_given, check_tire_given
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..estimation.ranking import MOST_WORK
@@ -47,6 +47,7 @@ from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_ou
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .missed import Missed, missed_held_out
+from .request_checks import check_held_out
 from .residual_model import residual_models, unexplained_by
 from .summary import before_simulation, not_seen, other_law, slow_noise, summarise
 from .verdict import FitErrors, NotNamed, Verdict
@@ -73,11 +74,17 @@ def diagnose(
 
     Raises PoorRecording where recordings, also held-out ones, are too short or too poor, RecordingError where the zero
     of a gauge is so far off that no effect holds it, ValueError for an unknown name in `catalogue`, TypeError for
-    what is no recording or no tire, such as the path of one.
+    what is no recording or no tire, such as the path of one, and TirelabError where a held-out recording has the
+    readings of a fitted one.
     """
     check_tire_given(baseline)
     check_recordings_given((*_several(recordings), *_several(held_out)))
+    if catalogue is not None:
+        check_names_given("catalogue", catalogue)
+    if limits is not None:
+        check_given(limits, Limits, "limits", "the limits of a rig", "Limits(deepest=0.02, fastest=0.1)")
     several = _several(recordings), baseline, _several(held_out)
+    check_held_out(*([(r.name, r) for r in given] for given in (several[0], several[2])))
     return diagnosed(Asked(*several, catalogue, limits, progress))
 
 

@@ -22,7 +22,7 @@ from ..names import plain
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.driven import FEWEST_EVENTS
 from ..preprocessing.noise import NEGLIGIBLE
-from ..preprocessing.samples import surface_numbers, within
+from ..preprocessing.samples import Recorded, surface_numbers, within
 from ..recordings.pieces import split_piece
 from ..recordings.pulling import pull_of
 from ..recordings.recording import Recording
@@ -63,8 +63,16 @@ def check_apart(read: Sequence[tuple[Path, Recording]], fitted: int | None = Non
                     f"{other_file} and {file} share {shared}; give each part of a file once "
                     "(a range includes both ends)"
                 )
-    first, held_out = read[:fitted], read[len(read) if fitted is None else fitted :]
-    known = [(file, _runs(recording)) for file, recording in first] if held_out else []
+    check_held_out(read[:fitted], read[len(read) if fitted is None else fitted :])
+
+
+def check_held_out(
+    fitted: Sequence[tuple[object, Recorded]], held_out: Sequence[tuple[object, Recorded]]
+) -> None:
+    """Raise TirelabError where a recording that is held out has no readings but those of a fitted one; both with the
+    files or names by which they are told.
+    """
+    known = [(file, _runs(recording)) for file, recording in fitted] if held_out else []
     for file, recording in held_out:
         own = _runs(recording)
         copied = next((one for one, runs in known if own.size and np.isin(own, runs).all()), None)
@@ -92,7 +100,7 @@ def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple
     return tuple(told)
 
 
-def _runs(recording: Recording) -> NDArray[np.uint64]:
+def _runs(recording: Recorded) -> NDArray[np.uint64]:
     """Return a hash of each FEWEST_EVENTS readings in a row, to the digits that all units leave: single readings of
     coarse gauges are alike by chance.
     """

@@ -39,13 +39,13 @@ Array = NDArray[np.float64]
 
 
 def identify(
-    recordings: Sequence[Recording],
+    recordings: Recording | Sequence[Recording],
     *,
     law: str = "auto",
     name: str = "",
     progress: Progress = lambda what, done, total: None,
 ) -> Identification:
-    """Return the tire identified from `recordings`.
+    """Return the tire identified from one recording or several.
 
     law: "hull1996", "curvature_law", "power_law", or "auto": what the number of surfaces allows
     name: of the tire; progress: see Progress
@@ -56,7 +56,10 @@ def identify(
     """
     if law not in ("auto", *LAWS):
         raise TirelabError(f"no law is named {law!r}; known are auto, {', '.join(LAWS)}")
-    check_recordings_given([recordings] if isinstance(recordings, str) else recordings)
+    recordings = (
+        recordings if isinstance(recordings, Sequence) and not isinstance(recordings, str) else [recordings]
+    )
+    check_recordings_given(recordings)
     refuse_far_zeros(recordings)
     surfaces = surfaces_of(recordings)
     chosen, why = _law_for(surfaces, law)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +29,14 @@ class Limits:
     surfaces: tuple[float, ...] = ()
     pressures: tuple[float, ...] = ()
     start: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("deepest", "m"), ("fastest", "m/s"), ("step", "s"), ("longest", "s")):
+            value = getattr(self, name)
+            if not (isinstance(value, Real) and 0.0 < float(value) < math.inf):
+                raise ValueError(f"{name}={value!r} is no limit of a rig; give a number [{unit}] above 0")
+        if not (isinstance(self.start, Real) and math.isfinite(self.start)):
+            raise ValueError(f"start={self.start!r} is no deflection; give a number [m]")
 
 
 def another_pressure(limits: Limits | None, recorded: bool) -> str:

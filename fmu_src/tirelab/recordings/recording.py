@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import texts_of_channels
+from ..errors import check_given, texts_of_channels
 from .choices import Choices
 from .description import facts, html_table, one_line
 from .fixed_array import fix, fixed
@@ -94,6 +94,7 @@ class Recording:
     history: Recording | None = None
 
     def __post_init__(self) -> None:
+        check_given(self.name, str, "name", "a text", "name='press'")
         samples = len(self.time)
         for name, channel in self.channels():
             values = fixed(channel)

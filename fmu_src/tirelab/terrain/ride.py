@@ -14,7 +14,7 @@ from radialtire.hull1996 import WHEEL_RADIUS
 from radialtire.model import Law
 from radialtire.power_law import CM_PER_M
 
-from ..errors import TirelabError
+from ..errors import TirelabError, check_given, check_tire_given
 from ..names import plain
 from ..recordings.plausibility import PRESSURES
 from ..simulation.simulate import SmoothedMotion, simulate
@@ -99,8 +99,14 @@ def ride(
     which the elastic law acts, one at a pressure (see `force_at`), or a force (see TireForce), which is evaluated only
     where the wheel is on the ground and counts as tested where the article's tire was.
 
-    Raises TirelabError for paths that are not over the ground, and for loads that the tire cannot carry.
+    Raises TirelabError for paths that are not over the ground, and for loads that the tire cannot carry, TypeError for
+    what is no ground or no tire.
     """
+    check_given(
+        ground, Ground, "ground", "a ground", "ground_from(flat(20.0)) or ground_from(read_profile(FILE))"
+    )
+    if not callable(tire):
+        check_tire_given(tire)
     if not (np.isfinite(speed) and speed > 0.0):
         raise TirelabError(f"speed {speed:g} m/s; give a speed above 0 m/s")
     if (load is None) == (hub_path is None):
