@@ -54,6 +54,16 @@ def check_names_given(argument: str, given: object) -> None:
         )
 
 
+def refuse_unknown(given: Mapping[str, object], known: Mapping[str, object]) -> None:
+    """Raise TypeError, in one sentence, where a keyword argument is none of those known."""
+    names = sorted(known)
+    for name in given:
+        if name not in names:
+            raise TypeError(
+                f"unexpected keyword argument {name!r}; beside those of the signature: {', '.join(names)}"
+            )
+
+
 _OF_CHANNELS = {"columns": {"force": "#3"}, "units": {"force": "kN"}, "zero": {"force": "5 N"}}
 
 

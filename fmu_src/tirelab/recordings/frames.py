@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from numbers import Real
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
-from .channels import known_channel
+from .channels import UNIT_OF, known_channel
 from .formats.parquet import frame_headers, series_values
 from .formats.table import Columns, Header, RecordingError, Wanted, numbers, of_one_length, sample_place
 from .formats.text_column import headers_of_text
@@ -20,6 +20,15 @@ from .units import QUANTITIES, measures, split_header
 
 SI_UNITS: Mapping[str, str] = {"time": "s", "deflection": "m", "force": "N", "radius": "m"}
 """The units of arrays for which none is given."""
+
+
+class Beside(TypedDict, total=False):
+    """Arrays that a recording may have beside time, deflection, force and radius."""
+
+    pressure: ArrayLike | None
+    temperature: ArrayLike | None
+    speed: ArrayLike | None
+    believed_force: ArrayLike | None
 
 
 class ColumnTable:
@@ -79,17 +88,20 @@ def array_table(origin: Origin, arrays: Mapping[str, ArrayLike]) -> ColumnTable:
     return ColumnTable(origin, [Header(name, None, name) for name in arrays], list(arrays.values()))
 
 
-def array_units(origin: Origin, given: Mapping[str, str] | None) -> dict[str, str]:
+def array_units(origin: Origin, given: Mapping[str, str] | None, more: Iterable[str] = ()) -> dict[str, str]:
     """Return the unit of each array, as given or SI; the radius may be called surface_radius.
+
+    more: names of the arrays beside those of SI_UNITS
 
     Errors: RecordingError for a channel that is not among the arrays.
     """
     named = {"radius" if name == "surface_radius" else name: unit for name, unit in (given or {}).items()}
+    known = {**SI_UNITS, **{name: UNIT_OF[name] for name in more}}
     for name in named:
         known_channel(name, f"{origin}, units")
-        if name not in SI_UNITS:
+        if name not in known:
             raise RecordingError(f"{origin}, units: there is no array of {name}; leave its unit out")
-    return {**SI_UNITS, **named}
+    return {**known, **named}
 
 
 def is_single(surface_radius: object) -> bool:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import check_given, texts_of_channels
+from ..errors import check_given, refuse_unknown, texts_of_channels
 from .choices import Choices
 from .description import facts, html_table, one_line
 from .fixed_array import fix, fixed
@@ -19,7 +19,7 @@ from .formats import Columns, RecordingError, Table, open_table
 from .formats.delimited import DelimitedTable
 from .formats.excel import ExcelTable
 from .formats.table import quoted
-from .frames import array_table, array_units, frame_table, is_single, single_radius
+from .frames import Beside, array_table, array_units, frame_table, is_single, single_radius
 from .interpretation import Interpreted, interpret
 from .memory import memory_available, readable_size
 from .metadata import Settings, read_sidecar
@@ -131,6 +131,7 @@ class Recording:
         *,
         name: str = "recording",
         units: Mapping[str, str] | None = None,
+        **beside: Unpack[Beside],
     ) -> Recording:
         """Return a recording of arrays, lists or columns, with the checks and the sign rule of a file.
 
@@ -139,13 +140,16 @@ class Recording:
                                   time None where it was not measured
         surface_radius            the same, or one for all samples: a number [m], inf, "flat" or "25.4 cm"
         units                     channel -> unit: {"deflection": "mm", "force": "kN", "radius": "cm"}
+        pressure, temperature, speed, believed_force   the same; [Pa] of gauge pressure, [K], [m/s], [N]
 
         Samples that lack a value (NaN) are skipped, signs that are clearly the other way round are turned;
         `notes` says so. Errors: RecordingError, one sentence with the sample, the value and the next step.
         """
         origin = Origin(name, "arrays")
-        channel_units = array_units(origin, texts_of_channels("units", units))
-        arrays = {"deflection": deflection, "force": force}
+        refuse_unknown(beside, Beside.__annotations__)
+        more = {name: values for name, values in beside.items() if values is not None}
+        channel_units = array_units(origin, texts_of_channels("units", units), more)
+        arrays: dict[str, Any] = {"deflection": deflection, "force": force, **more}
         if time is None:
             channel_units.pop("time")
         else:
@@ -157,8 +161,8 @@ class Recording:
         else:
             arrays["radius"] = surface_radius
         table = array_table(origin, arrays)
-        left_out = {"time": ""} if time is None else {}
-        return _recording_of(origin, table, Settings(left_out, channel_units, radius))
+        columns = {**({"time": ""} if time is None else {}), **{name: name for name in more}}
+        return _recording_of(origin, table, Settings(columns, channel_units, radius))
 
     @classmethod
     def from_dataframe(
@@ -180,7 +184,7 @@ class Recording:
         Errors: RecordingError, one sentence with column, sample, value and the next step.
         """
         origin = Origin(name, "frame")
-        _refuse_unknown(more, Gauged.__annotations__)
+        refuse_unknown(more, Gauged.__annotations__)
         said = (texts_of_channels("columns", columns), texts_of_channels("units", units))
         zero = texts_of_channels("zero", more.get("zero"))
         settings = Settings(*said, radius, sampling=more.get("sampling"), zero=zero)
@@ -274,7 +278,7 @@ def read_recording(
     Errors: RecordingError, one sentence with file, row, column, value and the next step; IncompleteRecording, one of
     them, where columns, units or the radius have to be given.
     """
-    _refuse_unknown(more, Exported.__annotations__)
+    refuse_unknown(more, Exported.__annotations__)
     said = (texts_of_channels("columns", columns), texts_of_channels("units", units))
     zero = texts_of_channels("zero", more.get("zero"))
     how = Choices(*said, radius, more.get("sampling"), more.get("skip_rows"), zero=zero)
@@ -330,15 +334,6 @@ def _read(table: Table, plan: Plan, piece: Piece) -> Columns:
             return table.read_rows(plan.wanted, 1, rows[1])  # what was recorded before the piece counts
         except RecordingError:
             return table.read_rows(plan.wanted, *rows)
-
-
-def _refuse_unknown(given: Mapping[str, object], known: Mapping[str, object]) -> None:
-    names = sorted(known)
-    for name in given:
-        if name not in names:
-            raise TypeError(
-                f"unexpected keyword argument {name!r}; beside those of the signature: {', '.join(names)}"
-            )
 
 
 def _recording_of(origin: Origin, table: Table, settings: Settings) -> Recording:
