@@ -21,6 +21,11 @@ def plain(value: float, digits: int) -> str:
     return f"{value:.0f}" if "e+" in text and abs(value) < PLAIN_MOST else with_power(text)
 
 
+def in_seconds(seconds: float) -> str:
+    """Return a time [s] to a hundredth, so that those of a list add up to their sum as it is written."""
+    return f"{seconds:.2f}".rstrip("0").removesuffix(".")
+
+
 def with_power(text: str) -> str:
     """Return a number in Python's notation as people write it, `9.60·10⁻⁵` of `9.60e-05`; without a power as it is."""
     mantissa, mark, exponent = text.partition("e")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from tirelab.names import plain, power_of_ten, with_power
+from tirelab.names import in_seconds, plain, power_of_ten, with_power
 
 
 @pytest.mark.parametrize(
@@ -27,6 +27,17 @@ from tirelab.names import plain, power_of_ten, with_power
 )
 def test_a_number_in_a_sentence(value: float, digits: int, said: str) -> None:
     assert plain(value, digits) == said
+
+
+def test_times_of_a_list_add_up() -> None:
+    assert [in_seconds(t) for t in (7.5, 8.0, 18.75, 100.0, 104.4999, 0.0)] == [
+        "7.5",
+        "8",
+        "18.75",
+        "100",
+        "104.5",
+        "0",
+    ]
 
 
 def test_powers_of_ten() -> None:

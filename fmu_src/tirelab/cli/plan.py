@@ -11,7 +11,7 @@ import click
 from radialtire import TireModel, read_tire
 
 from ..errors import TirelabError
-from ..names import plain
+from ..names import in_seconds, plain
 from .option_group import option_group
 from .options import FILE, SentenceCommand, check_files
 from .output import Output, example, output_options, progress
@@ -145,9 +145,11 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
     lines = [
         f"{plan.tire}: to {1e3 * rig.stroke:g} mm and {plan.peak:.0f} N, at up to {1e3 * rig.speed:g} mm/s, "
         f"{1.0 / rig.sampling:g} Hz, {rig.noise:g} N of noise",
-        f"{len(plan.drives)} recording{'s' if len(plan.drives) > 1 else ''}, {plan.seconds:.0f} s of {rig.time:g} s:",
+        f"{len(plan.drives)} recording{'s' if len(plan.drives) > 1 else ''}, {in_seconds(plan.seconds)} s of "
+        f"{rig.time:g} s:",
         *(
-            f"  {out / file_name(number, drive)}: {drive.duration:.0f} s, to {plain(1e3 * drive.fastest, 3)} mm/s"
+            f"  {out / file_name(number, drive)}: {in_seconds(drive.duration)} s, "
+            f"to {plain(1e3 * drive.fastest, 3)} mm/s"
             for number, drive in enumerate(plan.drives, 1)
         ),
         f"{told} of {asked} pairs are told apart in 19 of 20 tests at {100.0 * plan.size:g} % of the peak force; "

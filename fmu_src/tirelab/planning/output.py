@@ -12,7 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..names import plain
+from ..names import in_seconds, plain
 from ..regressors.signature import LAW
 from ..report.palette import PLAIN
 from ..report.titles import short_title
@@ -71,7 +71,7 @@ def draw_plan(plan: RecordingPlan, path: Path) -> None:
         )
         held = "" if drive.pressure is None else f", {plain(drive.pressure / 1e5, 3)} bar"
         axis.set_title(
-            f"{number}  {drive.name}, {drive.surface}{held}: {drive.duration:.0f} s, to "
+            f"{number}  {drive.name}, {drive.surface}{held}: {in_seconds(drive.duration)} s, to "
             f"{plain(1e3 * drive.fastest, 3)} mm/s",
             loc="left",
             fontsize=9,

@@ -31,6 +31,10 @@ def test_a_plan_is_written_and_told(tmp_path: Path) -> None:
     assert "to 20 mm and 1476 N, at up to 150 mm/s, 100 Hz, 5 N of noise" in done.output
     content = json.loads((tmp_path / "plan" / "plan.json").read_text())
     assert content["rig"]["speed"] == pytest.approx(0.15)
+    listed = [
+        float(line.split(": ")[1].split(" s,")[0]) for line in done.output.splitlines() if ".csv: " in line
+    ]
+    assert f", {sum(listed):g} s of 40 s:" in done.output
     for recording in content["recordings"]:
         table = pl.read_csv(tmp_path / "plan" / recording["file"])
         assert table["deflection [mm]"].max() <= 20.0
