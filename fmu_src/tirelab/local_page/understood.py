@@ -85,7 +85,8 @@ def understood(file: Path, name: str) -> Understood:
         return Understood(headers, _planned(first, table), problem=_by_name(str(error), file, name))
     more = (("tests", f"{1 + len(others)} side by side, each a recording; of the first:"),) if others else ()
     # The page itself wrote the settings beside it.
-    remarks = [r for r in found.remarks if r != f"settings read from {file.with_suffix('.toml').name}"]
+    written = f"settings read from {file.with_suffix('.toml').name}"
+    remarks = [_by_name(r, file, name) for r in found.remarks if r != written]
     notes = (*remarks, *(f"it says: {text}" for text in found.recording.provenance))
     doubts = tuple(_by_name(doubt, file, name) for doubt in found.recording.doubts)
     return Understood(headers, _channels(found, headers), (*more, *found.facts), notes, doubts)
@@ -127,5 +128,10 @@ def _planned(file: Path, table: Table, radius: str | float | None = None) -> tup
 
 
 def _by_name(sentence: str, file: Path, name: str) -> str:
-    """Return a sentence in which the file has the user's name for it."""
-    return sentence.replace(str(file), name).replace(file.name, name)
+    """Return a sentence in which the file, and that of its settings, have the user's name for it."""
+    settings = file.with_suffix(".toml").name
+    return (
+        sentence.replace(str(file), name)
+        .replace(file.name, name)
+        .replace(settings, f"the settings of {name}")
+    )

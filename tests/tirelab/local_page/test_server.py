@@ -184,6 +184,20 @@ def test_columns_and_units_are_corrected(served: Server, ride: bytes) -> None:
     assert depths[1] == pytest.approx(0.1 * depths[0], rel=0.02)
 
 
+def test_a_radius_that_was_set_on_the_page_is_told_without_a_file_of_its_own(
+    served: Server, ride: bytes
+) -> None:
+    rows = [row.split(",") for row in ride.decode().splitlines()]
+    text = "\n".join(",".join([t, x, f]) for t, x, _, f in rows).encode()
+    ask(served, "POST", "recordings?name=flat.csv", text)
+    settings = {"columns": {}, "units": {}, "radius": "flat"}
+    told = ask(served, "POST", "recordings/1", json.dumps(settings).encode())[1]
+    assert "surface radius flat from the settings of flat.csv" in told["notes"]
+    assert not any("0001" in note for note in told["notes"])
+    wrong = ask(served, "POST", "recordings/1", json.dumps({**settings, "radius": "25"}).encode())[1]
+    assert "0001" not in json.dumps([wrong.get("problem"), wrong.get("notes"), wrong.get("error")])
+
+
 def test_doubts_and_what_the_file_says_are_told(served: Server, ride: bytes) -> None:
     """A force that is a thousand times too small for a tire, below a line about the test."""
     head, *rows = ride.decode().splitlines()
