@@ -24,6 +24,7 @@ from ..preprocessing.data_checks import (
 )
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, alone, is_timed, raw_dataset_of
+from ..preprocessing.straight import at_one_rate
 from ..recordings.zero import refuse_far_zeros
 from ..regressors.dataset import arranged
 from ..selection.search import LIKE_NOISE
@@ -195,9 +196,18 @@ class _Data:
         """Whether the times of all samples were measured."""
         return is_timed(self.recordings)
 
+    @cached_property
+    def unknown(self) -> frozenset[str]:
+        """The coordinates that the recordings do not show: those that need times which were not measured, and the
+        acceleration of motions at one rate, which is rounding.
+        """
+        found = frozenset() if self.timed else frozenset(OF_TIME)
+        straight = all(at_one_rate(e.time, e.motion) for e in self.samples.experiments)
+        return found | {"acceleration"} if straight else found
+
     def shown(self, places: Sequence[Span]) -> tuple[Span, ...]:
-        """Return the places without those over coordinates that need the times, where these were not measured."""
-        return tuple(place for place in places if self.timed or place.by not in OF_TIME)
+        """Return the places without those over coordinates that the recordings do not show."""
+        return tuple(place for place in places if place.by not in self.unknown)
 
 
 @dataclass(frozen=True)
@@ -291,7 +301,7 @@ def _unexplained(
 ) -> tuple[str, ...]:
     """Return the coordinates on which an unexplained remainder depends; none where nothing is unexplained."""
     places = data.shown(localize(data.recordings, data.samples, residuals, noises, residuals))
-    return tuple(by for by in unexplained_by(remainder, places) if data.timed or by not in OF_TIME)
+    return tuple(by for by in unexplained_by(remainder, places) if by not in data.unknown)
 
 
 def _renamed(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorded]) -> TireModel:

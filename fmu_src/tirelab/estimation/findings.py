@@ -22,6 +22,7 @@ from ..regressors.signature import LAW, form_error, reference_of, size_of
 from ..selection.search import LIKE_NOISE
 from ..simulation.channels import Sampled
 from ..simulation.simulate import simulate
+from .coordinates import coordinates_of
 from .fit import Fit
 from .problem import COMMON, law_surfaces, tire_of
 
@@ -265,7 +266,7 @@ def of_the_written_tire(
 
 def _dependences(dataset: Dataset, left: FloatArray) -> tuple[Dependence, ...]:
     found = []
-    for name, values in _coordinates(dataset).items():
+    for name, values in coordinates_of(dataset).items():
         edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, REMAINDER_BINS + 1)))
         if edges.size < 4:
             continue
@@ -279,17 +280,6 @@ def _dependences(dataset: Dataset, left: FloatArray) -> tuple[Dependence, ...]:
         share = float(power.sum() / max(left @ left, 1e-300))
         found.append(Dependence(name, share, float(edges[most]), float(edges[most + 1])))
     return tuple(sorted(found, key=lambda d: -d.share))
-
-
-def _coordinates(dataset: Dataset) -> dict[str, FloatArray]:
-    gather, many = dataset.gathered, dataset.experiments
-    return {
-        "deflection": gather([e.deflection for e in many]),
-        "rate": gather([e.rate for e in many]),
-        "acceleration": gather([e.acceleration for e in many]),
-        "time": gather([e.time - e.time[0] for e in many]),
-        "force": gather([e.baseline for e in many]),
-    }
 
 
 SENSITIVITY_STEP = 1e-3

@@ -12,8 +12,10 @@ from rivals import rivals
 from scipy.signal import butter, lfilter
 from tirelab.diagnosis.confidence import of_confounded, probability, sharing_odds
 from tirelab.diagnosis.diagnose import PoorRecording, _Data, _limits_of, catalogue_names, diagnose
+from tirelab.diagnosis.localization import Span
 from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.samples import raw_dataset_of
+from tirelab.recordings.recording import Recording
 from tirelab.simulation.simulate import simulate
 
 
@@ -302,3 +304,18 @@ def test_a_mass_at_one_frequency_is_not_told_from_a_softer_law():
     assert verdict.confidence < 0.5
     others = [set(a.names) for a in verdict.alternatives if a.probability > 0.1]
     assert any(other in either for other in others)
+
+
+@pytest.mark.parametrize("triangle", [True, False])
+def test_the_acceleration_of_a_drive_at_one_rate_is_no_place(triangle: bool) -> None:
+    """Five decimals of a millimetre; what smoothing leaves of them between the turns is no acceleration."""
+    time = 0.01 * np.arange(6000)
+    phase = time / 20.0 % 1.0
+    x = 0.02 * (1.0 - np.abs(2.0 * phase - 1.0)) if triangle else 0.01 * (1.0 - np.cos(2.0 * np.pi * phase))
+    recording = Recording("press", time, np.round(x, 8), np.full(time.size, np.inf), 1e5 * x)
+    data = _Data([recording], raw_dataset_of([recording], TireModel()), [])
+    assert ("acceleration" in data.unknown) is triangle
+    places = [
+        Span(by, 0.0, 1.0, "", "", None, 1.0, 1.0, 0.0, 1.0, 0.0, 1.0) for by in ("rate", "acceleration")
+    ]
+    assert [place.by for place in data.shown(places)] == ["rate", "acceleration"][: 2 - triangle]
