@@ -10,7 +10,13 @@ import numpy as np
 from radialtire import TireModel
 
 from ..computing.threads import one_thread
-from ..errors import check_given, check_names_given, check_recordings_given, check_tire_given
+from ..errors import (
+    TirelabError,
+    check_given,
+    check_names_given,
+    check_recordings_given,
+    check_tire_given,
+)
 from ..estimation.explanation import Explanation, catalogue_names, explain_misfit
 from ..estimation.findings import NamedEffect, Remainder, of_the_written_tire
 from ..estimation.ranking import MOST_WORK
@@ -48,7 +54,6 @@ from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_ou
 from .discriminating_test import DiscriminatingTest, discriminate
 from .localization import Span, law_corrected, localize
 from .missed import Missed, missed_held_out
-from .request_checks import check_held_out
 from .residual_model import residual_models, unexplained_by
 from .summary import before_simulation, not_seen, other_law, slow_noise, summarise
 from .verdict import FitErrors, NotNamed, Verdict
@@ -85,7 +90,7 @@ def diagnose(
     if limits is not None:
         check_given(limits, Limits, "limits", "the limits of a rig", "Limits(deepest=0.02, fastest=0.1)")
     several = _several(recordings), baseline, _several(held_out)
-    check_held_out(*([(r.name, r) for r in given] for given in (several[0], several[2])))
+    _refuse_copies(several[0], several[2])
     return diagnosed(Asked(*several, catalogue, limits, progress))
 
 
@@ -317,6 +322,18 @@ def _renamed(corrected: TireModel, baseline: TireModel, fitted: Sequence[Recorde
 
 def _several(given: Recorded | Sequence[Recorded]) -> Sequence[Recorded]:
     return given if isinstance(given, Sequence) and not isinstance(given, str) else (given,)
+
+
+def _refuse_copies(recordings: Sequence[Recorded], held_out: Sequence[Recorded]) -> None:
+    """Raise TirelabError where a held-out recording is one of the fitted ones, and tests nothing."""
+    for kept in held_out:
+        own = kept.time, kept.deflection, kept.force
+        for r in recordings:
+            if all(map(np.array_equal, own, (r.time, r.deflection, r.force))):
+                raise TirelabError(
+                    f"{kept.name} has the readings of {r.name}, which is fitted, and tests nothing; hold out another "
+                    "recording"
+                )
 
 
 def _check_names(catalogue: Sequence[str]) -> None:

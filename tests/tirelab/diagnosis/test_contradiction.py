@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from radialtire import PowerLaw, TireModel
-from tirelab.diagnosis.asked import Asked
 from tirelab.diagnosis.contradiction import Contradiction
-from tirelab.diagnosis.diagnose import diagnose, diagnosed
+from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.verdict import Verdict
 from tirelab.recordings.recording import Recording
 
@@ -186,7 +185,7 @@ def test_a_held_out_recording_that_begins_in_motion_does_not_contradict_the_one_
     whole = pressed("a", 1, damping=2e4, period=0.5)
     half = slice(450, None)
     cut = [getattr(whole, name)[half] for name in ("time", "deflection", "surface_radius", "force")]
-    verdict = diagnosed(Asked([whole], TIRE, [Recording("cut", *cut)], FEW))
+    verdict = diagnose([whole], TIRE, held_out=[Recording("cut", *cut)], catalogue=FEW)
     assert [e.name for e in verdict.effects] == ["viscous_damping"]
     assert verdict.contradiction is None
 
