@@ -152,6 +152,7 @@ def contradiction_of(
         return None
     together = min(e.error for e in (explanation, *map(explanation.of, explanation.in_order(1))))
     states, places = states_of(recordings, motions), places_of(recordings, motions)
+    ways = ways_of(places, motions)
     apart = _apart(before, states)
     found: list[tuple[float, Contradiction]] = []
     for number in np.argsort(-apart)[:SUSPECTED].tolist():
@@ -159,7 +160,7 @@ def contradiction_of(
             break
         recording, level = recordings[number], explanation.floors[number].level
         others = explain([r for i, r in enumerate(recordings) if i != number])
-        alike = driven_alike(states, places, number)[0] & explanation.compared[number]
+        alike = driven_alike(states, places, ways, number)[0] & explanation.compared[number]
         if others.error >= EXPLAINED * together or alike.mean() < NEGLIGIBLE:
             continue
         moved = smoothed_motion(recording, motions[number])
@@ -204,11 +205,12 @@ def driven(recordings: Sequence[Recorded], held_out: Sequence[Recorded]) -> list
     every = [*recordings, *held_out]
     motions = [motion_of(r.time, r.deflection, timed=is_timed([r])) for r in every]
     states, places = states_of(every, motions), places_of(every, motions)
+    ways = ways_of(places, motions)
     found = []
     for number, (recording, seen) in enumerate(
         zip(held_out, compared(held_out), strict=True), len(recordings)
     ):
-        alike, otherwise = driven_alike(states, places, number)
+        alike, otherwise = driven_alike(states, places, ways, number)
         found.append(
             Driven(recording, smoothed_motion(recording, motions[number]), alike & seen, otherwise & seen)
         )
@@ -313,17 +315,25 @@ def places_of(recordings: Sequence[Recorded], motions: Sequence[Motion]) -> list
     return [(m.deflection, n) for m, n in zip(motions, numbers, strict=True)]
 
 
+def ways_of(places: Sequence[Placed], motions: Sequence[Motion]) -> list[Placed]:
+    """Return the same places with a number that tells the direction too."""
+    return [(x, 2 * n + (m.direction > 0.0)) for (x, n), m in zip(places, motions, strict=True)]
+
+
 def driven_alike(
-    states: Sequence[IndexArray], places: Sequence[Placed], number: int
+    states: Sequence[IndexArray], places: Sequence[Placed], ways: Sequence[Placed], number: int
 ) -> tuple[BoolArray, BoolArray]:
     """Return which samples of a recording another one drove alike, and which otherwise, as far as the others reach.
 
-    A state is wider than the end of what the others reached in it: what lies deeper is neither.
+    A state is wider than the end of what the others reached in it on the same way: what lies beyond is neither.
     """
+
+    def reached(of: Sequence[Placed]) -> BoolArray:
+        return within((p for i, p in enumerate(of) if i != number), [of[number]])[0]
+
     others = np.unique(np.concatenate([s for i, s in enumerate(states) if i != number]))
-    reached = within((p for i, p in enumerate(places) if i != number), [places[number]])[0]
     alike = np.isin(states[number], others)
-    return np.asarray(alike & reached), np.asarray(~alike & reached)
+    return np.asarray(alike & reached(ways)), np.asarray(~alike & reached(places))
 
 
 def _apart(misfits: Sequence[FloatArray], states: Sequence[IndexArray]) -> FloatArray:

@@ -94,7 +94,7 @@ def doubts_of(
         if not largest <= LARGEST_PLAUSIBLE[name]:
             return Doubts()  # the recording refuses it
     origin = gauges.origin
-    backwards = work_doubt(gauges, values["deflection"], values["force"], part)
+    backwards = work_doubt(gauges, values["time"], values["deflection"], values["force"], part)
     loops: tuple[str, ...] = (_placed(where("force", None), backwards),) if backwards else ()
     loops += tuple(_placed(where(name, None), said) for name, said in _state_doubts(values, units, part))
     for name, at, said in sudden_doubts(values["deflection"], values["force"]):

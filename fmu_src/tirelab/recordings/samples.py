@@ -49,6 +49,21 @@ def find_gaps(steps: FloatArray) -> NDArray[np.intp]:
     return np.flatnonzero(steps > GAP * np.median(steps))
 
 
+IRREGULAR = 0.1
+"""Part of the steps in time that may be gaps; with more, the recording is sampled irregularly."""
+
+
+def longest_unbroken(time: FloatArray) -> slice:
+    """Return the longest stretch of samples (n,) without a gap in time [s]; all where it is sampled irregularly."""
+    steps = np.diff(time)
+    gaps = find_gaps(steps) + 1 if steps.size else np.empty(0, dtype=np.intp)
+    if gaps.size > IRREGULAR * steps.size:
+        return slice(0, time.size)
+    ends = np.array([0, *gaps.tolist(), time.size])
+    longest = int(np.argmax(np.diff(ends)))
+    return slice(int(ends[longest]), int(ends[longest + 1]))
+
+
 def gap_notes(time: FloatArray) -> list[str]:
     """What there is to say about gaps in time [s], which may be out of order still."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -56,7 +71,7 @@ def gap_notes(time: FloatArray) -> list[str]:
         gaps = find_gaps(steps)
     if not len(gaps):
         return []
-    if len(gaps) > 0.1 * len(steps):
+    if len(gaps) > IRREGULAR * len(steps):
         return [
             f"time is sampled irregularly: steps from {plain(steps.min(), 6)} to {plain(steps.max(), 6)} s"
         ]

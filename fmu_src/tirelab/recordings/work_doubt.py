@@ -5,18 +5,23 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .samples import longest_unbroken
 from .sign_convention import CLEAR, loading_share, work_share
 from .zero import ZEROED, Gauges
 
 FloatArray = NDArray[np.float64]
 
 
-def work_doubt(gauges: Gauges, deflection: FloatArray, force: FloatArray, part: bool) -> str:
+def work_doubt(
+    gauges: Gauges, time: FloatArray, deflection: FloatArray, force: FloatArray, part: bool
+) -> str:
     """Return a sentence where the part gives out energy in every cycle, "" where it does not.
 
     part: not a tire; then also where its force falls on the way to the largest one, if it makes no whole cycle
+    What it did in a gap of the time is not known, so cycles are whole within the longest stretch without one only.
     """
-    share = work_share(deflection, force)
+    unbroken = longest_unbroken(time)
+    share = work_share(deflection[unbroken], force[unbroken])
     if share < -CLEAR:
         return (
             f"the loops of force over deflection run backwards: {-share:.0%} of the work comes out of the part, and "

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from radialtire import PowerLaw, TireModel
-from tirelab.diagnosis.contradiction import Contradiction
+from tirelab.diagnosis.contradiction import Contradiction, driven
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.diagnosis.verdict import Verdict
 from tirelab.recordings.recording import Recording
@@ -264,3 +264,21 @@ def test_what_lies_deeper_than_the_others_reached_contradicts_nothing() -> None:
         for name, own in (("first", begun), ("rest", ~begun))
     )
     assert diagnose([first], TIRE, held_out=[rest], catalogue=FEW).contradiction is None
+
+
+def test_the_rest_of_a_way_that_the_fitted_part_began_is_not_driven_alike() -> None:
+    """Drawn to 24 mm and released to 23.5 mm: from there on another state of the part comes, though in the same class
+    of deflections (1 mm), which was passed on the way out.
+    """
+    time = np.arange(0.0, 20.0, 0.01)
+    x = np.interp(time, [0.0, 10.0, 20.0], [0.0, 24e-3, 14e-3])
+    flat, force = np.full(time.size, np.inf), 1e5 * x
+    at = int(np.argmin(np.abs(time - 10.5)))
+    fitted, rest = (
+        Recording(name, time[part], x[part], flat[part], force[part])
+        for name, part in (("drawn", slice(0, at)), ("rest", slice(at, None)))
+    )
+    (found,) = driven([fitted], [rest])
+    # A few samples at the end that both share are one place by the smoothing of the motion.
+    assert found.alike.sum() < 10
+    assert found.otherwise.mean() > 0.9

@@ -39,3 +39,15 @@ def test_what_stores_or_loses_energy_is_not() -> None:
     # up to the bottom of the valley it gives out half of the work that the barrier before it takes in
     snapping = 8.0 * np.sin(2.0 * np.pi * WAY) - 0.01 * WAY
     assert loading_share(WAY, snapping) == pytest.approx(1.0 / 3.0, abs=0.01)
+
+
+def test_what_a_part_did_while_nothing_was_recorded_is_not_known(tmp_path: Path) -> None:
+    """Five loading legs of a spring that meets its stop, with the ways back left out: from its peak to 0 the straight
+    line would give out more than the leg took in.
+    """
+    way = np.arange(0.0, 1.0, 0.004)
+    leg = 2.0 * way + 60.0 * np.clip(way - 0.6, 0.0, None) + 0.3
+    time = np.concatenate([0.02 * np.arange(way.size) + 7.0 * cycle for cycle in range(5)])
+    write_rows(tmp_path / "a.csv", "time [s],height [mm],force [N]", time, np.tile(way, 5), np.tile(leg, 5))
+    found = Reading(part=True, columns=SIGNED)(tmp_path / "a.csv")
+    assert not any("backwards" in doubt for doubt in found.doubts)
