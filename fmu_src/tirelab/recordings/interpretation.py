@@ -64,7 +64,9 @@ class Interpreted:
     def check_loading(self) -> None:
         """Refuse a deflection that never changes or is deeper than a wheel, and signs that are in doubt."""
         deflection = self.values["deflection"]
-        if deflection.min() == deflection.max():
+        # A part of a file may be a hold.
+        read = (deflection, self.before.get("deflection", deflection))
+        if min(v.min(initial=np.inf) for v in read) == max(v.max(initial=-np.inf) for v in read):
             still = f"is {plain(deflection[0], 6)} m in every row"
             naming = self.rows.origin.columns(deflection="NAME")
             raise self.error(0, "deflection", f"{still}; name the column that moves with {naming}")

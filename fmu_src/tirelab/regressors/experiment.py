@@ -332,7 +332,9 @@ def _rounding(force: FloatArray, step: float, size: int) -> tuple[float, float]:
 def _stiffness(deflection: FloatArray, force: FloatArray) -> FloatArray:
     """Return the tangent [N/m] of a force over the deflection, from its means on an even grid."""
     low, span = float(deflection.min()), float(np.ptp(deflection))
-    which = np.minimum(((deflection - low) / max(span, 1e-300) * SECANTS).astype(int), SECANTS - 1)
+    if not span > 0.0:
+        return np.zeros_like(deflection)  # a hold that a gauge reads in steps
+    which = np.minimum(((deflection - low) / span * SECANTS).astype(int), SECANTS - 1)
     count = np.bincount(which, minlength=SECANTS)
     held = count > 0
     x, f = (np.bincount(which, v, SECANTS)[held] / count[held] for v in (deflection, force))

@@ -100,6 +100,14 @@ class TestRanges:
         assert whole.whole is whole
         assert read_recording(f"{rig}@:7s").history is None
 
+    def test_a_part_may_be_a_hold_that_the_gauge_reads_in_steps(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        deflection[60:] = deflection[60]
+        path = write_rows(tmp_path / "a.csv", HOUSE_FORM, time, deflection, [25.4] * 101, force)
+        assert np.ptp(read_recording(f"{path}@70:").deflection) == 0.0
+        with pytest.raises(RecordingError, match="in every row; name the column that moves"):
+            read_recording(write_rows(tmp_path / "b.csv", HOUSE_FORM, time, [1.0] * 101, [25.4] * 101, force))
+
     def test_a_history_that_no_recording_can_have_is_none(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         time[20] = time[19]

@@ -142,6 +142,16 @@ def test_recordings_of_a_series_have_the_noise_of_one_amplifier(follows_sampling
     assert other.reading.level == pytest.approx(FORCE_NOISE, rel=0.1)
 
 
+def test_a_hold_that_the_gauge_reads_in_steps_has_no_stiffness() -> None:
+    """The noise of its gauge makes no noise of the force; the amplifier's is all."""
+    held = triangle(2000, 1)
+    still = np.full(2000, 0.01)
+    noise = FORCE_NOISE * np.random.default_rng(3).normal(size=2000)
+    (experiment,) = dataset_of([replace(held, deflection=still, force=noise)], TireModel()).experiments
+    assert experiment.floor.level == pytest.approx(FORCE_NOISE, rel=0.1)
+    assert experiment.floor.gauge == experiment.floor.steps == 0.0
+
+
 def test_recordings_of_a_series_have_the_hum_of_one_amplifier() -> None:
     """8 N RMS at 50.03 Hz: within 40 s it drifts against cycles of 20 s, within 8 s hardly against those of 2 s."""
     several = []
