@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -72,15 +71,6 @@ CALLS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], str]] = {
 def test_limits_that_no_rig_has_are_told(given: dict[str, Any], told: str) -> None:
     with pytest.raises(ValueError, match=re.escape(told)):
         Limits(**given)
-
-
-def test_a_recording_that_is_fitted_is_not_held_out_too() -> None:
-    with pytest.raises(
-        TirelabError, match="ride 1 has the readings of ride 1, which is fitted, and tests nothing"
-    ):
-        diagnose(RECORDING, TIRE, held_out=RECORDING)
-    with pytest.raises(TirelabError, match="other has the readings of ride 1, which is fitted"):
-        diagnose([RECORDING], TIRE, held_out=[replace(RECORDING, name="other")])
 
 
 def test_one_recording_is_identified_as_several_are() -> None:

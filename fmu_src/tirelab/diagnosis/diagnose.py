@@ -11,7 +11,6 @@ from radialtire import TireModel
 
 from ..computing.threads import one_thread
 from ..errors import (
-    TirelabError,
     check_given,
     check_names_given,
     check_recordings_given,
@@ -80,8 +79,7 @@ def diagnose(
 
     Raises PoorRecording where recordings, also held-out ones, are too short or too poor, RecordingError where the zero
     of a gauge is so far off that no effect holds it, ValueError for an unknown name in `catalogue`, TypeError for
-    what is no recording or no tire, such as the path of one, and TirelabError where a held-out recording has the
-    readings of a fitted one.
+    what is no recording or no tire, such as the path of one.
     """
     check_tire_given(baseline)
     check_recordings_given((*_several(recordings), *_several(held_out)))
@@ -90,7 +88,6 @@ def diagnose(
     if limits is not None:
         check_given(limits, Limits, "limits", "the limits of a rig", "Limits(deepest=0.02, fastest=0.1)")
     several = _several(recordings), baseline, _several(held_out)
-    _refuse_copies(several[0], several[2])
     return diagnosed(Asked(*several, catalogue, limits, progress))
 
 
@@ -156,7 +153,8 @@ def diagnosed(asked: Asked) -> Verdict:
     report("searching for a test that separates the alternatives")
     test = _recommend(explanation, alternatives, fit.noise, _limits_of(data, limits, part=baseline.is_part))
     missing = not_compared(fitted)
-    sentences = [] if contradiction is None else [contradiction.sentences]
+    sentences = _copies_told(fitted, kept)
+    sentences += [] if contradiction is None else [contradiction.sentences]
     sentences.append(summarise(effects, alternatives, models, confidence, fit, test))
     sentences += [*before.told(fit), *(before_simulation(of_law, before.tried) if may_be_before else [])]
     sentences += not_seen(remainder.uncompared, models) if unexplained else []
@@ -324,16 +322,18 @@ def _several(given: Recorded | Sequence[Recorded]) -> Sequence[Recorded]:
     return given if isinstance(given, Sequence) and not isinstance(given, str) else (given,)
 
 
-def _refuse_copies(recordings: Sequence[Recorded], held_out: Sequence[Recorded]) -> None:
-    """Raise TirelabError where a held-out recording is one of the fitted ones, and tests nothing."""
+def _copies_told(recordings: Sequence[Recorded], held_out: Sequence[Recorded]) -> list[str]:
+    """Return a sentence on each held-out recording that is one of the fitted ones."""
+    told = []
     for kept in held_out:
         own = kept.time, kept.deflection, kept.force
-        for r in recordings:
-            if all(map(np.array_equal, own, (r.time, r.deflection, r.force))):
-                raise TirelabError(
-                    f"{kept.name} has the readings of {r.name}, which is fitted, and tests nothing; hold out another "
-                    "recording"
-                )
+        same = (r for r in recordings if all(map(np.array_equal, own, (r.time, r.deflection, r.force))))
+        if (copied := next(same, None)) is not None:
+            told.append(
+                f"Held-out {kept.name} has the readings of {copied.name}, which is fitted: it tests nothing; hold out "
+                "another recording."
+            )
+    return told
 
 
 def _check_names(catalogue: Sequence[str]) -> None:

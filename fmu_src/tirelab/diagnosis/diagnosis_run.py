@@ -173,7 +173,7 @@ def _read_all(asked: Request, report: Progress, baseline: TireModel) -> _Read:
     check_folder(asked.out)
     fitted = tuple(alone(_read(file, asked.reading, report)) for file in files)
     kept = tuple(_read(file, asked.reading, report) for file in kept_files)
-    check_apart(list(zip(every, (*fitted, *kept), strict=True)), len(fitted))
+    check_apart(list(zip(every, (*fitted, *kept), strict=True)))
     check_depth(fitted, kept, baseline)
     return _Read(fitted, kept, every, tuple(map(str, (*skipped, *more_skipped))))
 

@@ -40,12 +40,8 @@ def check_once(files: Sequence[Path]) -> None:
         seen.add(file.resolve())
 
 
-def check_apart(read: Sequence[tuple[Path, Recording]], fitted: int | None = None) -> None:
-    """Raise TirelabError where two pieces of one file share samples, or a recording that is held out has no readings
-    but those of a fitted one: each sample is fitted or held out, once.
-
-    fitted: how many of the first are fitted, None: all
-    """
+def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
+    """Raise TirelabError where two pieces of one file share samples: each sample is fitted or held out, once."""
     for i, (file, one) in enumerate(read):
         for other_file, other in read[:i]:
             same = one.source is not None and other.source is not None and one.source.samefile(other.source)
@@ -63,23 +59,6 @@ def check_apart(read: Sequence[tuple[Path, Recording]], fitted: int | None = Non
                     f"{other_file} and {file} share {shared}; give each part of a file once "
                     "(a range includes both ends)"
                 )
-    check_held_out(read[:fitted], read[len(read) if fitted is None else fitted :])
-
-
-def check_held_out(
-    fitted: Sequence[tuple[object, Recorded]], held_out: Sequence[tuple[object, Recorded]]
-) -> None:
-    """Raise TirelabError where a recording that is held out has no readings but those of a fitted one; both with the
-    files or names by which they are told.
-    """
-    known = [(file, _runs(recording)) for file, recording in fitted] if held_out else []
-    for file, recording in held_out:
-        own = _runs(recording)
-        copied = next((one for one, runs in known if own.size and np.isin(own, runs).all()), None)
-        if copied is not None:
-            raise TirelabError(
-                f"{file} has the readings of {copied}, which is fitted, and tests nothing; hold out another recording"
-            )
 
 
 def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Real
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -20,15 +20,6 @@ from .units import QUANTITIES, measures, split_header
 
 SI_UNITS: Mapping[str, str] = {"time": "s", "deflection": "m", "force": "N", "radius": "m"}
 """The units of arrays for which none is given."""
-
-
-class Beside(TypedDict, total=False):
-    """Arrays that a recording may have beside time, deflection, force and radius."""
-
-    pressure: ArrayLike | None
-    temperature: ArrayLike | None
-    speed: ArrayLike | None
-    believed_force: ArrayLike | None
 
 
 class ColumnTable:

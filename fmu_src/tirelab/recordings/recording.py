@@ -19,7 +19,7 @@ from .formats import Columns, RecordingError, Table, open_table
 from .formats.delimited import DelimitedTable
 from .formats.excel import ExcelTable
 from .formats.table import quoted
-from .frames import Beside, array_table, array_units, frame_table, is_single, single_radius
+from .frames import array_table, array_units, frame_table, is_single, single_radius
 from .interpretation import Interpreted, interpret
 from .memory import memory_available, readable_size
 from .metadata import Settings, read_sidecar
@@ -131,7 +131,7 @@ class Recording:
         *,
         name: str = "recording",
         units: Mapping[str, str] | None = None,
-        **beside: Unpack[Beside],
+        **beside: ArrayLike | None,
     ) -> Recording:
         """Return a recording of arrays, lists or columns, with the checks and the sign rule of a file.
 
@@ -146,7 +146,7 @@ class Recording:
         `notes` says so. Errors: RecordingError, one sentence with the sample, the value and the next step.
         """
         origin = Origin(name, "arrays")
-        refuse_unknown(beside, Beside.__annotations__)
+        refuse_unknown(beside, dict.fromkeys(OPTIONAL))
         more = {name: values for name, values in beside.items() if values is not None}
         channel_units = array_units(origin, texts_of_channels("units", units), more)
         arrays: dict[str, Any] = {"deflection": deflection, "force": force, **more}

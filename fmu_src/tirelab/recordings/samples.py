@@ -55,8 +55,9 @@ IRREGULAR = 0.1
 
 def longest_unbroken(time: FloatArray) -> slice:
     """Return the longest stretch of samples (n,) without a gap in time [s]; all where it is sampled irregularly."""
-    steps = np.diff(time)
-    gaps = find_gaps(steps) + 1 if steps.size else np.empty(0, dtype=np.intp)
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(time)
+        gaps = find_gaps(steps) + 1 if steps.size else np.empty(0, dtype=np.intp)
     if gaps.size > IRREGULAR * steps.size:
         return slice(0, time.size)
     ends = np.array([0, *gaps.tolist(), time.size])

@@ -95,6 +95,17 @@ def test_given_recordings_are_preferred(damped_run):
     assert damped_run.verdict.fit.held_out_by == "recordings given"
 
 
+def test_held_out_readings_that_are_fitted_are_told_to_test_nothing():
+    ridden = damped(1, samples=2000)
+    for name in ("ride 1", "copy"):
+        found = diagnose(ridden, held_out=replace(ridden, name=name), catalogue=["viscous_damping"])
+        assert found.summary.startswith(
+            f"Held-out {name} has the readings of ride 1, which is fitted: it tests nothing; hold out another"
+        )
+    other = diagnose(ridden, held_out=damped(2, samples=2000), catalogue=["viscous_damping"])
+    assert "tests nothing" not in other.summary
+
+
 def test_where_nothing_is_missing_both_errors_are_the_noise(complete_verdict):
     assert complete_verdict.names == ()
     assert complete_verdict.fit.held_out_after == complete_verdict.fit.held_out_before

@@ -73,26 +73,6 @@ def test_copies_and_exports_of_one_test_are_told() -> None:
     assert kept.endswith("a correction fitted to the one is not tested on the other")
 
 
-def test_what_is_held_out_is_no_copy_of_what_is_fitted(tmp_path: Path) -> None:
-    """A copy, a cut of one and another export test nothing; more readings than those of one fitted recording do."""
-    first, second = coarse("first", 1), coarse("second", 2)
-    longer = replace(
-        first,
-        **{c: np.append(getattr(first, c), getattr(second, c) + 20.02 * (c == "time")) for c in COLUMNS},
-    )
-    files = [tmp_path / name for name in ("first.csv", "second.csv", "held.csv")]
-    cut = replace(first, **{c: getattr(first, c)[300:] for c in COLUMNS})
-    inches = replace(first, deflection=first.deflection / 0.0254 * 0.0254)
-    for copy in (first, cut, inches):
-        check_apart([(files[1], second), (files[0], first), (files[2], copy)])  # all are fitted
-        with pytest.raises(
-            TirelabError, match=r"held\.csv has the readings of .*first\.csv, which is fitted"
-        ):
-            check_apart([(files[1], second), (files[0], first), (files[2], copy)], 2)
-    check_apart([(files[0], first), (files[1], second), (files[2], longer)], 2)
-    check_apart([(files[0], part(0.0, 1.0)), (files[1], second)], 1)
-
-
 def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
     tire, held = TireModel(), TireModel(PowerLaw(), two_sided=True, inflated=False)
     check_depth([part(0.0, 1.0, 0.3)], [], tire)
