@@ -10,7 +10,7 @@ import numpy as np
 from radialtire import TireModel
 from scipy.special import expit
 
-from ..estimation.findings import NamedEffect
+from ..estimation.findings import NamedEffect, Remainder
 from ..planning.waveforms import Limits
 from ..preprocessing.samples import Recorded
 from ..report.titles import listed, newtons, short_title
@@ -63,6 +63,13 @@ class Before:
             f"The simulation itself was given the deflection after the {names}: this leaves {newtons(fit.after)}, "
             f"where {newtons(self.without.after)} are left without it."
         ]
+
+    def of_the_whole(self, remainder: Remainder, noise: float) -> Remainder:
+        """Return a remainder with its share of the misfit of the recordings as they are; noise [N]: of theirs."""
+        if self.errors is None:
+            return remainder
+        missed = max(self.errors.before**2 - noise**2, 1e-300)
+        return replace(remainder, share=min(remainder.force**2 / missed, 1.0))
 
     def beside(
         self, effects: Sequence[NamedEffect], alternatives: Sequence[Alternative], fit: FitErrors

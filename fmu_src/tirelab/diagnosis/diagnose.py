@@ -167,7 +167,7 @@ def diagnosed(asked: Asked) -> Verdict:
         confidence=confidence,
         grounds=grounds,
         alternatives=alternatives,
-        remainder=remainder,
+        remainder=before.of_the_whole(remainder, fit.noise),
         unexplained_by=unexplained,
         residual_models=models,
         summary=" ".join([*sentences, *missing, *outliers_told(fitted, explanation.noise_free)]),

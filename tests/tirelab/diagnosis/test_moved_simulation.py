@@ -24,7 +24,7 @@ from tirelab.diagnosis.moved_simulation import diagnose_beside
 from tirelab.diagnosis.simulation_correction import Believed, believed_of
 from tirelab.diagnosis.verdict import FitErrors, Verdict
 from tirelab.errors import TirelabError
-from tirelab.estimation.findings import NamedEffect
+from tirelab.estimation.findings import NamedEffect, Remainder
 from tirelab.recordings.recording import Recording
 from tirelab.simulation.simulate import upstream_names
 
@@ -180,6 +180,14 @@ def test_a_held_out_recording_that_is_worse_lowers_the_probability() -> None:
     assert before.judged(left).probability > 0.99
     kept = recorded(motion()[1], motion()[1], play, 0.0)
     assert replace(before, held_out=(kept,)).judged(left).probability < 0.01
+
+
+def test_the_share_of_a_remainder_is_that_of_the_whole_misfit() -> None:
+    """3 N are left of 6 N beside 4 N of noise with the other deflection, and of 25 N without it."""
+    remainder = Remainder(0.45, 0.75, 3.0, ())
+    errors = FitErrors(4.0, 25.0, 5.0, 25.0, 5.0, "recordings given")
+    assert Before(errors=errors).of_the_whole(remainder, 4.0).share == pytest.approx(9.0 / (25.0**2 - 16.0))
+    assert Before().of_the_whole(remainder, 4.0) is remainder
 
 
 def test_the_corrected_simulation_of_an_fmu_with_play_runs_as_stated(tmp_path: Path) -> None:
