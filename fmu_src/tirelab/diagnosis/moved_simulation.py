@@ -27,7 +27,7 @@ from ..estimation.problem import parameters_of_effect, with_readings
 from ..fmu.foreign_replay import Progress, replay_foreign
 from ..planning.waveforms import Limits
 from ..recordings.recording import Recording
-from ..regressors.dataset import arranged, dataset_of
+from ..regressors.dataset import Dataset, arranged, dataset_of
 from ..report.titles import short_title
 from ..selection.search import EFFECTIVE, LIKE_NOISE
 from ..simulation.simulate import deflection_of, simulate, upstream_names
@@ -83,7 +83,9 @@ def _with_effects_before(believed: Believed, found: Verdict, diagnose: Diagnose,
             if without.fit.after < errors.after:
                 best, errors = without, without.fit
     while best.remainder.size > LIKE_NOISE:
-        tried = [_moved_by(name, believed, report) for name in upstream if name not in dict(known.values)]
+        dataset = dataset_of(believed.fitted, believed.tire)
+        untried = [name for name in upstream if name not in dict(known.values)]
+        tried = [_moved_by(name, believed, dataset, report) for name in untried]
         for moved in sorted((m for m in tried if m is not None), key=lambda m: m.left):
             report(f"diagnosing with the {short_title(moved.name)} before the simulation")
             before, beside = moved.beside(known, errors), _given(believed, moved, report)
@@ -139,9 +141,11 @@ class _Point:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
-def _moved_by(name: str, believed: Believed, report: Progress) -> _Moved | None:
-    """Return an effect fitted by replays of the simulation; None where it leaves no less than without it."""
-    dataset = dataset_of(believed.fitted, believed.tire)
+def _moved_by(name: str, believed: Believed, dataset: Dataset, report: Progress) -> _Moved | None:
+    """Return an effect fitted by replays of the simulation; None where it leaves no less than without it.
+
+    dataset: of the fitted recordings
+    """
     parameters = CATALOGUE[name].parameters
     free = parameters_of_effect(name, dataset.scales)
     order = sorted(free, key=lambda p: parameters[p.index].role != "strength")

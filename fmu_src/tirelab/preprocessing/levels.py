@@ -126,9 +126,14 @@ def levels_by_state(
     or falls, as an oscillation.
     least: that counts; differ: whether they are known not to be alike
     """
-    levels = _levels_in(residual, (rests, ~rests), least)
+    states = [state for state in (rests, ~rests) if state.sum() >= FEWEST_IN_STATE]
+    levels = [[max(level_of(residual, lag, s), least) for lag in STATE_LAGS] for s in states]
+    if len(levels) < 2 or not all(map(plateau_at, levels)):
+        return 1.0, 1.0
+    if any(falls(*known_levels(residual, finer(STATE_LAGS), s)) for s in states):
+        return 1.0, 1.0
     white = [own[0] for own in levels]
-    if not levels or (not differ and max(white) < STAYS**4 * min(white)):
+    if not differ and max(white) < STAYS**4 * min(white):
         return 1.0, 1.0
     at_rest, moving = (max(own) / max(white_level(residual), least) for own in levels)
     return at_rest, moving
@@ -142,7 +147,8 @@ def levels_by_load(
     residual: FloatArray, load: FloatArray, least: float, before: NoiseProfile
 ) -> NoiseProfile:
     """Return how the noise of a residual (n,) differs with the load (n,) [N], in addition to the profile `before`;
-    `before` where it does not differ, or is not white at the loads (see `levels_by_state`).
+    `before` where it does not differ, or differs between lags at one load by more than the root of what it differs by
+    between the loads.
 
     residual: over the noise of the profile before; least: that counts
     Where a cycle passes all loads within a few lags, differences at one see the noise of others; so a few loads come
@@ -187,21 +193,6 @@ def _differ(levels: FloatArray, known: FloatArray) -> bool:
     """Return whether levels differ by more than those of one noise, and than chance; known: the part that is known."""
     quiet, loud = int(np.argmin(levels)), int(np.argmax(levels))
     return bool(levels[quiet] < min(1.0 / STAYS, float(known[quiet] * known[loud])) * levels[loud])
-
-
-def _levels_in(residual: FloatArray, parts: Sequence[BoolArray], least: float) -> list[list[float]]:
-    """Return the levels of a residual over STATE_LAGS in each of its parts; nothing where one is hardly seen, keeps
-    growing with the lag or falls.
-    """
-    seen = [part for part in parts if part.sum() >= FEWEST_IN_STATE]
-    if len(seen) < len(parts):
-        return []
-    levels = [[max(level_of(residual, lag, part), least) for lag in STATE_LAGS] for part in seen]
-    if not all(map(plateau_at, levels)):
-        return []
-    if any(falls(*known_levels(residual, finer(STATE_LAGS), part)) for part in seen):
-        return []
-    return levels
 
 
 def known_over(count: int, lag: int) -> BoolArray:

@@ -26,6 +26,7 @@ from tirelab.diagnosis.verdict import FitErrors, Verdict
 from tirelab.errors import TirelabError
 from tirelab.estimation.findings import NamedEffect, Remainder
 from tirelab.recordings.recording import Recording
+from tirelab.regressors.dataset import dataset_of
 from tirelab.simulation.simulate import upstream_names
 
 FloatArray = NDArray[np.float64]
@@ -144,7 +145,8 @@ def test_a_strength_stays_within_its_bounds(name: str, monkeypatch: pytest.Monke
     """Friction of 400 N asks for more of an effect before the simulation than there can be."""
     _, x = motion()
     believed = beside(recorded(x, x, play, 10.0 * rubbed(x)), play, monkeypatch)
-    moved = moved_simulation._moved_by(name, believed, lambda sentence: None)
+    dataset = dataset_of(believed.fitted, believed.tire)
+    moved = moved_simulation._moved_by(name, believed, dataset, lambda sentence: None)
     for value, parameter in zip(moved.values if moved else (), CATALOGUE[name].parameters, strict=False):
         assert parameter.minimum <= value <= parameter.maximum
 
