@@ -88,7 +88,7 @@ DERIVED = (
     "preprocessing/motion.WINDOW",
     "preprocessing/levels.FEWEST_IN_STATE",
     "preprocessing/noise.LONGEST_PHASE",
-    "preprocessing/noise.SHARE_OF_STEP",
+    "preprocessing/noise_floor.SHARE_OF_STEP",
     "preprocessing/levels.STATE_LAGS",
     "preprocessing/spread.MEDIAN_TO_SIGMA",
     "preprocessing/spread.TRIMMED",

@@ -17,7 +17,8 @@ from radialtire import CATALOGUE, TireModel
 
 from ..preprocessing.data_checks import compared
 from ..preprocessing.levels import STAYS
-from ..preprocessing.noise import Noise, NoiseFloor, noise_left
+from ..preprocessing.noise import Noise, noise_left
+from ..preprocessing.noise_floor import NoiseFloor
 from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
 from ..regressors.excitation import Excitation, excitation_of, misread

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from radialtire import TireModel
 from scipy.ndimage import median_filter
 
-from ..preprocessing.noise import Noise, NoiseFloor
+from ..preprocessing.noise import Noise
+from ..preprocessing.noise_floor import NoiseFloor
 from ..recordings.description import surface_text
 from ..regressors.experiment import Blocks, Experiment
 from ..simulation.simulate import simulate

@@ -54,18 +54,21 @@ def local_rms(values: FloatArray, lag: int, seen: BoolArray) -> float:
     return float(np.sqrt(np.mean(varied[seen] ** 2)))
 
 
-def plateau_at(levels: Sequence[float]) -> int:
+def plateau_at(levels: Sequence[float], known: Sequence[float] = ()) -> int:
     """Return the index of the last level from which on the levels over doubled lags stay constant; 0 where none is."""
     # One doubling without a rise may be chance between two rises: the level has to hold over a factor of four.
-    pairs = enumerate(itertools.pairwise(rising(levels)))
+    pairs = enumerate(itertools.pairwise(rising(levels, known)))
     return max((i + 1 for i, pair in pairs if not any(pair)), default=0)
 
 
-def rising(levels: Sequence[float]) -> list[bool]:
-    """Return whether each level but the first is a rise over those before it."""
+def rising(levels: Sequence[float], known: Sequence[float] = ()) -> list[bool]:
+    """Return whether each level but the first is a rise over those before it, by more than counts as constant and, with
+    the `known_part` of each, than chance.
+    """
     # The differences of a noise with a memory never fall with the lag: what rises after a fall is chance.
-    highest = itertools.accumulate(levels, max)
-    return [after >= STAYS * before for before, after in zip(highest, levels[1:], strict=False)]
+    highest, parts = itertools.accumulate(levels, max), known or [1.0] * len(levels)
+    later = zip(highest, levels[1:], parts[1:], strict=False)
+    return [min(part, 1.0 / STAYS) * after >= before for before, after, part in later]
 
 
 def finer(lags: Sequence[int]) -> tuple[int, ...]:

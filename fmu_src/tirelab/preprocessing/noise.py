@@ -1,10 +1,4 @@
-"""The noise of a misfit, and the noise floor of a recording.
-
-The noise floor is the root mean square of all sources together over the recorded samples:
-
-    amplifier: noise of the force's reading; one that steps by q errs by q / sqrt(12) at least, as a gauge does
-    gauge:     noise of the deflection's reading times the stiffness
-    steps:     a gauge that steps by q leaves stiffness x q / sqrt(12)
+"""The noise of a misfit: its level and its memory.
 
 A filter before the converter correlates the noise of neighbouring force samples. The correlation length, here the
 memory of the noise, shows in differences over growing lags: they rise up to the memory and then stay constant, while
@@ -68,27 +62,9 @@ NEGLIGIBLE = 0.05
 STANDS_OUT = 8.0
 """Noise standard deviations: a gauge whose reading stays within them stands still, what is beyond them is no noise."""
 
-SHARE_OF_STEP = 1.0 / float(np.sqrt(12.0))
-"""Root mean square error of a reading that is rounded to steps, in steps."""
-
 LONGEST_PHASE = float(2.0 * np.pi / 3.0)
 """Phase p [rad] of the motion over the longest lag. Third differences of a sine are (2 sin(p / 2))^3 times it, at this
 phase five times those over half the lag; a level that does not rise so much is that of noise."""
-
-
-@dataclass(frozen=True)
-class NoiseFloor:
-    """amplifier, gauge, steps [N]: root mean squares at the recorded samples; step [m] of the gauge, 0: none seen."""
-
-    amplifier: float
-    gauge: float
-    steps: float
-    step: float
-
-    @property
-    def level(self) -> float:
-        """The whole noise floor [N]: root of the sum of squares."""
-        return float(np.sqrt(self.amplifier**2 + self.gauge**2 + self.steps**2))
 
 
 @dataclass(frozen=True)
@@ -199,12 +175,24 @@ def white_noise_of(residual: FloatArray, driven: Driven, known: Sequence[Noise] 
 
 @dataclass(frozen=True)
 class _Levels:
-    """Levels of a residual over doubled lags, `values`, at the samples where the motion is slow enough for all lags."""
+    """Levels of a residual over doubled lags, `values`, at the samples where the motion is slow enough for all lags;
+    known: the part of each that chance leaves.
+    """
 
     residual: FloatArray
     lags: tuple[int, ...]
     slow: BoolArray
     values: tuple[float, ...]
+    known: tuple[float, ...]
+
+    @property
+    def rises(self) -> list[bool]:
+        """Whether each level but the first is a rise."""
+        return rising(self.values, self.known)
+
+    def noise(self, last: int) -> Noise:
+        """Return the noise with the level `last`."""
+        return _noise_of_level(self.values, self.rises, last)
 
     def white(self, driven: Driven) -> Noise:
         """Return the white noise. Where the motion is quick, a misfit that follows it varies as quickly as noise; and
@@ -269,15 +257,16 @@ def _slow_lags(driven: Driven) -> tuple[tuple[int, ...], BoolArray]:
 def _levels_of(residual: FloatArray, driven: Driven) -> _Levels:
     """Return the levels of a residual."""
     lags, slow = _slow_lags(driven)
-    return _Levels(residual, lags, slow, tuple(level_of(residual, lag, slow) for lag in lags))
+    levels, known = known_levels(residual, lags, slow)
+    return _Levels(residual, lags, slow, tuple(levels.tolist()), tuple(known.tolist()))
 
 
 def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     """Return the noise whose level stays constant over growing lags, without what repeats; None where none does."""
-    last = plateau_at(levels.values)
+    last = plateau_at(levels.values, levels.known)
     if last == 0:
         return None
-    found = _noise_of_level(levels.values, last)
+    found = levels.noise(last)
     if found.memory == 1:
         return levels.white(driven)
     found = levels.beneath(found)
@@ -289,7 +278,7 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     between = [[level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits]
     if not all(map(plateau_at, between)):
         return None
-    noises = [found, *(_noise_of_level(own, plateau_at(own)) for own in between)]
+    noises = [found, *(_noise_of_level(own, rising(own), plateau_at(own)) for own in between)]
     noises += [Noise(most_apart(levels.residual, found.memory, *v[:2]), found.memory) for v in visits]
     least, white = min(noises, key=lambda noise: noise.level), levels.white(driven)
     return least if least.level > STAYS * white.level else white
@@ -305,9 +294,9 @@ def _noises_at_whole_variation(
     noise is known.
     """
     residual, slow = levels.residual, levels.slow
-    rises = rising(levels.values)
+    rises = levels.rises
     for last in reversed(range(1, len(levels.lags))):
-        found, lag = _noise_of_level(levels.values, last), levels.lags[last]
+        found, lag = levels.noise(last), levels.lags[last]
         most, visits = local_rms(residual, lag, slow), _seen_visits(driven, found.memory, lag, slow)
         if found.memory == 1 or any(rises[last:]) or levels.values[last] * STAYS < most:
             continue
@@ -382,23 +371,7 @@ def _where_slow(change: FloatArray, bend: FloatArray, span: float, lag: int) -> 
     return np.asarray((rests | follows) & (np.pi * change_there * lag <= LONGEST_PHASE * span))
 
 
-def _noise_of_level(levels: Sequence[float], last: int) -> Noise:
+def _noise_of_level(levels: Sequence[float], rises: Sequence[bool], last: int) -> Noise:
     """Return the noise with the level `last`; its memory is that of the last rise before it, else 1."""
-    risen = [i for i, rise in enumerate(rising(levels)[:last]) if rise]
+    risen = [i for i, rise in enumerate(rises[:last]) if rise]
     return Noise(levels[last], 2 ** (risen[-1] + 1)) if risen else Noise(levels[0], 1)
-
-
-def noise_floor(
-    level: float, stiffness: FloatArray, gauge_noise: float, step: float, force_step: float
-) -> NoiseFloor:
-    """Return the floor of a recording.
-
-    level [N]: noise of the force less what a smooth model makes of it; stiffness [N/m] sample by sample
-    gauge_noise [m]: of the deflection's reading; step [m], force_step [N]: in which the two are read, 0 for none
-    """
-    mean_square = float(np.sqrt(np.mean(stiffness**2)))
-    through_gauge = 0.0 if step > 0.0 else gauge_noise * mean_square
-    through_steps = step * SHARE_OF_STEP * mean_square
-    whole = max(level, force_step * SHARE_OF_STEP)
-    amplifier = float(np.sqrt(max(whole**2 - through_gauge**2, NEGLIGIBLE * whole**2)))
-    return NoiseFloor(amplifier, through_gauge, through_steps, step)

@@ -25,7 +25,8 @@ from ..preprocessing.driven import Driven
 from ..preprocessing.gauge import destepped, gauge_step, read_again, staircase_step
 from ..preprocessing.levels import NoiseProfile, Scalar
 from ..preprocessing.motion import Motion, followed_turns, motion_of, runs, through_turns
-from ..preprocessing.noise import SHARE_OF_STEP, Noise, NoiseFloor, noise_floor, noise_of, resting
+from ..preprocessing.noise import Noise, noise_of, resting
+from ..preprocessing.noise_floor import SHARE_OF_STEP, NoiseFloor, noise_floor
 from ..preprocessing.samples import Recorded, is_timed, surface_numbers
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
 

@@ -64,6 +64,10 @@ def test_levels_that_rise_stay_and_fall() -> None:
     assert rising([1.0, 3.0, 1.0, 2.9]) == [True, False, False]
     assert plateau_at([1.0, 2.0, 4.0, 4.1, 4.0]) == 3
     assert plateau_at([1.0, 2.0, 4.0, 8.0]) == 0
+    # The third level is 1.3 times the second: a rise where it is known to a tenth, chance where it is known to a half.
+    assert rising([1.0, 1.1, 1.43], [0.95, 0.95, 0.9]) == [False, True]
+    assert rising([1.0, 1.1, 1.43], [0.8, 0.7, 0.5]) == [False, False]
+    assert plateau_at([1.0, 1.1, 1.43], [0.8, 0.7, 0.5]) == 1
     well_known = np.full(3, 0.95)
     assert falls(np.array([3.0, 3.0, 2.0]), well_known)
     assert not falls(np.array([3.0, 3.0, 2.9]), well_known)

@@ -1,4 +1,4 @@
-"""The noise of a misfit, white or filtered, and the noise floor of a recording."""
+"""The noise of a misfit, white or filtered."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
 from tirelab.preprocessing.driven import Driven
-from tirelab.preprocessing.levels import levels_by_state, white_level
+from tirelab.preprocessing.levels import levels_by_state
 from tirelab.preprocessing.noise import (
     Noise,
-    noise_floor,
     noise_of,
     resting,
     white_noise_of,
@@ -22,23 +21,6 @@ IntArray = NDArray[np.intp]
 DEPTH = 25e-3
 TIME = np.linspace(0.0, 10.0, 4001)
 STEP = 5e-5
-
-
-def test_floor_counts_the_steps_through_the_stiffness() -> None:
-    noise = np.random.default_rng(1).normal(0.0, 0.5, TIME.size)
-    floor = noise_floor(white_level(noise), np.full(TIME.size, 15e3), 0.0, STEP, 0.0)
-    ramp = 2e-3 * TIME
-    uniform = 15e3 * (STEP * np.round(ramp / STEP) - ramp)
-    assert floor.steps == pytest.approx(float(np.std(uniform)), rel=0.02)
-    assert floor.amplifier == pytest.approx(0.5, rel=0.05)
-    assert floor.level == pytest.approx(np.hypot(floor.amplifier, floor.steps))
-
-
-def test_a_reading_in_steps_has_their_error_however_slowly_it_moves() -> None:
-    force = 2.0 * np.round(np.linspace(0.0, 100.0, 4001) / 2.0)
-    slow = force - np.linspace(0.0, 100.0, 4001)
-    floor = noise_floor(white_level(slow), np.full(force.size, 15e3), 0.0, 0.0, 2.0)
-    assert floor.level == pytest.approx(float(np.std(slow)), rel=0.02)
 
 
 WHITE = np.random.default_rng(5).normal(0.0, 1.0, 8000)
