@@ -159,10 +159,11 @@ def branches(deflection: FloatArray, noise: float, span: float = 0.0) -> tuple[F
     """Return direction (n,), +1 or -1, and number of the cycle (n,) of a deflection (n,) [m] with this noise [m].
 
     A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of its span, or
-    of another `span` [m] that is longer; it counts from its turning point on.
+    of another `span` [m] that is longer; it counts from its turning point on. Where it first goes down by so much, it
+    has not been going up before.
     """
     threshold = max(6.0 * noise, 0.02 * max(float(np.ptp(deflection)), span))
-    turns, sign, best = [0], 1.0, 0
+    turns, sign, best, first = [0], 1.0, 0, 0
     extreme = deflection[0]
     values = deflection.tolist()
     for i, x in enumerate(values):
@@ -170,10 +171,13 @@ def branches(deflection: FloatArray, noise: float, span: float = 0.0) -> tuple[F
         if ahead >= 0.0:
             best, extreme = i, x
         elif -ahead > threshold:
-            turns.append(best + 1)
+            if sign > 0.0 and turns == [0] and extreme - deflection[0] <= threshold:
+                first = 1
+            else:
+                turns.append(best + 1)
             sign, best, extreme = -sign, i, x
     lengths = np.diff([*turns, deflection.size])
-    number = np.arange(lengths.size)
+    number = first + np.arange(lengths.size)
     direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), lengths)
     cycle = np.repeat(np.floor(number / 2.0), lengths)
     return direction, cycle
