@@ -78,14 +78,16 @@ def drifts(dataset: Dataset) -> FloatArray:
     """Return a drift of the force (m, k) in each recording, as large as the misfit together: hats over the time.
 
     There are as many as strokes, since within one of them, or in a hold, no time can be told from what the deflection
-    does, and at most as many as a refitted law has over the deflection.
+    does, and at most as many as a refitted law has over the deflection. In one cycle there are none: no deflection is
+    passed again in its direction.
     """
     many, columns = dataset.experiments, [np.zeros((dataset.misfit.size, 0))]
     span = float(np.ptp(dataset.deflection))
     for own in many:
         direction, _ = branches(own.deflection, own.gauge, span)
-        count = min(1 + int(np.count_nonzero(np.diff(direction))), HEIGHTS)
-        if count > 1:
+        strokes = 1 + int(np.count_nonzero(np.diff(direction)))
+        if strokes > 2:
+            count = min(strokes, HEIGHTS)
             hats = _hats((own.time - own.time[0]) / max(own.time[-1] - own.time[0], 1e-300), count)
             columns.append(
                 dataset.stacked([hats if e is own else np.zeros((e.time.size, count)) for e in many])

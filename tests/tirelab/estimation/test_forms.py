@@ -88,6 +88,20 @@ def test_in_one_stroke_no_drift_can_be_told_from_the_deflection() -> None:
     assert drifts(dataset_of([ramp], TireModel())).shape[1] == 0
 
 
+@pytest.mark.parametrize("begins_at", [0.0, np.pi])
+def test_in_one_cycle_no_drift_can_be_told_from_deflection_and_direction(begins_at: float) -> None:
+    """From the bottom or from the top; of two cycles it can."""
+    columns = []
+    for cycles in (1, 2):
+        time = np.linspace(0.0, 20.0 * cycles, 1000 * cycles)
+        x = 0.01 * (1.0 - np.cos(2.0 * np.pi * time / 20.0 + begins_at))
+        noise = np.random.default_rng(3).normal(size=time.size)
+        driven = Recording("c", time, x, np.full(time.size, np.inf), 900.0 + noise)
+        columns.append(drifts(dataset_of([driven], TireModel())).shape[1])
+    assert columns[0] == 0
+    assert columns[1] >= 3
+
+
 def test_in_a_hold_no_drift_can_be_told_from_what_relaxes() -> None:
     """The gauge trembles by a thousandth of the stroke of the other recording."""
     time = np.linspace(0.0, 20.0, 2000)
