@@ -23,7 +23,8 @@ from ..preprocessing.motion import FloatArray, IndexArray, Motion
 from ..preprocessing.samples import Recorded
 from ..report.titles import newtons, set_title
 from ..simulation.simulate import simulate, smoothed_motion
-from .contradiction import EXPLAINED, Contradiction, Explain, in_states, states_of
+from .contradiction import EXPLAINED, Contradiction, Explain
+from .states_of_motion import in_states, states_of
 
 ROUNDS = 100
 """Most rounds in which m and a are found in turns."""

@@ -5,7 +5,6 @@ The command, the batch and the blind trials all call `run_diagnosis`.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -13,9 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import polars as pl
 from numpy.typing import NDArray
-from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire, write_tire
+from radialtire import InputError, ParameterError, TireFileError, TireModel, read_tire
 
 from ..computing.staging import staged
 from ..errors import TirelabError
@@ -35,11 +33,9 @@ from .diagnose import PoorRecording, diagnose
 from .moved_simulation import diagnose_beside
 from .outcome import (
     DATA,
-    DIAGNOSIS,
     FMU,
     REPORT,
     TEST,
-    TIRE,
     Replayed,
     command_line,
     content_of,
@@ -58,6 +54,7 @@ from .request_checks import (
 )
 from .simulation_correction import CORRECTION, Believed, believed_of, deliver, simulated_by, write_corrected
 from .verdict import Verdict
+from .written_files import write_samples, write_verdict
 
 AGREEMENT = 1e-9
 """The FMU and the simulation may differ by this part of the largest force: they add in another order."""
@@ -247,10 +244,10 @@ def _delivered(
     content = content_of(verdict.to_dict(), on_fitted, on_kept)
     content |= of_correction
     if samples:
-        _write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
+        write_samples(folder, (("fitted", on_fitted), ("held-out", on_kept)))
     else:
         content["data"] = None
-    _write(folder, content, verdict)
+    write_verdict(folder, content, verdict)
     write_report(
         folder / REPORT,
         {
@@ -361,45 +358,3 @@ def _disagreement(recording: Recording, replayed: FloatArray, simulated: FloatAr
         return []
     by = f"the corrected FMU differs by up to {with_power(f'{difference:.3g}')} N from the fitted simulation"
     return [f"on {recording.name} {by}; the stated errors are those of the FMU"]
-
-
-def _write(out: Path, content: Mapping[str, Any], verdict: Verdict) -> None:
-    """Write all but the FMU and the report."""
-    try:
-        write_tire(verdict.tire, out / TIRE)
-        (out / DIAGNOSIS).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        if verdict.test is not None:
-            motion = verdict.test.test
-            pl.DataFrame(
-                {
-                    "time [s]": np.round(motion.time, 9),
-                    "deflection [cm]": np.round(100.0 * motion.deflection, 9),
-                    "radius [cm]": np.round(100.0 * motion.surface_radius, 9),
-                }
-            ).write_csv(out / TEST)
-    except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
-
-
-def _write_samples(out: Path, groups: Sequence[tuple[str, Replayed]]) -> None:
-    """Write every sample of every recording with the forces before and after: the data behind the plots."""
-    tables = [
-        pl.DataFrame(
-            {
-                "recording": [recording.name] * len(recording),
-                "used": [used] * len(recording),
-                "time [s]": recording.time,
-                "deflection [mm]": 1e3 * recording.deflection,
-                "radius [cm]": 100.0 * recording.surface_radius,
-                "force [N]": recording.force,
-                "force before [N]": before,
-                "force after [N]": after,
-            }
-        )
-        for used, replayed in groups
-        for recording, before, after in zip(replayed.recordings, replayed.before, replayed.after, strict=True)
-    ]
-    try:
-        pl.concat(tables).write_csv(out / DATA, float_precision=6)
-    except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
