@@ -246,11 +246,9 @@ def _moved(tire: TireModel, read: History, kinematics: Kinematics | None, stages
     def make() -> History:
         x, rate = upstream(tire, read), read.rate
         if tire.differentiates:
-            if kinematics is not None:
-                rate = rate + np.gradient(x - read.deflection, read.time)
-            elif tire.reading_noise < EXACT:
+            if kinematics is None and tire.reading_noise < EXACT:
                 rate, _ = track(read.time, x, tire.reading_noise)
-            else:  # as `flat_step`: the tire's deflection holds rates and is too noisy to be differentiated once more
+            else:  # as `flat_step`: what the tire's deflection holds of the rate, the known acceleration continues
                 later, sooner = (upstream_beside(tire, extrapolated(read, h), read) for h in (AHEAD, -AHEAD))
                 rate = (later - sooner) / (2.0 * AHEAD)
         return replace(read, deflection=x, rate=rate)

@@ -193,8 +193,23 @@ def test_behind_a_spring_the_rate_is_that_of_the_tire() -> None:
     # Of a deflection u a linear tire behind a linear spring has u / (1 + k c), and of its rate the same part.
     part = 1.0 / (1.0 + stiffness * compliance)
     expected = part * (stiffness * motion.deflection + damping * known.rate)
-    # The spring's own way is differentiated over two samples: (2 pi 1 ms)^2 / 6 of the damping at the ends.
-    assert simulate(tire, motion, known) == pytest.approx(expected, abs=0.02 * part * damping * 0.004 * np.pi)
+    # The rate is a difference of two tries, whose rounding is a part of 1e-16 of the deflection over their time.
+    assert simulate(tire, motion, known) == pytest.approx(expected, abs=1e-6 * part * damping * 0.004 * np.pi)
+
+
+def test_beside_a_late_gauge_a_damper_is_a_damper_and_a_mass() -> None:
+    """c d/dt (x + tau v) = c v + c tau a, however few samples a cycle has: no step tells the two apart."""
+    time = np.arange(0.0, 2.0, 0.01)
+    angle = 2.0 * np.pi * 20.0
+    motion = Motion(time, 1e-3 * np.sin(angle * time), np.full(time.size, math.inf))
+    known = Known(1e-3 * angle * np.cos(angle * time), -1e-3 * angle**2 * np.sin(angle * time))
+    damper = CATALOGUE["viscous_damping"], (100.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    late, mass = (CATALOGUE["deflection_lag"], (0.02, 0.0)), (CATALOGUE["inertia"], (100.0 * 0.02,))
+    bare = TireModel(PowerLaw(1e-12, 1.0), tested_range=None, two_sided=True)
+    gauge, weight = (
+        simulate(replace(bare, effects=e), motion, known) for e in ((late, damper), (damper, mass))
+    )
+    assert gauge == pytest.approx(weight, abs=1e-6 * float(np.max(np.abs(weight))))
 
 
 @pytest.mark.parametrize("noise", [0.0, 2e-5])
